@@ -1,0 +1,93 @@
+"""What an agent is: a named camera with a size, a rate, views and a way to be moved.
+
+`AgentSpec` is what a client asks for and what the simulator reports; `AgentPose` answers where
+an agent is. Both travel between `simulation.py` and every client of it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import FIVE_VIEWS, checked_views
+from sailenv_ros.geometry import Pose
+
+__all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "AgentPose", "AgentSpec"]
+
+MAX_AGENTS = 16
+MAX_RATE_HZ = 240.0
+
+_NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class AgentSpec:
+    """One agent.
+
+    Attributes
+    ----------
+    name : str
+        A ROS name: a lower-case letter, then letters, digits, underscores; at most 63.
+    intrinsics : CameraIntrinsics
+    depth_range_m : float
+        Depth that the 8-bit depth picture shows as black [m], more than the near plane.
+    rate_hz : float
+        Frames per second of simulated time that are streamed, 0 to 240; 0 = on request only.
+    views : tuple of str
+        Views of a frame unless a request names others.
+    following : bool
+        True if the agent takes over its mover's pose.
+    mover : str
+        The mover it follows; empty means the scene's first.
+    pose : Pose or None
+        Where it starts when it does not follow; None means at the mover.
+    """
+
+    name: str
+    intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
+    depth_range_m: float = 10.0
+    rate_hz: float = 30.0
+    views: tuple[str, ...] = FIVE_VIEWS
+    following: bool = True
+    mover: str = ""
+    pose: Pose | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
+            raise InvalidRequest(
+                "name of the agent",
+                self.name,
+                "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
+            )
+        object.__setattr__(self, "views", checked_views(self.views))
+        if not 0.0 <= self.rate_hz <= MAX_RATE_HZ:
+            raise InvalidRequest("rate_hz", self.rate_hz, f"a number from 0 to {MAX_RATE_HZ:g} [Hz]")
+        near = self.intrinsics.near_m
+        if not (math.isfinite(self.depth_range_m) and self.depth_range_m > near):
+            raise InvalidRequest(
+                "depth_range_m", self.depth_range_m, f"a number above near_m = {near:g} [m]"
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentPose:
+    """Where an agent is.
+
+    Attributes
+    ----------
+    pose : Pose
+        The camera's body (x forward, y left, z up) in the world frame.
+    following : bool
+    mover : str
+        Name of the mover it follows, or would follow.
+    sim_time_ns : int
+        The instant it was read at [ns].
+    """
+
+    pose: Pose
+    following: bool
+    mover: str
+    sim_time_ns: int

@@ -1,0 +1,185 @@
+"""The pin-hole camera: sizes, field of view, matrices, projection.
+
+Integer pixel coordinates are pixel centres: (0, 0) is the centre of the top-left pixel, so
+cx = (W - 1) / 2 and cy = (H - 1) / 2. Points are in the camera optical frame (x right, y down,
+z forward) [m]. OpenGL's clip axes appear in `clip_from_optical` alone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose, invert
+
+__all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics"]
+
+MIN_SIZE_PX = 8
+MAX_SIZE_PX = 4096
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraIntrinsics:
+    """What a camera sees, apart from where it stands.
+
+    Attributes
+    ----------
+    width, height : int
+        Size of the picture [px], 8 to 4096.
+    vertical_fov_deg : float
+        Full vertical angle of view [deg], 1 to 170.
+    near_m, far_m : float
+        Clip distances along the optical axis [m], 0.001 ≤ near < far ≤ 10000.
+
+    Raises
+    ------
+    InvalidRequest
+        If one of them is out of its range.
+    """
+
+    width: int = 640
+    height: int = 480
+    vertical_fov_deg: float = 60.0
+    near_m: float = 0.05
+    far_m: float = 100.0
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height"):
+            size = getattr(self, name)
+            # Integers of NumPy count as integers; booleans do not.
+            if isinstance(size, bool) or not isinstance(size, int | np.integer):
+                raise InvalidRequest(name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]")
+            if not MIN_SIZE_PX <= size <= MAX_SIZE_PX:
+                raise InvalidRequest(name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]")
+            object.__setattr__(self, name, int(size))
+        _check_range("vertical_fov_deg", self.vertical_fov_deg, 1.0, 170.0, "deg")
+        _check_range("near_m", self.near_m, 1e-3, 1e4, "m")
+        _check_range("far_m", self.far_m, 1e-3, 1e4, "m")
+        if self.near_m >= self.far_m:
+            raise InvalidRequest("near_m", self.near_m, f"less than far_m = {self.far_m:g} [m]")
+
+    @property
+    def fx(self) -> float:
+        """Focal length [px]; pixels are square, so fx = fy."""
+        return self.fy
+
+    @property
+    def fy(self) -> float:
+        """Focal length [px]: (H / 2) / tan(vertical field of view / 2)."""
+        return 0.5 * self.height / math.tan(0.5 * math.radians(self.vertical_fov_deg))
+
+    @property
+    def cx(self) -> float:
+        """Column of the optical axis [px]: (W - 1) / 2."""
+        return 0.5 * (self.width - 1)
+
+    @property
+    def cy(self) -> float:
+        """Row of the optical axis [px]: (H - 1) / 2."""
+        return 0.5 * (self.height - 1)
+
+    @property
+    def K(self) -> NDArray[np.float64]:
+        """(3, 3) intrinsic matrix; a new array."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    def clip_from_optical(self) -> NDArray[np.float64]:
+        """Give the (4, 4) OpenGL projection of points in the optical frame.
+
+        Clip w is the depth z; window row 0 of OpenGL is the picture's bottom row.
+        """
+        near, far = self.near_m, self.far_m
+        result = np.zeros((4, 4))
+        result[0, 0] = 2.0 * self.fx / self.width
+        result[1, 1] = -2.0 * self.fy / self.height
+        result[2, 2] = (far + near) / (far - near)
+        result[2, 3] = -2.0 * far * near / (far - near)
+        result[3, 2] = 1.0
+        return result
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Project points of the optical frame into the picture.
+
+        Parameters
+        ----------
+        points : (..., 3) array-like
+            Points in the optical frame [m].
+
+        Returns
+        -------
+        pixels : (..., 2) float64
+            Columns and rows (u, v) [px]; ``nan`` for points that are not in front of the camera.
+        """
+        p = np.asarray(points, dtype=np.float64)
+        z = np.where(p[..., 2] > 0.0, p[..., 2], np.nan)
+        u = self.fx * p[..., 0] / z + self.cx
+        v = self.fy * p[..., 1] / z + self.cy
+        return np.stack([u, v], axis=-1)
+
+    def rays(self) -> NDArray[np.float64]:
+        """Give (H, W, 3) the point at depth 1 m that each pixel's centre sees (optical frame)."""
+        x = (np.arange(self.width) - self.cx) / self.fx
+        y = (np.arange(self.height) - self.cy) / self.fy
+        result = np.ones((self.height, self.width, 3))
+        result[..., 0] = x[None, :]
+        result[..., 1] = y[:, None]
+        return result
+
+    def unproject(self, depth: NDArray[np.float32]) -> NDArray[np.float64]:
+        """Turn a depth picture into points.
+
+        Parameters
+        ----------
+        depth : (H, W) float32
+            Depth along the optical axis [m]; ``inf`` where nothing was hit, ``nan`` where the
+            surface was nearer than the near plane.
+
+        Returns
+        -------
+        points : (H, W, 3) float64
+            Points in the optical frame [m]; ``nan`` where the depth is not finite. A new array.
+        """
+        finite = np.where(np.isfinite(depth), depth, np.nan).astype(np.float64)
+        return self.rays() * finite[..., None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """A camera that stands somewhere.
+
+    Attributes
+    ----------
+    intrinsics : CameraIntrinsics
+    pose : Pose
+        Pose of the camera's body (x forward, y left, z up) in the world frame.
+    """
+
+    intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
+    pose: Pose = field(default_factory=Pose)
+
+    @cached_property
+    def world_from_camera(self) -> NDArray[np.float64]:
+        """(4, 4) float64 read-only: world coordinates of points of the optical frame."""
+        matrix: NDArray[np.float64] = self.pose.matrix() @ BODY_FROM_OPTICAL
+        matrix.flags.writeable = False
+        return matrix
+
+    @cached_property
+    def camera_from_world(self) -> NDArray[np.float64]:
+        """(4, 4) float64 read-only: the inverse of `world_from_camera`."""
+        matrix = invert(self.world_from_camera)
+        matrix.flags.writeable = False
+        return matrix
+
+
+def _check_range(name: str, value: float, low: float, high: float, unit: str) -> None:
+    accepted = f"a number from {low:g} to {high:g} [{unit}]"
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+        raise InvalidRequest(name, value, accepted)
+    if not low <= value <= high:
+        raise InvalidRequest(name, value, accepted)

@@ -1,0 +1,106 @@
+"""Lights and surroundings of a scene, as the renderer takes them.
+
+Colours are linear RGB. Positions and directions are in the world frame.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import vector
+
+__all__ = ["Environment", "Light", "LightType"]
+
+LightType = Literal["directional", "point", "spot", "area"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Light:
+    """One light.
+
+    Attributes
+    ----------
+    name : str
+        Unique in its scene.
+    type : {'directional', 'point', 'spot', 'area'}
+    colour : (3,) tuple of float
+        Linear red, green, blue, each 0 or more.
+    intensity : float
+        Irradiance at normal incidence [W/m²] of a directional light; radiant intensity [W/sr] of
+        a point, spot light; radiance [W/(m² sr)] of an area light. 0 or more, unitless scale:
+        exposure maps it to the picture.
+    indirect_multiplier : float
+        Scales the light's bounced part only.
+    position_m : (3,) tuple of float
+        Of point, spot and area lights [m].
+    direction : (3,) tuple of float
+        Where the light travels to; of directional, spot and area lights. Unit length.
+    range_m : float
+        Beyond it a point or spot light has no effect [m].
+    inner_cone_deg, outer_cone_deg : float
+        Half angles of a spot light's full and vanishing brightness [deg].
+    width_m, height_m : float
+        Size of an area light [m].
+    """
+
+    name: str
+    type: LightType
+    colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    intensity: float = 1.0
+    indirect_multiplier: float = 1.0
+    position_m: tuple[float, float, float] = (0.0, 0.0, 3.0)
+    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)
+    range_m: float = 20.0
+    inner_cone_deg: float = 20.0
+    outer_cone_deg: float = 35.0
+    width_m: float = 1.0
+    height_m: float = 1.0
+
+    def __post_init__(self) -> None:
+        colour = vector(f"colour of light {self.name!r}", self.colour, limit=1e6)
+        if min(colour) < 0.0:
+            raise InvalidRequest(f"colour of light {self.name!r}", colour, "three numbers ≥ 0")
+        for name in ("intensity", "indirect_multiplier", "range_m", "width_m", "height_m"):
+            value = getattr(self, name)
+            if not 0.0 <= value < 1e9:
+                raise InvalidRequest(f"{name} of light {self.name!r}", value, "a finite number ≥ 0")
+        x, y, z = vector(f"direction of light {self.name!r}", self.direction, limit=1e6)
+        length = (x * x + y * y + z * z) ** 0.5
+        if length < 1e-9:
+            raise InvalidRequest(f"direction of light {self.name!r}", (x, y, z), "not all zero")
+        position = vector(f"position of light {self.name!r}", self.position_m, limit=1e4)
+        object.__setattr__(self, "colour", colour)
+        object.__setattr__(self, "direction", (x / length, y / length, z / length))
+        object.__setattr__(self, "position_m", position)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Environment:
+    """What surrounds the objects.
+
+    Attributes
+    ----------
+    ambient : (3,) tuple of float
+        Linear radiance that arrives from everywhere.
+    background : {'sky', 'colour'}
+        What pixels show where nothing was hit.
+    background_colour : (3,) tuple of float
+        Linear colour for ``background = 'colour'``.
+    sky_zenith, sky_horizon, sky_ground : (3,) tuple of float
+        Linear radiance of the analytic sky, used while no picture of a sky is named.
+    sky_map : str
+        Name of a sky picture, empty for the analytic sky.
+    exposure : float
+        Stops that the picture is brightened by (factor 2**exposure).
+    """
+
+    ambient: tuple[float, float, float] = (0.25, 0.25, 0.25)
+    background: Literal["sky", "colour"] = "sky"
+    background_colour: tuple[float, float, float] = (0.2, 0.2, 0.2)
+    sky_zenith: tuple[float, float, float] = (0.22, 0.38, 0.72)
+    sky_horizon: tuple[float, float, float] = (0.75, 0.82, 0.90)
+    sky_ground: tuple[float, float, float] = (0.30, 0.28, 0.26)
+    sky_map: str = ""
+    exposure: float = 0.0

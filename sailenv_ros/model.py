@@ -1,0 +1,222 @@
+"""What an object looks like and how it collides: meshes, materials, collision shapes, assets.
+
+Travels from `assets/` to `world/` (which reads shapes and mass) and `render/` (which reads
+parts). Nothing here knows a file format, PyBullet or OpenGL. Models are compared by identity:
+the same object is uploaded to the GPU once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import AssetError
+
+__all__ = [
+    "Asset",
+    "BoxShape",
+    "CollisionShape",
+    "ConvexShape",
+    "CylinderShape",
+    "Material",
+    "Mesh",
+    "Model",
+    "ModelPart",
+    "SphereShape",
+    "TriangleShape",
+]
+
+Texture: TypeAlias = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Mesh:
+    """Triangles of one material; arrays are read-only.
+
+    Attributes
+    ----------
+    positions : (N, 3) float32
+        Vertices in the body frame (x forward, y left, z up) [m].
+    normals : (N, 3) float32
+        Unit normals of the vertices.
+    uvs : (N, 2) float32
+        Texture coordinates, v from the texture's bottom row up (glTF's v is flipped on import).
+    triangles : (M, 3) uint32
+        Vertex indices, counter-clockwise seen from outside.
+    """
+
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    uvs: NDArray[np.float32]
+    triangles: NDArray[np.uint32]
+
+    def __post_init__(self) -> None:
+        count = len(self.positions)
+        expected = {"positions": (count, 3), "normals": (count, 3), "uvs": (count, 2)}
+        for name, shape in expected.items():
+            array = np.ascontiguousarray(getattr(self, name), dtype=np.float32)
+            if array.shape != shape or not np.isfinite(array).all():
+                raise AssetError("mesh", f"{name} must be {shape} finite numbers")
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+        triangles = np.ascontiguousarray(self.triangles, dtype=np.uint32)
+        if triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise AssetError("mesh", f"triangles must be (M, 3), got {triangles.shape}")
+        if triangles.size and int(triangles.max()) >= count:
+            raise AssetError("mesh", f"a triangle names vertex {triangles.max()} of {count}")
+        triangles.flags.writeable = False
+        object.__setattr__(self, "triangles", triangles)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Material:
+    """A metallic-roughness material (the factors and maps of glTF 2.0).
+
+    Attributes
+    ----------
+    name : str
+    base_colour : (4,) tuple of float
+        Linear red, green, blue and alpha, 0 to 1; multiplies the texture.
+    metallic, roughness : float
+        0 to 1; multiply the texture's blue and green channels.
+    emission : (3,) tuple of float
+        Linear radiance it emits.
+    base_colour_texture : (H, W, 4) uint8 or None
+        sRGB colour and linear alpha; row 0 is the top.
+    metallic_roughness_texture : (H, W, 4) uint8 or None
+        Green roughness, blue metallic, linear.
+    normal_texture : (H, W, 4) uint8 or None
+        Tangent-space normals, 128 = 0.
+    alpha : {'opaque', 'mask', 'blend'}
+        ``mask`` drops pixels whose alpha is below `alpha_cutoff`; ``blend`` is glass.
+    alpha_cutoff : float
+    double_sided : bool
+        True if the back of the triangles is drawn too.
+    """
+
+    name: str = ""
+    base_colour: tuple[float, float, float, float] = (0.8, 0.8, 0.8, 1.0)
+    metallic: float = 0.0
+    roughness: float = 0.6
+    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    base_colour_texture: Texture | None = None
+    metallic_roughness_texture: Texture | None = None
+    normal_texture: Texture | None = None
+    alpha: Literal["opaque", "mask", "blend"] = "opaque"
+    alpha_cutoff: float = 0.5
+    double_sided: bool = False
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ModelPart:
+    """One mesh with its material."""
+
+    mesh: Mesh
+    material: Material
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Model:
+    """What is drawn of an object: parts in one body frame."""
+
+    name: str
+    parts: tuple[ModelPart, ...]
+
+    def bounds(self) -> NDArray[np.float64]:
+        """Give (2, 3) float64: lowest and highest corner in the body frame [m]."""
+        if not self.parts:
+            return np.zeros((2, 3))
+        low = np.min([part.mesh.positions.min(axis=0) for part in self.parts], axis=0)
+        high = np.max([part.mesh.positions.max(axis=0) for part in self.parts], axis=0)
+        return np.stack([low, high]).astype(np.float64)
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles all parts have."""
+        return sum(len(part.mesh.triangles) for part in self.parts)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxShape:
+    """A box; `centre_m` in the body frame."""
+
+    half_extents_m: tuple[float, float, float]
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SphereShape:
+    """A ball; `centre_m` in the body frame."""
+
+    radius_m: float
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CylinderShape:
+    """A cylinder along the body's z axis; `centre_m` in the body frame."""
+
+    radius_m: float
+    height_m: float
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ConvexShape:
+    """The convex hull of points (N, 3) float64 in the body frame [m]."""
+
+    points: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class TriangleShape:
+    """Triangles as they are; hollow, for static objects only.
+
+    Attributes
+    ----------
+    positions : (N, 3) float64
+        Vertices in the body frame [m].
+    triangles : (M, 3) int32
+    """
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+
+
+CollisionShape: TypeAlias = BoxShape | SphereShape | CylinderShape | ConvexShape | TriangleShape
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Asset:
+    """An entry of the catalogue: all that is needed to place an object.
+
+    Attributes
+    ----------
+    name : str
+        Catalogue name, e.g. ``"chair_01"``.
+    display_name : str
+        As the original wrote it, e.g. ``"Chair 01"``.
+    category : str
+        Name in the category table.
+    model : Model
+        Body frame: x forward, y left, z up; origin at the centre of mass for primitives, at the
+        centre of the base for furniture.
+    collision : tuple of CollisionShape
+        Compound of shapes; empty for what nothing collides with.
+    mass_kg : float
+        Mass if it may move [kg].
+    centre_of_mass_m : (3,) tuple of float
+        In the body frame [m].
+    """
+
+    name: str
+    display_name: str
+    category: str
+    model: Model
+    collision: tuple[CollisionShape, ...]
+    mass_kg: float = 1.0
+    centre_of_mass_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    tags: tuple[str, ...] = field(default=())

@@ -1,0 +1,87 @@
+"""What clients are told of the scene: names, tables, agents; sent again at every change.
+
+Made by `simulation.py` from the world's `SceneContents`; goes to messages, sockets, windows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.labels import CategoryTable, Instance
+from sailenv_ros.lights import Environment, Light
+
+__all__ = ["MoverInfo", "SceneInfo", "TimeMode"]
+
+TimeMode = Literal["realtime", "lockstep"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoverInfo:
+    """One mover.
+
+    Attributes
+    ----------
+    name : str
+    controller : {'waypoint', 'rigidbody'}
+        What drives it: the scene's waypoints, or commands and set poses.
+    """
+
+    name: str
+    controller: Literal["waypoint", "rigidbody"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SceneInfo:
+    """The scene as clients see it.
+
+    Attributes
+    ----------
+    scene : str
+        Name of the present scene.
+    scenes : tuple of str
+        Names that `change_scene` accepts.
+    epoch : int
+        Grows at each change of scene and each reset.
+    revision : int
+        Grows at each change of the contents; a frame's ``revision`` is never above the latest.
+    sim_time_ns : int
+        When this was made [ns].
+    mode : {'realtime', 'lockstep'}
+    paused : bool
+    real_time_factor : float
+        Simulated seconds per wall second that are aimed at.
+    seed : int
+    categories : CategoryTable
+    instances : tuple of Instance
+    moving : frozenset of int
+        Ids of the instances that a behaviour moves.
+    spawnables : tuple of str
+        Catalogue names that may be spawned.
+    lights : tuple of Light
+    environment : Environment
+    agents : tuple of AgentSpec
+    movers : tuple of MoverInfo
+    renderer : str
+        One line: back end, device, driver.
+    """
+
+    scene: str
+    scenes: tuple[str, ...]
+    epoch: int
+    revision: int
+    sim_time_ns: int
+    mode: TimeMode
+    paused: bool
+    real_time_factor: float
+    seed: int
+    categories: CategoryTable
+    instances: tuple[Instance, ...]
+    moving: frozenset[int] = frozenset()
+    spawnables: tuple[str, ...] = ()
+    lights: tuple[Light, ...] = ()
+    environment: Environment = field(default_factory=Environment)
+    agents: tuple[AgentSpec, ...] = ()
+    movers: tuple[MoverInfo, ...] = ()
+    renderer: str = ""

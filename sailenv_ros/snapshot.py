@@ -1,0 +1,135 @@
+"""A frozen copy of the world at one instant of simulated time.
+
+Comes from `world/`, goes to `render/`. `SceneContents` is what changes seldom (what exists, what
+it looks like, lights); `WorldSnapshot` adds the poses. Both are immutable, so optical flow is a
+pure function of two snapshots and the cameras that go with them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.camera import Camera
+from sailenv_ros.labels import CategoryTable, Instance
+from sailenv_ros.lights import Environment, Light
+from sailenv_ros.model import Model
+
+__all__ = ["DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class DrawnInstance:
+    """One object to draw: its labels, its looks and its scale.
+
+    Attributes
+    ----------
+    instance : Instance
+    model : Model
+        Shared between instances; compared by identity.
+    scale : (3,) tuple of float
+        Applied to the model in its body frame, before the pose.
+    """
+
+    instance: Instance
+    model: Model
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SceneContents:
+    """What a scene holds, apart from poses; compared by identity.
+
+    Attributes
+    ----------
+    scene : str
+        Name of the scene.
+    epoch : int
+        Grows at each change of scene and each reset: frames of two epochs have no common past.
+    revision : int
+        Grows at each change of anything here.
+    instances : tuple of DrawnInstance
+        In the order of the snapshot's rows.
+    categories : CategoryTable
+    lights : tuple of Light
+    environment : Environment
+    """
+
+    scene: str
+    epoch: int
+    revision: int
+    instances: tuple[DrawnInstance, ...]
+    categories: CategoryTable
+    lights: tuple[Light, ...] = ()
+    environment: Environment = field(default_factory=Environment)
+
+    @cached_property
+    def instance_ids(self) -> NDArray[np.uint16]:
+        """(N,) uint16 read-only: instance id of each row."""
+        ids = np.array([drawn.instance.id for drawn in self.instances], dtype=np.uint16)
+        ids.flags.writeable = False
+        return ids
+
+    @cached_property
+    def category_of_instance(self) -> NDArray[np.uint8]:
+        """(65536,) uint8 read-only: category id of each instance id, 0 where there is none."""
+        table = np.zeros(65536, dtype=np.uint8)
+        for drawn in self.instances:
+            table[drawn.instance.id] = drawn.instance.category_id
+        table.flags.writeable = False
+        return table
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WorldSnapshot:
+    """Poses of everything at one instant.
+
+    Attributes
+    ----------
+    sim_time_ns : int
+        Simulated time since the last reset [ns].
+    step : int
+        Physics steps since the last reset.
+    contents : SceneContents
+    world_from_body : (N, 4, 4) float64
+        Read-only; rows in the order of ``contents.instances``. Rigid; scale is in the contents.
+    histories : (N,) int64
+        Read-only; a number that changes when an object's past is cut off (it was spawned or
+        asked to teleport). Flow exists between two snapshots only for equal numbers.
+    """
+
+    sim_time_ns: int
+    step: int
+    contents: SceneContents
+    world_from_body: NDArray[np.float64]
+    histories: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        count = len(self.contents.instances)
+        if self.world_from_body.shape != (count, 4, 4) or self.histories.shape != (count,):
+            raise ValueError(
+                f"a snapshot of {count} instances needs poses ({count}, 4, 4) and histories "
+                f"({count},), got {self.world_from_body.shape} and {self.histories.shape}"
+            )
+        self.world_from_body.flags.writeable = False
+        self.histories.flags.writeable = False
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Observation:
+    """What one camera saw at an earlier instant: the past that flow and occlusion refer to.
+
+    Attributes
+    ----------
+    snapshot : WorldSnapshot
+    camera : Camera
+    depth : (H, W) float32 or None
+        The depth view of then; needed for the occlusion view alone.
+    """
+
+    snapshot: WorldSnapshot
+    camera: Camera
+    depth: NDArray[np.float32] | None = None
