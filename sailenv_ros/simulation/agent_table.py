@@ -1,0 +1,202 @@
+"""The agents of a simulation: where each one is, what it saw last, when its next frame is due.
+
+Used by the loop thread alone. Knows the world for its movers and nothing of rendering.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
+from sailenv_ros.camera import Camera
+from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
+from sailenv_ros.geometry import Pose
+from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.snapshot import Observation
+from sailenv_ros.world.bullet import STEPS_PER_SECOND
+from sailenv_ros.world.world import World
+
+__all__ = ["AgentRecord", "AgentTable"]
+
+
+@dataclass(slots=True, kw_only=True)
+class AgentRecord:
+    """One agent's changing state.
+
+    Attributes
+    ----------
+    registered : AgentSpec
+        As it was registered; what a reset goes back to.
+    spec : AgentSpec
+        As it is now (its follow state changes).
+    pose : Pose
+        Where it is while it does not follow.
+    sequence : int
+        Number of its last frame.
+    latest, earlier : Observation or None
+        Its last frame, and its last frame of an earlier instant. Two frames of one instant share
+        their past, so flow always has a time to refer to.
+    due_count : int
+        Number of its next streamed frame since the epoch began; see `due_step`.
+    streams : list of FrameStream
+    """
+
+    registered: AgentSpec
+    spec: AgentSpec
+    pose: Pose
+    sequence: int = 0
+    latest: Observation | None = None
+    earlier: Observation | None = None
+    due_count: int = 0
+    streams: list[FrameStream] = field(default_factory=list)
+
+    def past(self, sim_time_ns: int) -> Observation | None:
+        """Give the last observation before that instant."""
+        if self.latest is not None and self.latest.snapshot.sim_time_ns < sim_time_ns:
+            return self.latest
+        return self.earlier
+
+    def remember(self, observation: Observation) -> None:
+        """Take note of a frame that was just rendered."""
+        self.earlier = self.past(observation.snapshot.sim_time_ns)
+        self.latest = observation
+
+    def forget(self) -> None:
+        """Cut its past off: the next frame has no flow."""
+        self.latest = self.earlier = None
+
+    @property
+    def wanted_views(self) -> frozenset[str]:
+        """Union of the views that its streams want."""
+        return frozenset(view for stream in self.streams for view in stream.views)
+
+    def due_step(self) -> int:
+        """Give the physics step at which its next streamed frame is due."""
+        return self._step_of(self.due_count)
+
+    def last_due_step(self, step: int) -> int:
+        """Give the last step not after `step` at which a frame is due; -1 if there is none."""
+        if not self.wanted_views or not self.spec.rate_hz or self.due_step() > step:
+            return -1
+        count = math.floor(step * self.spec.rate_hz / STEPS_PER_SECOND + 1e-9)
+        return self._step_of(count)
+
+    def skip_to(self, step: int) -> int:
+        """Make the first frame due at or after that step the next one; say how many were passed."""
+        before = self.due_count
+        count = math.ceil(step * self.spec.rate_hz / STEPS_PER_SECOND - 1e-9)
+        self.due_count = max(before, count)
+        return self.due_count - before
+
+    def _step_of(self, count: int) -> int:
+        return math.ceil(count * STEPS_PER_SECOND / self.spec.rate_hz - 1e-9)
+
+
+class AgentTable:
+    """All agents by name, in the order they came."""
+
+    def __init__(self) -> None:
+        self._records: dict[str, AgentRecord] = {}
+
+    def __iter__(self) -> Iterator[AgentRecord]:
+        return iter(self._records.values())
+
+    def __getitem__(self, name: str) -> AgentRecord:
+        if name not in self._records:
+            raise UnknownName("agent", name, self._records)
+        return self._records[name]
+
+    @property
+    def specs(self) -> tuple[AgentSpec, ...]:
+        """What the agents are now."""
+        return tuple(record.spec for record in self)
+
+    def add(self, spec: AgentSpec, world: World) -> AgentSpec:
+        """Register an agent; give the spec as accepted, with its mover's name filled in.
+
+        Raises
+        ------
+        NameTaken, UnknownName, InvalidRequest
+            If the name is in use, the mover unknown, or there are too many agents.
+        """
+        if spec.name in self._records:
+            raise NameTaken("agent", spec.name)
+        if len(self._records) >= MAX_AGENTS:
+            raise InvalidRequest(
+                "number of agents", len(self._records) + 1, f"at most {MAX_AGENTS}; delete one first"
+            )
+        mover = world.mover(spec.mover)
+        pose = spec.pose or mover.pose_at(world.sim_time_ns)
+        accepted = replace(spec, mover=mover.name, pose=pose)
+        record = AgentRecord(registered=accepted, spec=accepted, pose=pose)
+        if spec.rate_hz:
+            record.skip_to(world.step_count)
+        self._records[spec.name] = record
+        return accepted
+
+    def remove(self, name: str) -> None:
+        """Delete an agent and end its streams."""
+        record = self[name]
+        del self._records[name]
+        for stream in record.streams:
+            stream.end(f"agent {name!r} was deleted")
+
+    def pose(self, name: str, world: World) -> AgentPose:
+        """Say where an agent is."""
+        record = self[name]
+        return AgentPose(
+            pose=self.camera(record, world).pose,
+            following=record.spec.following,
+            mover=record.spec.mover,
+            sim_time_ns=world.sim_time_ns,
+        )
+
+    def camera(self, record: AgentRecord, world: World) -> Camera:
+        """Give an agent's camera as it stands now."""
+        pose = record.pose
+        if record.spec.following:
+            pose = world.mover(record.spec.mover).pose_at(world.sim_time_ns)
+        return Camera(intrinsics=record.spec.intrinsics, pose=pose)
+
+    def put(self, name: str, pose: Pose, world: World, *, teleport: bool) -> None:
+        """Move an agent; one that follows moves its mover, and with it all that follow it."""
+        record = self[name]
+        moved = [record]
+        if record.spec.following:
+            mover = world.mover(record.spec.mover)
+            mover.hold(pose, world.sim_time_ns)
+            moved = [r for r in self if r.spec.following and r.spec.mover == mover.name]
+        else:
+            record.pose = pose
+        if teleport:
+            for other in moved:
+                other.forget()
+
+    def set_follow(self, name: str, following: bool, world: World) -> bool:
+        """Follow or stop; one that stops stays where it is."""
+        record = self[name]
+        if record.spec.following and not following:
+            record.pose = self.camera(record, world).pose
+        record.spec = replace(record.spec, following=following)
+        return following
+
+    def begin_epoch(self, world: World, *, as_registered: bool) -> None:
+        """Take the agents over into a world that has just begun.
+
+        Parameters
+        ----------
+        as_registered : bool
+            True puts follow state and pose back to what they were on registration.
+        """
+        for record in self:
+            record.forget()
+            record.due_count = 0
+            if as_registered:
+                record.spec = record.registered
+                record.pose = record.registered.pose or record.pose
+            if record.spec.mover not in world.movers:
+                first = world.mover("").name
+                record.spec = replace(record.spec, mover=first)
+                record.registered = replace(record.registered, mover=first)

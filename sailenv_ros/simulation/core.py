@@ -1,0 +1,329 @@
+"""The simulation without threads: one world, one renderer, its agents, and every request.
+
+`SceneSpec` in, `Frame` and `SceneInfo` out. Each public method is one request of a client; it
+either does all of it or raises and leaves everything as it was. Used by one thread alone.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import Frame, checked_views
+from sailenv_ros.geometry import Pose
+from sailenv_ros.render.backend import RenderBackend
+from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.snapshot import Observation
+from sailenv_ros.world.world import World
+
+__all__ = ["MAX_STEPS", "SimulationCore"]
+
+MAX_STEPS = 1_000_000
+"""Most steps that one request may ask for (over an hour of simulated time)."""
+
+SLICE_STEPS = 24
+"""Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
+
+
+class SimulationCore:
+    """World, renderer and agents of one simulation.
+
+    Parameters
+    ----------
+    library : SceneLibrary
+        Where scenes and assets come from.
+    scene : str or Path
+        The first scene.
+    renderer : RenderBackend
+        Owned from now on; closed with this.
+    should_end : callable
+        Asked during long requests; True breaks them off.
+    """
+
+    def __init__(
+        self,
+        library: SceneLibrary,
+        scene: str | Path,
+        renderer: RenderBackend,
+        *,
+        mode: TimeMode,
+        real_time_factor: float,
+        seed: int,
+        paused: bool,
+        should_end: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self._library = library
+        self._renderer = renderer
+        self._mode: TimeMode = mode
+        self._real_time_factor = real_time_factor
+        self._seed = seed
+        self._paused = paused
+        self._should_end = should_end
+        self._agents = AgentTable()
+        self._revision = 0
+        self._epoch = 1
+        self.on_info: Callable[[SceneInfo], None] = lambda info: None
+        self.on_step: Callable[[int], None] = lambda sim_time_ns: None
+        self.skipped_frames = 0
+        self._world = library.build(scene, seed, self._epoch, self._next_revision)
+        for spec in library.agents_of(self._world.scene):
+            self._agents.add(spec, self._world)
+
+    # -- state -----------------------------------------------------------------------------
+
+    @property
+    def world(self) -> World:
+        """The present world."""
+        return self._world
+
+    @property
+    def runs_by_itself(self) -> bool:
+        """True if simulated time follows the wall clock now."""
+        return self._mode == "realtime" and not self._paused
+
+    @property
+    def real_time_factor(self) -> float:
+        """Simulated seconds per wall second that are aimed at."""
+        return self._real_time_factor
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as clients see it; a new object with the present revision."""
+        contents = self._world.contents
+        return SceneInfo(
+            scene=self._world.scene,
+            scenes=self._library.scene_names,
+            epoch=self._epoch,
+            revision=self._revision,
+            sim_time_ns=self._world.sim_time_ns,
+            mode=self._mode,
+            paused=self._paused,
+            real_time_factor=self._real_time_factor,
+            seed=self._seed,
+            categories=contents.categories,
+            instances=tuple(drawn.instance for drawn in contents.instances),
+            moving=self._world.moving_ids,
+            spawnables=self._library.spawnables,
+            lights=contents.lights,
+            environment=contents.environment,
+            agents=self._agents.specs,
+            movers=tuple(
+                MoverInfo(name=mover.name, controller=mover.controller)
+                for mover in self._world.movers.values()
+            ),
+            renderer=self._renderer.description,
+        )
+
+    # -- agents ----------------------------------------------------------------------------
+
+    def register_agent(self, spec: AgentSpec) -> AgentSpec:
+        """Add an agent; give its spec as accepted."""
+        accepted = self._agents.add(spec, self._world)
+        self._announce()
+        return accepted
+
+    def delete_agent(self, name: str) -> None:
+        """Remove an agent and end its streams."""
+        self._agents.remove(name)
+        self._announce()
+
+    def get_pose(self, agent: str) -> AgentPose:
+        """Say where an agent is."""
+        return self._agents.pose(agent, self._world)
+
+    def set_pose(self, agent: str, pose: Pose, *, teleport: bool = False) -> None:
+        """Move an agent, or the mover that it follows."""
+        before = self._agents[agent].spec
+        was_driven = before.following and self._world.mover(before.mover).controller == "waypoint"
+        self._agents.put(agent, pose, self._world, teleport=teleport)
+        if was_driven:
+            self._announce()
+
+    def set_position(self, agent: str, position_m: Any, *, teleport: bool = False) -> None:
+        """Move an agent and leave its orientation."""
+        here = self.get_pose(agent).pose
+        moved = Pose(position_m, here.orientation_xyzw)
+        self.set_pose(agent, moved, teleport=teleport)
+
+    def set_rotation(self, agent: str, rpy_deg: Any, *, teleport: bool = False) -> None:
+        """Turn an agent to roll, pitch, yaw [deg] and leave its position."""
+        here = self.get_pose(agent).pose
+        self.set_pose(agent, Pose.from_rpy_deg(here.position_m, rpy_deg), teleport=teleport)
+
+    def set_follow(self, agent: str, following: bool) -> bool:
+        """Follow the mover or stop; give the new state."""
+        result = self._agents.set_follow(agent, bool(following), self._world)
+        self._announce()
+        return result
+
+    def toggle_follow(self, agent: str) -> bool:
+        """Change between following and not; give the new state."""
+        return self.set_follow(agent, not self._agents[agent].spec.following)
+
+    # -- scene and time --------------------------------------------------------------------
+
+    def change_scene(self, name: str) -> None:
+        """Leave the present world for another scene, at simulated time 0."""
+        self._begin(name, self._seed, as_registered=False)
+
+    def reset(self, seed: int | None = None) -> int:
+        """Begin the present scene anew, as it was at its start; give the new epoch."""
+        chosen = self._seed if seed is None else seed
+        if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
+            raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
+        self._begin(self._world.scene, chosen, as_registered=True)
+        return self._epoch
+
+    def pause(self) -> None:
+        """Hold simulated time; a second call does nothing."""
+        self._set_paused(True)
+
+    def resume(self) -> None:
+        """Let simulated time run on; a second call does nothing."""
+        self._set_paused(False)
+
+    def step(self, count: int = 1) -> int:
+        """Advance by physics steps of 1/240 s, with every streamed frame that falls due.
+
+        Returns
+        -------
+        sim_time_ns : int
+            Simulated time afterwards [ns].
+        """
+        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_STEPS:
+            raise InvalidRequest("steps", count, f"an integer from 1 to {MAX_STEPS}")
+        if self.runs_by_itself:
+            accepted = "paused (or in lockstep mode) to be stepped; pause it first"
+            raise InvalidRequest("simulation", "running", accepted)
+        self.advance_to(self._world.step_count + count, every_frame=True)
+        return self._world.sim_time_ns
+
+    def advance_to(self, step: int, *, every_frame: bool) -> None:
+        """Run physics up to a step and render what falls due on the way.
+
+        Parameters
+        ----------
+        every_frame : bool
+            False renders, of several frames of one agent that have fallen due, the last alone
+            and counts the others as skipped: the wall clock is ahead.
+        """
+        world = self._world
+        while world.step_count < step and not self._should_end():
+            due = [self._next_due(record, step, every_frame) for record in self._agents]
+            ahead = [s for s in due if s > world.step_count]
+            goal = min([step, world.step_count + SLICE_STEPS, *ahead])
+            world.step(goal - world.step_count)
+            self.on_step(world.sim_time_ns)
+            self.render_due()
+        self.render_due()
+
+    def render_due(self) -> None:
+        """Render each agent's streamed frame if its time has come; once each."""
+        now = self._world.step_count
+        for record in self._agents:
+            record.streams[:] = [stream for stream in record.streams if not stream.closed]
+            if not record.spec.rate_hz:
+                continue
+            if not record.wanted_views:
+                record.skip_to(now)
+                continue
+            if record.due_step() <= now:
+                frame = self._render(record, record.wanted_views)
+                # One of those that are passed over is the frame just made.
+                self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
+                for stream in record.streams:
+                    if stream.views:
+                        stream.put(frame)
+
+    def next_due_step(self) -> int | None:
+        """Give the step of the earliest streamed frame to come; None if nobody wants any."""
+        due = [r.due_step() for r in self._agents if r.wanted_views and r.spec.rate_hz]
+        return min(due, default=None)
+
+    # -- frames ----------------------------------------------------------------------------
+
+    def capture(self, agent: str, views: Iterable[str] | None = None) -> Frame:
+        """Render one frame of an agent now."""
+        record = self._agents[agent]
+        wanted = record.spec.views if views is None else checked_views(views)
+        return self._render(record, wanted)
+
+    def open_stream(
+        self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]
+    ) -> FrameStream:
+        """Begin to deliver an agent's frames at its rate."""
+        record = self._agents[agent]
+        stream = FrameStream(agent, views, on_change)
+        record.streams.append(stream)
+        if record.spec.rate_hz:
+            record.skip_to(self._world.step_count)
+        return stream
+
+    def close(self, why: str = "it was closed") -> None:
+        """End all streams; free the engine and the renderer."""
+        for record in self._agents:
+            for stream in record.streams:
+                stream.end(f"the simulation has ended: {why}")
+        self._world.close()
+        self._renderer.close()
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _render(self, record: AgentRecord, views: Iterable[str]) -> Frame:
+        began = time.perf_counter()
+        snapshot = self._world.snapshot()
+        camera = self._agents.camera(record, self._world)
+        past = record.past(snapshot.sim_time_ns)
+        rendered = self._renderer.render(snapshot, past, camera, views)
+        record.remember(Observation(snapshot=snapshot, camera=camera, depth=rendered.depth))
+        record.sequence += 1
+        contents = snapshot.contents
+        return Frame(
+            agent=record.spec.name,
+            scene=contents.scene,
+            epoch=contents.epoch,
+            revision=contents.revision,
+            sequence=record.sequence,
+            stamp_ns=snapshot.sim_time_ns,
+            dt_ns=0 if past is None else snapshot.sim_time_ns - past.snapshot.sim_time_ns,
+            camera=camera,
+            views=rendered.views,
+            timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
+        )
+
+    def _next_due(self, record: AgentRecord, step: int, every_frame: bool) -> int:
+        if not record.wanted_views or not record.spec.rate_hz:
+            return -1
+        return record.due_step() if every_frame else record.last_due_step(step)
+
+    def _begin(self, scene: str, seed: int, *, as_registered: bool) -> None:
+        world = self._library.build(scene, seed, self._epoch + 1, self._next_revision)
+        self._world.close()
+        self._world, self._seed = world, seed
+        self._epoch += 1
+        self._agents.begin_epoch(world, as_registered=as_registered)
+        self._announce()
+        self.on_step(world.sim_time_ns)
+
+    def _set_paused(self, paused: bool) -> None:
+        if self._mode == "lockstep":
+            accepted = "realtime to be paused or resumed; a lockstep simulation moves by step alone"
+            raise InvalidRequest("mode", self._mode, accepted)
+        if paused != self._paused:
+            self._paused = paused
+            self._announce()
+
+    def _next_revision(self) -> int:
+        self._revision += 1
+        return self._revision
+
+    def _announce(self) -> None:
+        self._next_revision()
+        self.on_info(self.info)

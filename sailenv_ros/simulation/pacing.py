@@ -1,0 +1,59 @@
+"""How simulated time follows the wall clock; the only place that reads it for that."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from sailenv_ros.world.bullet import STEPS_PER_SECOND
+
+__all__ = ["Pacer"]
+
+MAX_LAG_S = 0.25
+"""Wall time that the simulation tries to catch up; what lies further back is given up."""
+
+
+class Pacer:
+    """Says which step simulated time should have reached.
+
+    Parameters
+    ----------
+    factor : float
+        Simulated seconds per wall second.
+    clock : callable
+        Wall clock [s].
+    """
+
+    def __init__(self, factor: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._steps_per_s = STEPS_PER_SECOND * factor
+        self._clock = clock
+        self._wall_s = clock()
+        self._step = 0
+        self.lost_s = 0.0
+
+    def restart(self, step: int) -> None:
+        """Begin anew: that step is now."""
+        self._wall_s = self._clock()
+        self._step = step
+
+    def target(self, step: int) -> int:
+        """Give the step that should have been reached; gives up what lies too far back.
+
+        Parameters
+        ----------
+        step : int
+            The step that has been reached.
+        """
+        now = self._clock()
+        target = self._step + int((now - self._wall_s) * self._steps_per_s)
+        lag_s = (target - step) / self._steps_per_s
+        if lag_s > MAX_LAG_S:
+            self.lost_s += lag_s
+            self.restart(step)
+            return step + 1
+        return target
+
+    def wait_s(self, step: int) -> float:
+        """Give the wall time until a step is due [s]; 0 if it is."""
+        due = self._wall_s + (step - self._step) / self._steps_per_s
+        return max(0.0, due - self._clock())

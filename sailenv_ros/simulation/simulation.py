@@ -1,0 +1,405 @@
+"""The simulation as its clients use it: one loop thread, requests as futures, frame streams.
+
+The composition root without ROS. One thread owns PyBullet and the GL context; every method here
+may be called from any thread. Requests are executed between physics steps in the order they came.
+"""
+
+from __future__ import annotations
+
+import atexit
+import collections
+import logging
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeout
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numpy.typing import ArrayLike
+
+from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, SimulationClosed, UnknownName
+from sailenv_ros.frame import Frame
+from sailenv_ros.geometry import Pose
+from sailenv_ros.render.backend import BackendName
+from sailenv_ros.scene_info import SceneInfo, TimeMode
+from sailenv_ros.simulation.backends import make_backend
+from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.pacing import Pacer
+from sailenv_ros.simulation.scenes import DEFAULT_SCENE, SceneLibrary
+from sailenv_ros.simulation.stream import FrameStream
+
+__all__ = ["Simulation"]
+
+_log = logging.getLogger(__name__)
+
+REQUESTS = frozenset(
+    {
+        "capture",
+        "change_scene",
+        "delete_agent",
+        "get_pose",
+        "pause",
+        "register_agent",
+        "reset",
+        "resume",
+        "set_follow",
+        "set_pose",
+        "set_position",
+        "set_rotation",
+        "step",
+        "toggle_follow",
+    }
+)
+"""Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
+
+TICK_STEPS = 2
+"""Steps between two looks at the clock while no frame is due (120 per simulated second)."""
+
+_CLOSE_TIMEOUT_S = 10.0
+_START_TIMEOUT_S = 120.0
+
+T = TypeVar("T")
+
+
+class Simulation:
+    """A running simulation; a context manager.
+
+    Parameters
+    ----------
+    scene : str or Path
+        Name of a scene, or a scene file.
+    mode : {'realtime', 'lockstep'}
+        ``realtime``: simulated time follows the wall clock times a factor. ``lockstep``: nothing
+        moves until `step`; the same seed and calls give the same bytes.
+    real_time_factor : float
+        Simulated seconds per wall second, 0.1 to 10.
+    seed : int
+        Of every random number of the scene.
+    paused : bool
+        Start without moving (realtime mode).
+    backend : {'auto', 'gl', 'tiny'}
+        Renderer: OpenGL, the software fallback, or the first of them that works.
+    render_device : int or None
+        Number of the EGL device; None takes the first that works.
+    scene_paths : sequence of Path
+        More folders with scenes.
+
+    Raises
+    ------
+    SceneError, UnknownName, InvalidRequest, ContextError
+        If it cannot start; nothing is left running then.
+    """
+
+    def __init__(
+        self,
+        scene: str | Path = DEFAULT_SCENE,
+        *,
+        mode: TimeMode = "realtime",
+        real_time_factor: float = 1.0,
+        seed: int = 0,
+        paused: bool = False,
+        backend: BackendName = "auto",
+        render_device: int | None = None,
+        scene_paths: Sequence[Path] = (),
+    ) -> None:
+        if mode not in ("realtime", "lockstep"):
+            raise UnknownName("mode", mode, ("realtime", "lockstep"))
+        if not 0.1 <= real_time_factor <= 10.0:
+            raise InvalidRequest("real_time_factor", real_time_factor, "a number from 0.1 to 10")
+        self._wake = threading.Condition()
+        self._queue: collections.deque[tuple[Future[Any], Callable[[SimulationCore], Any]]] = (
+            collections.deque()
+        )
+        self._closing = False
+        self._ended = ""
+        self._info: SceneInfo | None = None
+        self._sim_time_ns = 0
+        self._info_listeners: list[Callable[[SceneInfo], None]] = []
+        self._step_listeners: list[Callable[[int], None]] = []
+        self._pacer = Pacer(real_time_factor)
+        started: Future[None] = Future()
+
+        def make_core() -> SimulationCore:
+            renderer = make_backend(backend, render_device)
+            try:
+                return SimulationCore(
+                    SceneLibrary(scene_paths),
+                    scene,
+                    renderer,
+                    mode=mode,
+                    real_time_factor=real_time_factor,
+                    seed=seed,
+                    paused=paused,
+                    should_end=lambda: self._closing,
+                )
+            except BaseException:
+                renderer.close()
+                raise
+
+        self._thread = threading.Thread(
+            target=self._run, args=(make_core, started), name="sailenv-simulation", daemon=True
+        )
+        self._thread.start()
+        _await(started, "the simulation to start", _START_TIMEOUT_S)
+        # The loop thread is a daemon; GL objects and the engine want an orderly end all the same.
+        atexit.register(self.close)
+
+    # -- reading ---------------------------------------------------------------------------
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last; never blocks."""
+        assert self._info is not None  # noqa: S101 - set before the constructor returns
+        return self._info
+
+    @property
+    def sim_time_ns(self) -> int:
+        """Simulated time as of the last step [ns]; never blocks."""
+        return self._sim_time_ns
+
+    @property
+    def closed(self) -> bool:
+        """True once the simulation has ended or is ending."""
+        return self._closing
+
+    # -- requests --------------------------------------------------------------------------
+
+    def request(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Queue a request by its name; the future gives its result or raises its error.
+
+        Raises
+        ------
+        UnknownName
+            If there is no request of that name.
+        SimulationClosed
+            If the simulation has ended.
+        """
+        if name not in REQUESTS:
+            raise UnknownName("request", name, sorted(REQUESTS))
+        return self._submit(lambda core: getattr(core, name)(*args, **kwargs))
+
+    def register_agent(self, spec: AgentSpec, *, timeout_s: float = 30.0) -> AgentSpec:
+        """Add an agent; give its spec as accepted."""
+        return self._ask("register_agent", timeout_s, spec)
+
+    def delete_agent(self, name: str, *, timeout_s: float = 30.0) -> None:
+        """Remove an agent and end its streams."""
+        self._ask("delete_agent", timeout_s, name)
+
+    def get_pose(self, agent: str, *, timeout_s: float = 30.0) -> AgentPose:
+        """Say where an agent is."""
+        return self._ask("get_pose", timeout_s, agent)
+
+    def set_pose(
+        self, agent: str, pose: Pose, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Move an agent, or the mover that it follows (which waypoints then drive no longer).
+
+        A set pose is motion, which flow shows; `teleport` cuts the past off instead.
+        """
+        self._ask("set_pose", timeout_s, agent, pose, teleport=teleport)
+
+    def set_position(
+        self, agent: str, position_m: ArrayLike, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Move an agent to world coordinates [m] and leave its orientation."""
+        self._ask("set_position", timeout_s, agent, position_m, teleport=teleport)
+
+    def set_rotation(
+        self, agent: str, rpy_deg: ArrayLike, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Turn an agent to roll, pitch, yaw about fixed axes [deg] and leave its position."""
+        self._ask("set_rotation", timeout_s, agent, rpy_deg, teleport=teleport)
+
+    def set_follow(self, agent: str, following: bool, *, timeout_s: float = 30.0) -> bool:
+        """Follow the mover or stop; give the new state."""
+        return self._ask("set_follow", timeout_s, agent, following)
+
+    def toggle_follow(self, agent: str, *, timeout_s: float = 30.0) -> bool:
+        """Change between following and not; give the new state."""
+        return self._ask("toggle_follow", timeout_s, agent)
+
+    def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
+        """Leave the present world for another scene, at simulated time 0."""
+        self._ask("change_scene", timeout_s, name)
+
+    def reset(self, seed: int | None = None, *, timeout_s: float = 120.0) -> int:
+        """Begin the present scene anew, with another seed if one is given; give the epoch."""
+        return self._ask("reset", timeout_s, seed)
+
+    def pause(self, *, timeout_s: float = 30.0) -> None:
+        """Hold simulated time."""
+        self._ask("pause", timeout_s)
+
+    def resume(self, *, timeout_s: float = 30.0) -> None:
+        """Let simulated time run on."""
+        self._ask("resume", timeout_s)
+
+    def step(self, count: int = 1, *, timeout_s: float = 600.0) -> int:
+        """Advance by physics steps of 1/240 s; give the simulated time afterwards [ns]."""
+        return self._ask("step", timeout_s, count)
+
+    def capture(
+        self, agent: str, views: Iterable[str] | None = None, *, timeout_s: float = 30.0
+    ) -> Frame:
+        """Render exactly one frame of an agent, after everything asked before."""
+        wanted = None if views is None else tuple(views)
+        return self._ask("capture", timeout_s, agent, wanted)
+
+    # -- streams and listeners -------------------------------------------------------------
+
+    def stream(self, agent: str, views: Iterable[str], *, timeout_s: float = 30.0) -> FrameStream:
+        """Open a newest-wins stream of an agent's frames at its rate; close it after use."""
+        wanted = tuple(views)
+
+        def changed(_: FrameStream) -> None:
+            self._nudge()
+
+        future = self._submit(lambda core: core.open_stream(agent, wanted, changed))
+        return _await(future, f"a stream of agent {agent!r}", timeout_s)
+
+    def on_info(self, listener: Callable[[SceneInfo], None]) -> Callable[[], None]:
+        """Have a quick function called, now and at every change; gives the one that ends it.
+
+        Changes are told from the loop thread, before any frame that depends on them.
+        """
+        self._info_listeners.append(listener)
+        listener(self.info)
+        return lambda: _discard(self._info_listeners, listener)
+
+    def on_step(self, listener: Callable[[int], None]) -> Callable[[], None]:
+        """Have a quick function called with the simulated time [ns] after physics advanced."""
+        self._step_listeners.append(listener)
+        return lambda: _discard(self._step_listeners, listener)
+
+    def close(self) -> None:
+        """End the simulation: break off what runs, free everything; a second call does nothing."""
+        self._closing = True
+        self._nudge()
+        atexit.unregister(self.close)
+        if threading.current_thread() is not self._thread:
+            self._thread.join(_CLOSE_TIMEOUT_S)
+            if self._thread.is_alive():
+                raise DeadlineExceeded("the simulation's thread to end", _CLOSE_TIMEOUT_S)
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    # -- the loop --------------------------------------------------------------------------
+
+    def _run(self, make_core: Callable[[], SimulationCore], started: Future[None]) -> None:
+        try:
+            core = make_core()
+        except BaseException as error:  # noqa: BLE001 - handed on to the constructor's caller
+            self._closing = True
+            self._ended = str(error)
+            started.set_exception(error)
+            return
+        core.on_info, core.on_step = self._told_info, self._told_step
+        self._told_info(core.info)
+        why = "it was closed"
+        self._pacer.restart(core.world.step_count)
+        started.set_result(None)
+        try:
+            while not self._closing:
+                self._serve(core)
+                self._advance(core)
+                self._rest(core)
+        except Exception as error:
+            why = f"{type(error).__name__}: {error}"
+            _log.exception("the simulation ends because of a fault")
+        finally:
+            self._end(core, why)
+
+    def _serve(self, core: SimulationCore) -> None:
+        """Execute the requests that are queued now."""
+        while self._queue and not self._closing:
+            future, call = self._queue.popleft()
+            if not future.set_running_or_notify_cancel():
+                continue
+            world, ran = core.world, core.runs_by_itself
+            try:
+                result = call(core)
+            except Exception as error:  # noqa: BLE001 - the asker gets it
+                future.set_exception(error)
+            else:
+                future.set_result(result)
+            if core.world is not world or core.runs_by_itself != ran:
+                self._pacer.restart(core.world.step_count)
+
+    def _advance(self, core: SimulationCore) -> None:
+        if core.runs_by_itself:
+            target = self._pacer.target(core.world.step_count)
+            if target > core.world.step_count:
+                core.advance_to(target, every_frame=False)
+        else:
+            core.render_due()
+
+    def _rest(self, core: SimulationCore) -> None:
+        """Wait until there is something to do."""
+        with self._wake:
+            if self._queue or self._closing:
+                return
+            if not core.runs_by_itself:
+                self._wake.wait()
+                return
+            due = core.next_due_step()
+            goal = core.world.step_count + TICK_STEPS
+            self._wake.wait(self._pacer.wait_s(goal if due is None else min(goal, due)))
+
+    def _end(self, core: SimulationCore, why: str) -> None:
+        with self._wake:
+            self._closing = True
+            self._ended = why
+            waiting = list(self._queue)
+            self._queue.clear()
+        for future, _ in waiting:
+            if future.set_running_or_notify_cancel():
+                future.set_exception(SimulationClosed(why))
+        core.close(why)
+
+    def _told_info(self, info: SceneInfo) -> None:
+        self._info = info
+        for listener in tuple(self._info_listeners):
+            listener(info)
+
+    def _told_step(self, sim_time_ns: int) -> None:
+        self._sim_time_ns = sim_time_ns
+        for listener in tuple(self._step_listeners):
+            listener(sim_time_ns)
+
+    def _submit(self, call: Callable[[SimulationCore], T]) -> Future[T]:
+        future: Future[T] = Future()
+        with self._wake:
+            if self._closing:
+                raise SimulationClosed(self._ended or "it was closed")
+            self._queue.append((future, call))
+            self._wake.notify_all()
+        return future
+
+    def _nudge(self) -> None:
+        with self._wake:
+            self._wake.notify_all()
+
+    def _ask(self, name: str, timeout_s: float, *args: Any, **kwargs: Any) -> Any:
+        return _await(self.request(name, *args, **kwargs), f"the request {name!r}", timeout_s)
+
+
+def _await(future: Future[T], what: str, timeout_s: float) -> T:
+    try:
+        return future.result(timeout_s)
+    except FutureTimeout:
+        if future.done():
+            raise
+        future.cancel()
+        raise DeadlineExceeded(what, timeout_s) from None
+
+
+def _discard(listeners: list[Any], listener: Any) -> None:
+    if listener in listeners:
+        listeners.remove(listener)

@@ -1,0 +1,130 @@
+"""Newest-wins mailboxes between the simulation's loop and those who look at frames.
+
+The loop puts, a consumer takes; a slow consumer loses frames, which are counted, and never holds
+up the loop or another consumer.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+
+from sailenv_ros.errors import DeadlineExceeded, SimulationClosed
+from sailenv_ros.frame import Frame, checked_views
+
+__all__ = ["FrameStream"]
+
+
+class FrameStream:
+    """One consumer of one agent's frames at the agent's rate; a context manager.
+
+    Parameters
+    ----------
+    agent : str
+    views : iterable of str
+        Views wanted; none at all means that nothing is rendered for this stream.
+    on_change : callable
+        Called after the wanted views changed or the stream was closed.
+    """
+
+    def __init__(
+        self, agent: str, views: Iterable[str], on_change: Callable[[FrameStream], None]
+    ) -> None:
+        self.agent = agent
+        self._on_change = on_change
+        self._ready = threading.Condition()
+        self._frame: Frame | None = None
+        self._ended = ""
+        self._delivered = 0
+        self._dropped = 0
+        self._views = _wanted(views)
+
+    @property
+    def views(self) -> tuple[str, ...]:
+        """Views wanted now."""
+        return self._views
+
+    @property
+    def delivered(self) -> int:
+        """How many frames were taken out."""
+        return self._delivered
+
+    @property
+    def dropped(self) -> int:
+        """How many frames were replaced by newer ones before they were taken."""
+        return self._dropped
+
+    @property
+    def closed(self) -> bool:
+        """True once no more frames will come."""
+        return bool(self._ended)
+
+    def set_views(self, views: Iterable[str]) -> None:
+        """Change what is rendered for this stream, from the next frame on."""
+        wanted = _wanted(views)
+        if wanted != self._views:
+            self._views = wanted
+            self._on_change(self)
+
+    def get(self, timeout_s: float) -> Frame:
+        """Wait for a frame that was not taken before.
+
+        Parameters
+        ----------
+        timeout_s : float
+            Deadline [s of wall time].
+
+        Raises
+        ------
+        DeadlineExceeded
+            If none came in time.
+        SimulationClosed
+            If none will come: the agent was deleted, or the simulation or this stream closed.
+        """
+        deadline = time.monotonic() + timeout_s
+        with self._ready:
+            while self._frame is None:
+                if self._ended:
+                    raise SimulationClosed(self._ended)
+                remaining = deadline - time.monotonic()
+                if remaining <= 0.0:
+                    raise DeadlineExceeded(f"a frame of agent {self.agent!r}", timeout_s)
+                self._ready.wait(remaining)
+            frame, self._frame = self._frame, None
+            self._delivered += 1
+        return frame
+
+    def put(self, frame: Frame) -> None:
+        """Give the newest frame; called by the loop."""
+        with self._ready:
+            if self._ended:
+                return
+            if self._frame is not None:
+                self._dropped += 1
+            self._frame = frame
+            self._ready.notify_all()
+
+    def end(self, why: str) -> None:
+        """Say that no more frames will come; called by the loop."""
+        with self._ready:
+            self._ended = self._ended or why
+            self._ready.notify_all()
+
+    def close(self) -> None:
+        """Stop taking frames; a second call does nothing."""
+        if not self._ended:
+            self.end("the stream was closed")
+            self._views = ()
+            self._on_change(self)
+
+    def __enter__(self) -> FrameStream:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+
+def _wanted(views: Iterable[str]) -> tuple[str, ...]:
+    names = tuple(views)
+    return checked_views(names) if names else ()

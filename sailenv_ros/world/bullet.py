@@ -1,0 +1,101 @@
+"""A PyBullet client that cannot be confused with another, and whose failures are ours.
+
+Every call carries the client's number; PyBullet's own errors become `PhysicsError`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from sailenv_ros.errors import PhysicsError
+
+__all__ = ["STEPS_PER_SECOND", "BulletClient", "sim_time_ns"]
+
+STEPS_PER_SECOND = 240
+"""Physics steps per second of simulated time."""
+
+_import_lock = threading.Lock()
+
+
+def sim_time_ns(step: int) -> int:
+    """Give the simulated time after so many steps [ns]; exact to the nanosecond, never drifts."""
+    return step * 1_000_000_000 // STEPS_PER_SECOND
+
+
+def load_pybullet() -> Any:
+    """Import pybullet without the build-time banner it prints on standard output."""
+    with _import_lock:
+        if "pybullet" in sys.modules:
+            return sys.modules["pybullet"]
+        with _silent_stdout():
+            import pybullet
+        return pybullet
+
+
+class BulletClient:
+    """One private physics world without a window.
+
+    Attribute access gives PyBullet's function of that name, bound to this client:
+    ``client.getNumBodies()``.
+    """
+
+    def __init__(self) -> None:
+        self._pybullet = load_pybullet()
+        self._id: int = self._pybullet.connect(self._pybullet.DIRECT)
+        if self._id < 0:
+            raise PhysicsError("PyBullet gave no physics server (too many are open in this process)")
+        self._bound: dict[str, Callable[..., Any]] = {}
+
+    @property
+    def constants(self) -> Any:
+        """The pybullet module, for its constants."""
+        return self._pybullet
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        bound = self._bound.get(name)
+        if bound is None:
+            bound = self._bind(name)
+            self._bound[name] = bound
+        return bound
+
+    def close(self) -> None:
+        """Free the physics world; a second call does nothing."""
+        if self._id >= 0:
+            self._pybullet.disconnect(physicsClientId=self._id)
+            self._id = -1
+
+    def _bind(self, name: str) -> Callable[..., Any]:
+        function = getattr(self._pybullet, name)
+        error = self._pybullet.error
+
+        def call(*args: Any, **kwargs: Any) -> Any:
+            if self._id < 0:
+                raise PhysicsError(f"PyBullet's {name} was called on a closed world")
+            try:
+                return function(*args, physicsClientId=self._id, **kwargs)
+            except error as problem:
+                raise PhysicsError(f"PyBullet's {name} failed: {problem}") from None
+
+        return call
+
+
+@contextmanager
+def _silent_stdout() -> Iterator[None]:
+    """Send file descriptor 1 to nowhere: the banner is written by C code."""
+    sys.stdout.flush()
+    saved = os.dup(1)
+    sink = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(sink, 1)
+        yield
+    finally:
+        os.dup2(saved, 1)
+        os.close(saved)
+        os.close(sink)

@@ -1,0 +1,261 @@
+"""The world: rigid bodies, movers and lights of one scene, stepped by PyBullet.
+
+A `SceneSpec` comes in through `world.build`, `WorldSnapshot`s go out. Time is a count of steps;
+there is no wall clock and no global random state here, so the same scene, seed and calls give
+the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MappingProxyType
+
+import numpy as np
+
+from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
+from sailenv_ros.geometry import Pose
+from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
+from sailenv_ros.lights import Environment, Light
+from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.world.bodies import Body, Placement
+from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
+from sailenv_ros.world.mover import Mover
+
+__all__ = ["World"]
+
+
+class World:
+    """The live state of one scene.
+
+    Parameters
+    ----------
+    scene : str
+        Its name.
+    epoch : int
+        Number of this life of a scene; goes into every snapshot.
+    next_revision : callable
+        Gives a larger number at each call; called at each change of the contents.
+    placements : iterable of Placement
+        Get instance ids 1, 2, 3 … in this order.
+    movers : sequence of Mover
+        At least one.
+    """
+
+    def __init__(
+        self,
+        *,
+        scene: str,
+        epoch: int,
+        next_revision: Callable[[], int],
+        placements: Iterable[Placement],
+        movers: Sequence[Mover],
+        categories: CategoryTable,
+        lights: Sequence[Light] = (),
+        environment: Environment | None = None,
+        gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
+    ) -> None:
+        self.scene = scene
+        self.epoch = epoch
+        self.categories = categories
+        self._next_revision = next_revision
+        self._gravity = gravity
+        self._lights = tuple(lights)
+        self._environment = environment or Environment()
+        self._movers = {mover.name: mover for mover in movers}
+        self._client = BulletClient()
+        self._bodies: dict[int, Body] = {}
+        self._histories: dict[int, int] = {}
+        self._last_id = 0
+        self._last_history = 0
+        self._step = 0
+        self._snapshot: WorldSnapshot | None = None
+        try:
+            self._configure()
+            for placement in placements:
+                self._add(placement)
+        except BaseException:
+            self.close()
+            raise
+        self._contents = self._make_contents()
+
+    # -- time ------------------------------------------------------------------------------
+
+    @property
+    def step_count(self) -> int:
+        """Physics steps so far."""
+        return self._step
+
+    @property
+    def sim_time_ns(self) -> int:
+        """Simulated time so far [ns]."""
+        return sim_time_ns(self._step)
+
+    def step(self, count: int = 1) -> None:
+        """Advance by so many steps of 1/240 s."""
+        active = [body for body in self._bodies.values() if body.acts]
+        for _ in range(count):
+            time_s = self._step / STEPS_PER_SECOND
+            for body in active:
+                body.act(time_s)
+            self._client.stepSimulation()
+            self._step += 1
+        if count:
+            self._snapshot = None
+
+    # -- what is read ----------------------------------------------------------------------
+
+    @property
+    def contents(self) -> SceneContents:
+        """What exists now, apart from poses."""
+        return self._contents
+
+    @property
+    def movers(self) -> Mapping[str, Mover]:
+        """The movers by name, in the scene's order; read-only."""
+        return MappingProxyType(self._movers)
+
+    @property
+    def moving_ids(self) -> frozenset[int]:
+        """Ids of the instances that a behaviour moves."""
+        return frozenset(id_ for id_, body in self._bodies.items() if body.placement.behaviours)
+
+    def snapshot(self) -> WorldSnapshot:
+        """Copy the poses; the same object until something changes."""
+        if self._snapshot is None:
+            rows = [body.world_from_body() for body in self._bodies.values()]
+            self._snapshot = WorldSnapshot(
+                sim_time_ns=self.sim_time_ns,
+                step=self._step,
+                contents=self._contents,
+                world_from_body=np.stack(rows) if rows else np.zeros((0, 4, 4)),
+                histories=np.array([self._histories[i] for i in self._bodies], dtype=np.int64),
+            )
+        return self._snapshot
+
+    def mover(self, name: str) -> Mover:
+        """Find a mover; the empty name means the scene's first.
+
+        Raises
+        ------
+        UnknownName
+        """
+        if not name:
+            return next(iter(self._movers.values()))
+        if name not in self._movers:
+            raise UnknownName("mover", name, self._movers)
+        return self._movers[name]
+
+    def body(self, instance_id: int) -> Body:
+        """Find the body of an instance.
+
+        Raises
+        ------
+        InvalidRequest
+            If no instance has that id now.
+        """
+        if instance_id not in self._bodies:
+            raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
+        return self._bodies[instance_id]
+
+    # -- what is changed -------------------------------------------------------------------
+
+    def spawn(self, placement: Placement) -> int:
+        """Put one more object into the world.
+
+        Returns
+        -------
+        instance_id : int
+            Never used before in this world.
+
+        Raises
+        ------
+        NameTaken
+            If an object of that name is there.
+        """
+        instance_id = self._add(placement)
+        self._changed()
+        return instance_id
+
+    def despawn(self, instance_id: int) -> None:
+        """Take an object out of the world; its id is not used again."""
+        self.body(instance_id).remove()
+        del self._bodies[instance_id]
+        del self._histories[instance_id]
+        self._changed()
+
+    def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:
+        """Move an object and stop it; `teleport` cuts its past off, so flow does not see a jump."""
+        self.body(instance_id).put(pose)
+        if teleport:
+            self._histories[instance_id] = self._new_history()
+        self._snapshot = None
+
+    def set_lights(self, lights: Sequence[Light]) -> None:
+        """Replace the lights."""
+        self._lights = tuple(lights)
+        self._changed()
+
+    def set_environment(self, environment: Environment) -> None:
+        """Replace ambient light, background and exposure."""
+        self._environment = environment
+        self._changed()
+
+    def close(self) -> None:
+        """Free the engine; a second call does nothing."""
+        self._client.close()
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _configure(self) -> None:
+        client = self._client
+        client.setTimeStep(1.0 / STEPS_PER_SECOND)
+        client.setGravity(*self._gravity)
+        # Without it the order of contacts, and with it the result, may depend on addresses.
+        client.setPhysicsEngineParameter(deterministicOverlappingPairs=1, numSolverIterations=50)
+
+    def _add(self, placement: Placement) -> int:
+        if any(body.placement.name == placement.name for body in self._bodies.values()):
+            raise NameTaken("object", placement.name)
+        if self._last_id >= MAX_INSTANCE_ID:
+            raise InvalidRequest(
+                "number of objects",
+                self._last_id + 1,
+                f"at most {MAX_INSTANCE_ID} in a scene's life; reset the scene to begin anew",
+            )
+        body = Body(self._client, placement, self._gravity)
+        self._last_id += 1
+        self._bodies[self._last_id] = body
+        self._histories[self._last_id] = self._new_history()
+        return self._last_id
+
+    def _new_history(self) -> int:
+        self._last_history += 1
+        return self._last_history
+
+    def _changed(self) -> None:
+        self._contents = self._make_contents()
+        self._snapshot = None
+
+    def _make_contents(self) -> SceneContents:
+        return SceneContents(
+            scene=self.scene,
+            epoch=self.epoch,
+            revision=self._next_revision(),
+            instances=tuple(self._drawn(id_, body.placement) for id_, body in self._bodies.items()),
+            categories=self.categories,
+            lights=self._lights,
+            environment=self._environment,
+        )
+
+    def _drawn(self, instance_id: int, placement: Placement) -> DrawnInstance:
+        instance = Instance(
+            id=instance_id,
+            name=placement.name,
+            asset=placement.asset.name,
+            category_id=placement.category_id,
+            category=self.categories[placement.category_id].name,
+            static=placement.static,
+        )
+        return DrawnInstance(
+            instance=instance, model=placement.asset.model, scale=placement.scale
+        )
