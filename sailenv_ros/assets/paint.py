@@ -1,0 +1,76 @@
+"""Painting: a model with one colour, metalness or roughness instead of its own.
+
+Models are compared by identity, so equal paint on the same model gives the same object.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+import weakref
+
+from sailenv_ros.model import Material, Model, ModelPart
+
+__all__ = ["painted"]
+
+Vector3 = tuple[float, float, float]
+_Paint = tuple[Vector3 | None, float | None, float | None]
+
+_lock = threading.Lock()
+_cache: weakref.WeakKeyDictionary[Model, dict[_Paint, Model]] = weakref.WeakKeyDictionary()
+
+
+def painted(
+    model: Model,
+    *,
+    colour: Vector3 | None = None,
+    metallic: float | None = None,
+    roughness: float | None = None,
+) -> Model:
+    """Give a model painted over; ``None`` leaves a property as it is.
+
+    Parameters
+    ----------
+    model : Model
+    colour : (3,) tuple of float or None
+        Linear red, green, blue, 0 to 1; replaces colour textures but keeps a material's alpha.
+    metallic, roughness : float or None
+        0 to 1; either one replaces the metallic-roughness texture.
+
+    Returns
+    -------
+    model : Model
+        The given model if nothing is painted; else the same object for the same paint.
+    """
+    paint = (colour, metallic, roughness)
+    if paint == (None, None, None):
+        return model
+    with _lock:
+        variants = _cache.setdefault(model, {})
+        if paint not in variants:
+            parts = tuple(
+                ModelPart(mesh=part.mesh, material=_painted(part.material, *paint))
+                for part in model.parts
+            )
+            variants[paint] = Model(name=model.name, parts=parts)
+        return variants[paint]
+
+
+def _painted(
+    material: Material, colour: Vector3 | None, metallic: float | None, roughness: float | None
+) -> Material:
+    if colour is not None:
+        red, green, blue = colour
+        material = dataclasses.replace(
+            material,
+            base_colour=(red, green, blue, material.base_colour[3]),
+            base_colour_texture=None,
+        )
+    if metallic is not None or roughness is not None:
+        material = dataclasses.replace(
+            material,
+            metallic=material.metallic if metallic is None else metallic,
+            roughness=material.roughness if roughness is None else roughness,
+            metallic_roughness_texture=None,
+        )
+    return material

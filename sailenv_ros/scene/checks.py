@@ -1,0 +1,167 @@
+"""Everything that is wrong with a scene's plain data, as places and sentences.
+
+Plain data and models in, `Finding`s out. Pydantic's errors become sentences in the words of the
+file; unknown keys and names are answered with the nearest known one. Knows no YAML text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from sailenv_ros.scene.fields import BROKEN_RULE, FAULT, SceneModel
+from sailenv_ros.scene.knowledge import SceneKnowledge
+from sailenv_ros.scene.spec import CategorySpec, SceneSpec
+from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
+from sailenv_ros.scene.tree import entries, model_at
+from sailenv_ros.scene.wording import nearest, shown, suggestion
+from sailenv_ros.scene.yaml_nodes import Loc
+
+__all__ = ["Finding", "findings"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One fault.
+
+    Attributes
+    ----------
+    loc : tuple of str or int
+        The part that is wrong.
+    message : str
+    of_key : bool
+        True if the fault is the key, not its value.
+    """
+
+    loc: Loc
+    message: str
+    of_key: bool = False
+
+
+def findings(
+    data: Mapping[str, Any], error: ValidationError | None, knowledge: SceneKnowledge | None
+) -> Iterator[Finding]:
+    """Yield all faults of a scene.
+
+    Parameters
+    ----------
+    data : mapping
+        The scene as plain data.
+    error : ValidationError or None
+        What pydantic found wrong with it.
+    knowledge : SceneKnowledge or None
+        Names are not checked without it.
+    """
+    for details in error.errors(include_url=False) if error is not None else ():
+        if details["type"] != BROKEN_RULE:
+            yield _translated(details, data)
+    for loc, model, entry in entries(SceneSpec, data):
+        for rule in model.rules:
+            for place, sentence in rule(entry):
+                yield Finding((*loc, *place), sentence)
+    if knowledge is not None:
+        yield from _unknown_names(data, knowledge)
+
+
+def _unknown_names(data: Mapping[str, Any], knowledge: SceneKnowledge) -> Iterator[Finding]:
+    listed = data.get("categories")
+    own = [c for c in listed if isinstance(c, Mapping)] if isinstance(listed, list) else []
+    own_names = [c["name"] for c in own if isinstance(c.get("name"), str)]
+    categories = [name for name in knowledge.categories if name != "background"] + own_names
+    for loc, model, entry in entries(SceneSpec, data):
+        if issubclass(model, ObjectSpec):
+            yield from _unknown(loc, entry, "asset", knowledge.assets)
+            yield from _unknown(loc, entry, "category", categories)
+        elif issubclass(model, CategorySpec):
+            if entry.get("name") in knowledge.categories:
+                yield Finding(
+                    (*loc, "name"), f"{entry['name']!r} is in the fixed table already; use another"
+                )
+        elif issubclass(model, BehaviourSpec) and isinstance(entry.get("type"), str):
+            parameters = {key: value for key, value in entry.items() if key != "type"}
+            for place, sentence in knowledge.behaviour_faults(entry["type"], parameters):
+                of_key = len(place) == 1 and place[0] in parameters and "not a param" in sentence
+                yield Finding((*loc, *place), sentence, of_key)
+
+
+def _unknown(loc: Loc, entry: Mapping[str, Any], key: str, known: Iterable[str]) -> Iterator[Finding]:
+    name = entry.get(key)
+    if isinstance(name, str) and name not in known:
+        yield Finding((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
+
+
+def _translated(details: ErrorDetails, data: Mapping[str, Any]) -> Finding:
+    kind, context = details["type"], details.get("ctx", {})
+    loc = _without_tags(details["loc"], data)
+    got = shown(details["input"])
+    if kind == FAULT:
+        return Finding(loc, context["sentence"])
+    if kind == "extra_forbidden":
+        return Finding(loc, _unknown_key(loc, data), of_key=True)
+    if kind == "missing":
+        return Finding(loc, _missing(loc, data))
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        return _tag_fault(kind, loc, context)
+    sentence = _SENTENCES.get(kind)
+    if sentence is None:
+        return Finding(loc, f"{details['msg'][0].lower()}{details['msg'][1:]}, got {got}")
+    return Finding(loc, sentence.format(got=got, **context))
+
+
+_SENTENCES: Mapping[str, str] = {
+    "literal_error": "must be {expected}, got {got}",
+    "model_type": "must be a mapping (key: value), got {got}",
+    "model_attributes_type": "must be a mapping (key: value), got {got}",
+    "dict_type": "must be a mapping (key: value), got {got}",
+    "tuple_type": "must be a list (each entry begins with -), got {got}",
+    "string_type": "must be a text, got {got}",
+    "string_too_long": "must be a text of at most {max_length} characters, got {got}",
+    "too_long": "must be a list of at most {max_length} entries, got {actual_length}",
+    "too_short": "must be a list of at least {min_length} entry, got {actual_length}",
+}
+"""Pydantic's types of errors that the models can give, besides our own, in words."""
+
+
+def _tag_fault(kind: str, loc: Loc, context: Mapping[str, Any]) -> Finding:
+    place = (*loc, "type")
+    if kind == "union_tag_not_found":
+        return Finding(place, "is missing; it says which kind this is")
+    expected = context["expected_tags"].replace("'", "").split(", ")
+    tag = str(context["tag"])
+    near = nearest(tag, expected)
+    hint = f" (did you mean {near!r}?)" if near else ""
+    return Finding(place, f"must be one of: {', '.join(expected)}{hint}, got {shown(tag)}")
+
+
+def _unknown_key(loc: Loc, data: Mapping[str, Any]) -> str:
+    model = model_at(SceneSpec, data, loc[:-1])
+    known = list(model.model_fields) if model is not None else []
+    return f"is not a key that is known here; {suggestion(str(loc[-1]), known)}"
+
+
+def _missing(loc: Loc, data: Mapping[str, Any]) -> str:
+    model = model_at(SceneSpec, data, loc[:-1])
+    field = model.model_fields.get(str(loc[-1])) if model is not None else None
+    return f"is missing ({field.description})" if field is not None else "is missing"
+
+
+def _without_tags(loc: Loc, data: object) -> Loc:
+    """Take out what pydantic adds to a path: the tags of the kinds of lights."""
+    kept: list[str | int] = []
+    tagged = False
+    for index, part in enumerate(loc):
+        last = index == len(loc) - 1
+        if isinstance(data, Mapping) and part == data.get("type") and not tagged and not last:
+            tagged = True
+            continue
+        tagged = False
+        kept.append(part)
+        if isinstance(data, Mapping):
+            data = data.get(str(part))
+        elif isinstance(data, list) and isinstance(part, int) and part < len(data):
+            data = data[part]
+    return tuple(kept)

@@ -1,0 +1,134 @@
+"""Scene file → `SceneSpec`, or a `SceneError` with every fault and its place in the file.
+
+Knows YAML text and the models; which assets, categories and behaviours exist is told by a
+`SceneKnowledge`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from sailenv_ros.errors import SceneError, SceneFault
+from sailenv_ros.scene.checks import Finding, findings
+from sailenv_ros.scene.knowledge import SceneKnowledge
+from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.scene.wording import shown
+from sailenv_ros.scene.yaml_nodes import Loc, Mark, Node, compose
+
+__all__ = ["MAX_BYTES", "SceneKnowledge", "load_scene"]
+
+MAX_BYTES = 4_000_000
+MAX_FAULTS = 100
+
+
+def load_scene(path: Path, *, knowledge: SceneKnowledge | None = None) -> SceneSpec:
+    """Read and check a scene file.
+
+    Parameters
+    ----------
+    path : Path
+        A YAML file; its name without the suffix is the scene's name.
+    knowledge : SceneKnowledge or None
+        What exists. ``None`` leaves names of assets, categories and behaviours unchecked.
+
+    Raises
+    ------
+    SceneError
+        All faults, in the order of the file.
+    """
+    shown_path = str(path)
+    node, text_faults = compose(_read(path, shown_path))
+    faults = [_placed(shown_path, fault.mark, "", fault.message) for fault in text_faults]
+    spec = None
+    if node is not None:
+        data = node.plain()
+        spec, found = _validated(data, path, knowledge)
+        faults += [_found(shown_path, node, finding) for finding in found]
+    elif not faults:
+        faults = [_placed(shown_path, Mark(1, 1), "", "is empty; a scene is a mapping (key: value)")]
+    if spec is None or faults:
+        raise SceneError(_in_order(faults))
+    return spec
+
+
+def _validated(
+    data: Any, path: Path, knowledge: SceneKnowledge | None
+) -> tuple[SceneSpec | None, list[Finding]]:
+    if not isinstance(data, dict):
+        top = Finding((), f"must be a mapping (key: value) at its top, got {shown(data)}")
+        return None, [top]
+    stem = path.stem
+    faults = list(_name_faults(data, stem))
+    spec, error = None, None
+    try:
+        spec = SceneSpec.model_validate({"name": stem, **data})
+    except ValidationError as problem:
+        error = problem
+    faults.extend(findings(data, error, knowledge))
+    return spec, faults
+
+
+def _name_faults(data: dict[str, Any], stem: str) -> Iterator[Finding]:
+    """A scene is found by its file's name, so it must not call itself otherwise."""
+    name = data.get("name")
+    if isinstance(name, str) and name != stem:
+        yield Finding(
+            ("name",), f"must be the file's name, {stem!r}, or be left out; got {shown(name)}"
+        )
+
+
+def _read(path: Path, shown_path: str) -> str:
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as problem:
+        why = getattr(problem, "strerror", None) or str(problem)
+        raise SceneError([_unplaced(shown_path, f"cannot be read: {why}")]) from None
+    if len(content) > MAX_BYTES:
+        size = f"is larger than the {MAX_BYTES // 1_000_000} MB that a scene may have"
+        raise SceneError([_unplaced(shown_path, size)])
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as problem:
+        before = content[: problem.start]
+        line_start = before.rfind(b"\n") + 1
+        column = len(before[line_start:].decode("utf-8-sig", "replace")) + 1
+        mark = Mark(before.count(b"\n") + 1, column)
+        message = f"is not UTF-8 text: byte 0x{content[problem.start]:02x}"
+        raise SceneError([_placed(shown_path, mark, "", message)]) from None
+
+
+def _found(shown_path: str, node: Node, finding: Finding) -> SceneFault:
+    mark = node.place(finding.loc, of_key=finding.of_key)
+    return _placed(shown_path, mark, _field(finding.loc), finding.message)
+
+
+def _field(loc: Loc) -> str:
+    """Write a path as ``objects[2].mass``."""
+    text = ""
+    for part in loc:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def _placed(shown_path: str, mark: Mark, field: str, message: str) -> SceneFault:
+    return SceneFault(
+        path=shown_path, line=mark.line, column=mark.column, field=field, message=message
+    )
+
+
+def _unplaced(shown_path: str, message: str) -> SceneFault:
+    return SceneFault(path=shown_path, line=0, column=0, field="", message=message)
+
+
+def _in_order(faults: list[SceneFault]) -> list[SceneFault]:
+    """Sort by place, without repetitions; a very long list is cut and says so."""
+    ordered = sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
+    if len(ordered) <= MAX_FAULTS:
+        return ordered
+    rest = f"and {len(ordered) - MAX_FAULTS} more faults"
+    return [*ordered[:MAX_FAULTS], _unplaced(ordered[0].path, rest)]

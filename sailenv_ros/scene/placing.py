@@ -1,0 +1,52 @@
+"""How entries of a scene file say where something is and how it is turned."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from sailenv_ros.geometry import Pose, look_at, quat_xyzw_from_rpy_deg
+from sailenv_ros.scene.fields import Orientation, Position, Rotation, SceneModel
+from sailenv_ros.scene.rules import at_most_one, away_from_position, unit_quaternion
+
+__all__ = ["Aimed", "Turned"]
+
+Vector3 = tuple[float, float, float]
+
+
+class Turned(SceneModel):
+    """An entry that is turned by angles or by a quaternion, or not at all."""
+
+    rules = (at_most_one("rotation", "orientation"), unit_quaternion)
+
+    rotation: Rotation | None = Field(
+        default=None, description="[roll, pitch, yaw] about the fixed axes x, y, z [deg]"
+    )
+    orientation: Orientation | None = Field(
+        default=None, description="unit quaternion [x, y, z, w], instead of rotation"
+    )
+
+    def pose_at(self, position_m: Vector3) -> Pose:
+        """Give the pose at a position [m]."""
+        if self.orientation is not None:
+            return Pose(position_m, self.orientation)
+        return Pose(position_m, quat_xyzw_from_rpy_deg(self.rotation or (0.0, 0.0, 0.0)))
+
+
+class Aimed(Turned):
+    """An entry that may face a point instead of being turned."""
+
+    rules = (
+        at_most_one("rotation", "orientation", "look_at"),
+        unit_quaternion,
+        away_from_position,
+    )
+
+    look_at: Position | None = Field(
+        default=None, description="the point that it faces [m], instead of rotation"
+    )
+
+    def pose_at(self, position_m: Vector3) -> Pose:
+        """Give the pose at a position [m]."""
+        if self.look_at is not None:
+            return look_at(position_m, self.look_at)
+        return super().pose_at(position_m)

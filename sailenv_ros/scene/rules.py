@@ -1,0 +1,176 @@
+"""What must hold between the keys of one entry of a scene file.
+
+Each rule takes an entry as plain data, of which nothing is certain yet, and yields the place
+inside it and a sentence. Rules keep silent about values that are wrong in themselves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, TypeAlias
+
+from sailenv_ros.scene.fields import Rule
+from sailenv_ros.scene.wording import shown, shown_number, suggestion
+
+__all__ = [
+    "at_most_one",
+    "away_from_position",
+    "below",
+    "distinct",
+    "distinct_values",
+    "movers_exist",
+    "static_never_moves",
+    "turned_where_placed",
+    "unit_quaternion",
+    "without_zero_length",
+]
+
+Faults: TypeAlias = Iterator[tuple[tuple[str | int, ...], str]]
+Entry: TypeAlias = Mapping[str, Any]
+
+_UNIT_TOLERANCE = 1e-3
+
+
+def at_most_one(*keys: str) -> Rule:
+    """Make the rule that only one of these keys is given."""
+
+    def rule(entry: Entry) -> Faults:
+        given = [key for key in keys if entry.get(key) is not None]
+        for key in given[1:]:
+            yield (key,), f"cannot stand beside {given[0]}; give one of: {', '.join(keys)}"
+
+    return rule
+
+
+def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool = False) -> Rule:
+    """Make the rule that one number is less than another (or equal)."""
+
+    def rule(entry: Entry) -> Faults:
+        low, high = (entry.get(key, defaults[key]) for key in (lower, upper))
+        if not (_is_number(low) and _is_number(high)):
+            return
+        if low > high or (low == high and not equal):
+            accepted = "at most" if equal else "less than"
+            place = lower if lower in entry else upper
+            yield (
+                (place,),
+                f"is refused: {lower} must be {accepted} {upper}, "
+                f"got {shown_number(low)} and {shown_number(high)}",
+            )
+
+    return rule
+
+
+def unit_quaternion(entry: Entry) -> Faults:
+    """An orientation is a quaternion of unit length, within 1e-3."""
+    numbers = entry.get("orientation")
+    if not _are_numbers(numbers, 4):
+        return
+    length = math.hypot(*numbers)
+    if abs(length - 1.0) > _UNIT_TOLERANCE:
+        yield (
+            ("orientation",),
+            f"must be a quaternion [x, y, z, w] of unit length, got {shown(numbers)} "
+            f"of length {shown_number(length)}",
+        )
+
+
+def without_zero_length(entry: Entry) -> Faults:
+    """A direction is a direction only if it has a length."""
+    numbers = entry.get("direction")
+    if _are_numbers(numbers, 3) and math.hypot(*numbers) < 1e-9:
+        yield ("direction",), "must be three numbers [x, y, z], not all 0"
+
+
+def static_never_moves(entry: Entry) -> Faults:
+    """A static object has neither behaviours nor velocities."""
+    if entry.get("static") is not True:
+        return
+    for key in ("behaviours", "velocity", "angular_velocity"):
+        given = entry.get(key)
+        if isinstance(given, Sequence) and any(given):
+            yield (
+                (key,),
+                "cannot be given to an object that never moves; "
+                f"leave {key} out, or static: true out",
+            )
+
+
+def away_from_position(entry: Entry) -> Faults:
+    """What faces a point is not at that point."""
+    eye, target = entry.get("position"), entry.get("look_at")
+    if _are_numbers(eye, 3) and _are_numbers(target, 3) and math.dist(eye, target) < 1e-6:
+        yield ("look_at",), f"must be a point away from position, got {shown(target)}"
+
+
+def turned_where_placed(entry: Entry) -> Faults:
+    """An agent that is turned needs a place, else the turn would be lost."""
+    if entry.get("position") is None:
+        for key in ("rotation", "orientation"):
+            if entry.get(key) is not None:
+                yield (key,), "needs a position beside it"
+
+
+def distinct(key: str, *lists: str) -> Rule:
+    """Make the rule that in each of these lists no two entries have the same value of `key`."""
+
+    def rule(entry: Entry) -> Faults:
+        for name in lists:
+            entries = [e if isinstance(e, Mapping) else {} for e in _listed(entry, name)]
+            for index, earlier in _repeated([e.get(key) for e in entries]):
+                value = shown(entries[index][key])
+                yield (
+                    (name, index, key),
+                    f"must be unique among {name}, but {name}[{earlier}] has {value} too",
+                )
+
+    return rule
+
+
+def distinct_values(key: str) -> Rule:
+    """Make the rule that a list names nothing twice."""
+
+    def rule(entry: Entry) -> Faults:
+        values = _listed(entry, key)
+        for index, _ in _repeated(values):
+            yield (key, index), f"names {shown(values[index])} a second time"
+
+    return rule
+
+
+def movers_exist(scene: Entry) -> Faults:
+    """An agent follows a mover that the scene has."""
+    single = scene.get("mover")
+    movers = [single] if isinstance(single, Mapping) else _listed(scene, "movers")
+    names = [m.get("name", "mover") for m in movers if isinstance(m, Mapping)] or ["mover"]
+    for index, agent in enumerate(_listed(scene, "agents")):
+        mover = agent.get("mover") if isinstance(agent, Mapping) else None
+        if isinstance(mover, str) and mover not in names:
+            known = suggestion(mover, [str(name) for name in names], listing="its movers")
+            yield ("agents", index, "mover"), f"the scene has no mover {mover!r}; {known}"
+
+
+def _listed(entry: Entry, key: str) -> Sequence[Any]:
+    values = entry.get(key)
+    return values if isinstance(values, list | tuple) else ()
+
+
+def _repeated(values: Sequence[Any]) -> Iterator[tuple[int, int]]:
+    """Yield the index of each repeated text or number, and the index of its first occurrence."""
+    first: dict[Any, int] = {}
+    for index, value in enumerate(values):
+        if isinstance(value, str | int) and first.setdefault(value, index) != index:
+            yield index, first[value]
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _are_numbers(values: Any, count: int) -> bool:
+    return (
+        isinstance(values, list | tuple)
+        and len(values) == count
+        and all(_is_number(value) for value in values)
+    )

@@ -1,0 +1,120 @@
+"""What a scene file may hold: `SceneSpec`, validated and immutable.
+
+Noun out of `scene/`: the description that the world is built from. Units in a file are metres,
+kilograms, seconds and degrees; colours are ``#rrggbb`` (sRGB) or linear numbers, kept linear.
+"""
+
+from __future__ import annotations
+
+import colorsys
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from sailenv_ros.labels import Category
+from sailenv_ros.scene.fields import Acceleration, Name, Number, SceneModel, Text
+from sailenv_ros.scene.rules import at_most_one, distinct, movers_exist
+from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
+from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
+from sailenv_ros.scene.spec_surroundings import (
+    AreaLightSpec,
+    DirectionalLightSpec,
+    EnvironmentSpec,
+    LightSpec,
+    PointLightSpec,
+    SpotLightSpec,
+)
+
+__all__ = [
+    "FIRST_SCENE_CATEGORY_ID",
+    "AgentSpecModel",
+    "AreaLightSpec",
+    "BehaviourSpec",
+    "CategorySpec",
+    "DirectionalLightSpec",
+    "EnvironmentSpec",
+    "LightSpec",
+    "MoverSpec",
+    "ObjectSpec",
+    "PointLightSpec",
+    "SceneSpec",
+    "SpotLightSpec",
+    "WaypointSpec",
+]
+
+FIRST_SCENE_CATEGORY_ID = 200
+"""Ids from here to 254 belong to scenes and packs; those below to `config/categories.yaml`."""
+
+
+class CategorySpec(SceneModel):
+    """A category that the fixed table lacks."""
+
+    name: Annotated[
+        str,
+        Text(r"[a-z0-9][a-z0-9 _-]{0,62}", "lower-case letters, digits and spaces, at most 63"),
+    ] = Field(description="not the name of another category")
+    id: Annotated[int, Number(least=FIRST_SCENE_CATEGORY_ID, most=254, whole=True)] = Field(
+        description="value of its pixels; lower ids belong to the fixed table"
+    )
+    colour: Annotated[str, Text("#[0-9a-fA-F]{6}", "a colour such as '#ff8800' (quoted)")] | None = (
+        Field(default=None, description="of its pictures (sRGB); chosen by the id if left out")
+    )
+
+    def to_category(self) -> Category:
+        """Give the noun that labels take."""
+        if self.colour is not None:
+            red, green, blue = bytes.fromhex(self.colour[1:])
+            return Category(id=self.id, name=self.name, colour=(red, green, blue))
+        # Steps of the golden angle keep the hues of neighbouring ids far apart.
+        shares = colorsys.hsv_to_rgb(self.id * 0.618034 % 1.0, 0.55, 0.9)
+        red, green, blue = (round(255 * share) for share in shares)
+        return Category(id=self.id, name=self.name, colour=(red, green, blue))
+
+
+class SceneSpec(SceneModel):
+    """A scene: its surroundings, lights, objects, movers and agents."""
+
+    rules = (
+        at_most_one("mover", "movers"),
+        distinct("name", "lights", "objects", "movers", "agents", "categories"),
+        distinct("id", "categories"),
+        movers_exist,
+    )
+
+    version: Annotated[Literal[1], Number(least=1, most=1, whole=True)] = Field(
+        description="of this format; 1"
+    )
+    name: Name = Field(
+        default="scene", description="the file's name without .yaml, which is the default"
+    )
+    title: str = Field(default="", max_length=200, description="one line for people")
+    description: str = Field(default="", max_length=10000, description="what the scene is for")
+    gravity: Acceleration = Field(
+        default=(0.0, 0.0, -9.81), description="acceleration of what falls [m/s2]"
+    )
+    environment: EnvironmentSpec = Field(
+        default_factory=EnvironmentSpec, description="ambient light, sky, exposure"
+    )
+    lights: tuple[LightSpec, ...] = Field(
+        default=(), max_length=64, description="what shines, besides the environment"
+    )
+    objects: tuple[ObjectSpec, ...] = Field(
+        default=(), max_length=10000, description="what the scene holds"
+    )
+    mover: MoverSpec | None = Field(default=None, description="the track that agents follow")
+    movers: tuple[MoverSpec, ...] = Field(
+        default=(), max_length=16, description="several tracks, instead of mover"
+    )
+    agents: tuple[AgentSpecModel, ...] = Field(
+        default=(), max_length=16, description="cameras that the scene brings along"
+    )
+    categories: tuple[CategorySpec, ...] = Field(
+        default=(), max_length=55, description="categories that the fixed table lacks"
+    )
+
+    @property
+    def all_movers(self) -> tuple[MoverSpec, ...]:
+        """The movers, at least one: the first is the one that agents follow by default."""
+        if self.movers:
+            return self.movers
+        return (self.mover or MoverSpec(),)

@@ -1,0 +1,143 @@
+"""Movers and agents of a scene file: what looks at the objects, and on which track."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
+
+from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
+from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.fields import (
+    Name,
+    Number,
+    Position,
+    Switch,
+    Text,
+)
+from sailenv_ros.scene.placing import Aimed, Turned
+from sailenv_ros.scene.rules import below, distinct_values, turned_where_placed
+
+__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
+
+_Size: TypeAlias = Annotated[
+    int, Number(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
+]
+_Clip: TypeAlias = Annotated[float, Number(least=1e-3, most=1e4, unit="m")]
+_ViewName: TypeAlias = Annotated[
+    str, Text("|".join(VIEWS), f"a view (one of: {', '.join(VIEWS)})")
+]
+
+_DEFAULTS = CameraIntrinsics()
+_START = (0.0, 0.0, 1.0)
+
+
+class WaypointSpec(Aimed):
+    """One pose of a mover's track."""
+
+    position: Position = Field(description="where the mover comes by [m]")
+
+    @property
+    def pose(self) -> Pose:
+        """Where the mover is and how it is turned there."""
+        return self.pose_at(self.position)
+
+
+class MoverSpec(Aimed):
+    """A moving stand that agents follow."""
+
+    name: Name = Field(default="mover", description="unique among the movers of the scene")
+    position: Position | None = Field(
+        default=None, description="where it starts without waypoints [m]; (0, 0, 1) if left out"
+    )
+    waypoints: tuple[WaypointSpec, ...] = Field(
+        default=(), max_length=1000, description="its track, run through at equal times"
+    )
+    total_time: Annotated[float, Number(above=0.0, most=1e6, unit="s")] = Field(
+        default=30.0, description="time to run through all the waypoints once [s]"
+    )
+    loop: Annotated[bool, Switch()] = Field(
+        default=True, description="true: the last waypoint leads on to the first"
+    )
+    controller: Literal["waypoint", "rigidbody"] = Field(
+        default="waypoint",
+        description="what moves it at the start: its waypoints, or commands and set poses",
+    )
+
+    @property
+    def waypoint_poses(self) -> tuple[Pose, ...]:
+        """The poses of the track, in order."""
+        return tuple(waypoint.pose for waypoint in self.waypoints)
+
+    @property
+    def pose(self) -> Pose:
+        """Where it starts: where it was put, else at its first waypoint."""
+        if self.position is None and self.waypoints:
+            return self.waypoints[0].pose
+        return self.pose_at(_START if self.position is None else self.position)
+
+
+class AgentSpecModel(Turned):
+    """A camera that the scene brings along."""
+
+    rules = (
+        *Turned.rules,
+        turned_where_placed,
+        below("near", "far", {"near": _DEFAULTS.near_m, "far": _DEFAULTS.far_m}),
+        below("near", "depth_range", {"near": _DEFAULTS.near_m, "depth_range": 10.0}),
+        distinct_values("views"),
+    )
+
+    name: Annotated[
+        str,
+        Text(
+            r"[a-z][a-z0-9_]{0,62}",
+            "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
+        ),
+    ] = Field(description="unique among the agents; a part of its topics' names")
+    width: _Size = Field(default=_DEFAULTS.width, description="of its pictures [px]")
+    height: _Size = Field(default=_DEFAULTS.height, description="of its pictures [px]")
+    vertical_fov: Annotated[float, Number(least=1.0, most=170.0, unit="deg")] = Field(
+        default=_DEFAULTS.vertical_fov_deg, description="full vertical angle of view [deg]"
+    )
+    near: _Clip = Field(default=_DEFAULTS.near_m, description="nearest depth that is seen [m]")
+    far: _Clip = Field(default=_DEFAULTS.far_m, description="farthest depth that is seen [m]")
+    depth_range: _Clip = Field(
+        default=10.0, description="depth that the 8-bit depth picture shows as black [m]"
+    )
+    rate: Annotated[float, Number(least=0.0, most=MAX_RATE_HZ, unit="Hz")] = Field(
+        default=30.0, description="frames per simulated second [Hz]; 0: on request only"
+    )
+    views: tuple[_ViewName, ...] = Field(
+        default=FIVE_VIEWS, min_length=1, description="what its frames hold"
+    )
+    following: Annotated[bool, Switch()] = Field(
+        default=True, description="true if it goes where its mover goes"
+    )
+    mover: Name | None = Field(
+        default=None, description="the mover it follows; the scene's first if left out"
+    )
+    position: Position | None = Field(
+        default=None, description="where it starts when it does not follow [m]"
+    )
+
+    def to_agent_spec(self) -> AgentSpec:
+        """Give the noun that the simulation takes."""
+        return AgentSpec(
+            name=self.name,
+            intrinsics=CameraIntrinsics(
+                width=self.width,
+                height=self.height,
+                vertical_fov_deg=self.vertical_fov,
+                near_m=self.near,
+                far_m=self.far,
+            ),
+            depth_range_m=self.depth_range,
+            rate_hz=self.rate,
+            views=self.views,
+            following=self.following,
+            mover=self.mover or "",
+            pose=None if self.position is None else self.pose_at(self.position),
+        )

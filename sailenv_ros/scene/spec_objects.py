@@ -1,0 +1,108 @@
+"""Objects and behaviours of a scene file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field
+
+from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.fields import (
+    DegreesPerSecond,
+    Fraction,
+    LinearColour,
+    MetresPerSecond,
+    Name,
+    Number,
+    Position,
+    Scale,
+    SceneModel,
+    Switch,
+    Text,
+)
+from sailenv_ros.scene.placing import Turned
+from sailenv_ros.scene.rules import static_never_moves
+
+__all__ = ["BehaviourSpec", "ObjectSpec"]
+
+
+class BehaviourSpec(SceneModel):
+    """How an object moves of itself; all keys but `type` are the behaviour's parameters.
+
+    Examples
+    --------
+    >>> BehaviourSpec(type="rotate_rigidbody", angular_velocity=[0, 0, 45]).parameters
+    mappingproxy({'angular_velocity': [0, 0, 45]})
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    type: Annotated[str, Text(r"[a-z][a-z0-9_]{0,62}", "the name of a behaviour")] = Field(
+        description="name of the behaviour, e.g. rotate_rigidbody"
+    )
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        """The keys beside `type`, unchecked; read-only."""
+        return MappingProxyType(self.model_extra or {})
+
+
+class ObjectSpec(Turned):
+    """One object: what it is, where it stands, how it behaves in physics."""
+
+    rules = (*Turned.rules, static_never_moves)
+
+    name: Name = Field(description="unique among the objects of the scene")
+    asset: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of an asset")] = Field(
+        description="what it is: a name of the catalogue, e.g. cube or Chair 01"
+    )
+    position: Position = Field(default=(0.0, 0.0, 0.0), description="of the asset's origin [m]")
+    scale: Scale = Field(
+        default=(1.0, 1.0, 1.0), description="one factor, or three along the asset's x, y, z"
+    )
+    static: Annotated[bool, Switch()] = Field(
+        default=False, description="true for what never moves: floors, walls, heavy furniture"
+    )
+    mass: (
+        Annotated[
+            float,
+            Number(above=0.0, most=1e6, unit="kg", hint="(static: true is for what never moves)"),
+        ]
+        | None
+    ) = Field(default=None, description="[kg]; the asset's own if left out")
+    gravity: Annotated[bool, Switch()] = Field(
+        default=True, description="false for what floats"
+    )
+    friction: Annotated[float, Number(least=0.0, most=10.0)] = Field(
+        default=0.5, description="coefficient of sliding friction"
+    )
+    restitution: Fraction = Field(
+        default=0.0, description="bounce, from 0 (none) to 1 (all the speed is kept)"
+    )
+    category: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a category")] | None = Field(
+        default=None, description="instead of the asset's category"
+    )
+    colour: LinearColour | None = Field(
+        default=None, description="paints the whole object, instead of the asset's colours"
+    )
+    metallic: Fraction | None = Field(
+        default=None, description="0 for paint, plastic, wood; 1 for bare metal"
+    )
+    roughness: Fraction | None = Field(default=None, description="0 for a mirror, 1 for chalk")
+    velocity: MetresPerSecond = Field(
+        default=(0.0, 0.0, 0.0), description="at the start, in the world's axes [m/s]"
+    )
+    angular_velocity: DegreesPerSecond = Field(
+        default=(0.0, 0.0, 0.0), description="at the start, about the world's axes [deg/s]"
+    )
+    behaviours: tuple[BehaviourSpec, ...] = Field(
+        default=(), max_length=16, description="how it moves of itself"
+    )
+
+    @property
+    def pose(self) -> Pose:
+        """Where it starts."""
+        return self.pose_at(self.position)
+

@@ -1,0 +1,154 @@
+"""Surroundings and lights of a scene file; they become `Environment` and `Light`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import Field
+
+from sailenv_ros.lights import Environment, Light
+from sailenv_ros.scene.fields import (
+    Direction,
+    Name,
+    Number,
+    Position,
+    Radiance,
+    SceneModel,
+)
+from sailenv_ros.scene.rules import below, without_zero_length
+
+__all__ = [
+    "AreaLightSpec",
+    "DirectionalLightSpec",
+    "EnvironmentSpec",
+    "LightSpec",
+    "PointLightSpec",
+    "SpotLightSpec",
+]
+
+_Strength: TypeAlias = Annotated[float, Number(least=0.0, most=1e6)]
+_Length: TypeAlias = Annotated[float, Number(above=0.0, most=1e3, unit="m")]
+_HalfAngle: TypeAlias = Annotated[float, Number(least=0.0, most=89.0, unit="deg")]
+
+_STANDARD = Environment()
+
+
+class EnvironmentSpec(SceneModel):
+    """What surrounds the objects: ambient light, sky or background colour, exposure."""
+
+    ambient: Radiance = Field(
+        default=_STANDARD.ambient, description="light that arrives from everywhere (radiance)"
+    )
+    background: Literal["sky", "colour"] = Field(
+        default=_STANDARD.background, description="what is seen where there is no object"
+    )
+    background_colour: Radiance = Field(
+        default=_STANDARD.background_colour, description="the colour for `background: colour`"
+    )
+    sky_zenith: Radiance = Field(default=_STANDARD.sky_zenith, description="sky straight above")
+    sky_horizon: Radiance = Field(default=_STANDARD.sky_horizon, description="sky at the horizon")
+    sky_ground: Radiance = Field(
+        default=_STANDARD.sky_ground, description="below the horizon, where there is no object"
+    )
+    sky_map: str = Field(
+        default=_STANDARD.sky_map,
+        max_length=200,
+        description="name of a sky picture; empty for the sky of the three colours",
+    )
+    exposure: Annotated[float, Number(least=-20.0, most=20.0, unit="stops")] = Field(
+        default=_STANDARD.exposure,
+        description="the picture is brightened by 2 to the power of it [stops]",
+    )
+
+    def to_environment(self) -> Environment:
+        """Give the noun that the renderer takes."""
+        return Environment(**self.model_dump())
+
+
+class _LightBase(SceneModel):
+    """What every light has."""
+
+    name: Name = Field(description="unique among the lights of the scene")
+    colour: Radiance = Field(default=(1.0, 1.0, 1.0), description="colour of the light")
+    intensity: _Strength = Field(
+        default=1.0,
+        description="irradiance at normal incidence [W/m2] of a directional light, radiant "
+        "intensity [W/sr] of a point or spot light, radiance [W/(m2 sr)] of an area light",
+    )
+    indirect_multiplier: _Strength = Field(
+        default=1.0, description="scales only the light that bounces"
+    )
+
+    def to_light(self) -> Light:
+        """Give the noun that the renderer takes."""
+        units = {
+            "position": "position_m",
+            "range": "range_m",
+            "inner_cone": "inner_cone_deg",
+            "outer_cone": "outer_cone_deg",
+            "width": "width_m",
+            "height": "height_m",
+        }
+        given: dict[str, Any] = self.model_dump()
+        return Light(**{units.get(key, key): value for key, value in given.items()})
+
+
+class DirectionalLightSpec(_LightBase):
+    """Parallel light from far away, such as the sun's."""
+
+    rules = (without_zero_length,)
+
+    type: Literal["directional"]
+    direction: Direction = Field(
+        default=(0.0, 0.0, -1.0), description="where the light travels to, any length"
+    )
+
+
+class PointLightSpec(_LightBase):
+    """A light that shines to all sides."""
+
+    type: Literal["point"]
+    position: Position = Field(default=(0.0, 0.0, 3.0), description="where it is [m]")
+    range: _Length = Field(default=20.0, description="beyond it the light has no effect [m]")
+
+
+class SpotLightSpec(PointLightSpec):
+    """A cone of light."""
+
+    rules = (
+        without_zero_length,
+        below(
+            "inner_cone", "outer_cone", {"inner_cone": 20.0, "outer_cone": 35.0}, equal=True
+        ),
+    )
+
+    type: Literal["spot"]  # type: ignore[assignment]
+    direction: Direction = Field(
+        default=(0.0, 0.0, -1.0), description="where the light travels to, any length"
+    )
+    inner_cone: _HalfAngle = Field(
+        default=20.0, description="half angle of the full brightness [deg]"
+    )
+    outer_cone: _HalfAngle = Field(
+        default=35.0, description="half angle where the brightness has gone to 0 [deg]"
+    )
+
+
+class AreaLightSpec(_LightBase):
+    """A shining rectangle."""
+
+    rules = (without_zero_length,)
+
+    type: Literal["area"]
+    position: Position = Field(default=(0.0, 0.0, 3.0), description="its centre [m]")
+    direction: Direction = Field(
+        default=(0.0, 0.0, -1.0), description="where its front looks, any length"
+    )
+    width: _Length = Field(default=1.0, description="its size [m]")
+    height: _Length = Field(default=1.0, description="its size [m]")
+
+
+LightSpec: TypeAlias = Annotated[
+    DirectionalLightSpec | PointLightSpec | SpotLightSpec | AreaLightSpec,
+    Field(discriminator="type"),
+]
