@@ -73,7 +73,7 @@ def _cone() -> Asset:
 
 
 def _plane() -> Asset:
-    """A 10 m × 10 m ground that is seen from above; it collides as a slab below its face."""
+    """10 m wide and long, seen from above only; it collides as a slab below its face."""
     half = PLANE_SIZE_M / 2.0
     slab = BoxShape(
         half_extents_m=(half, half, PLANE_THICKNESS_M / 2.0),

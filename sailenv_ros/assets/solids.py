@@ -78,7 +78,9 @@ def cylinder_mesh(radius_m: float, height_m: float, segments: int = SEGMENTS) ->
     """Make a cylinder around the origin, along z, with both caps."""
     half = height_m / 2.0
     side = _mantle(radius_m, radius_m, -half, half, segments)
-    return joined([side, _cap(radius_m, half, 1.0, segments), _cap(radius_m, -half, -1.0, segments)])
+    return joined(
+        [side, _cap(radius_m, half, 1.0, segments), _cap(radius_m, -half, -1.0, segments)]
+    )
 
 
 def cone_mesh(radius_m: float, base_z_m: float, tip_z_m: float, segments: int = SEGMENTS) -> Mesh:
@@ -121,7 +123,10 @@ def _mantle(low_m: float, high_m: float, low_z: float, high_z: float, segments: 
     low = np.column_stack([around * low_m, np.full(segments + 1, low_z)])
     high = np.column_stack([around * high_m, np.full(segments + 1, high_z)])
     uvs = np.concatenate(
-        [np.column_stack([turns, np.zeros_like(turns)]), np.column_stack([turns, np.ones_like(turns)])]
+        [
+            np.column_stack([turns, np.zeros_like(turns)]),
+            np.column_stack([turns, np.ones_like(turns)]),
+        ]
     )
     positions = np.concatenate([low, high])
     triangles = _grid_triangles(1, segments)
@@ -149,7 +154,7 @@ def _circle(turns: Floats) -> Floats:
 
 
 def _grid_triangles(rows: int, columns: int) -> NDArray[np.int64]:
-    """Split a grid of (rows + 1) × (columns + 1) vertices, row by row upwards, into triangles."""
+    """Split the squares between rows + 1 rows of columns + 1 vertices, upwards, into triangles."""
     row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
     low_left = (row * (columns + 1) + column).reshape(-1)
     low_right, high_left = low_left + 1, low_left + columns + 1

@@ -13,7 +13,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from sailenv_ros.scene.fields import BROKEN_RULE, FAULT, SceneModel
+from sailenv_ros.scene.fields import BROKEN_RULE
+from sailenv_ros.scene.kinds import FAULT
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.spec import CategorySpec, SceneSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
@@ -88,7 +89,9 @@ def _unknown_names(data: Mapping[str, Any], knowledge: SceneKnowledge) -> Iterat
                 yield Finding((*loc, *place), sentence, of_key)
 
 
-def _unknown(loc: Loc, entry: Mapping[str, Any], key: str, known: Iterable[str]) -> Iterator[Finding]:
+def _unknown(
+    loc: Loc, entry: Mapping[str, Any], key: str, known: Iterable[str]
+) -> Iterator[Finding]:
     name = entry.get(key)
     if isinstance(name, str) and name not in known:
         yield Finding((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
@@ -113,7 +116,6 @@ def _translated(details: ErrorDetails, data: Mapping[str, Any]) -> Finding:
 
 
 _SENTENCES: Mapping[str, str] = {
-    "literal_error": "must be {expected}, got {got}",
     "model_type": "must be a mapping (key: value), got {got}",
     "model_attributes_type": "must be a mapping (key: value), got {got}",
     "dict_type": "must be a mapping (key: value), got {got}",

@@ -26,4 +26,6 @@ class SceneKnowledge:
 
     assets: tuple[str, ...]
     categories: tuple[str, ...]
-    behaviour_faults: Callable[[str, Mapping[str, Any]], Iterable[tuple[tuple[str | int, ...], str]]]
+    behaviour_faults: Callable[
+        [str, Mapping[str, Any]], Iterable[tuple[tuple[str | int, ...], str]]
+    ]

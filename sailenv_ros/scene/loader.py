@@ -49,7 +49,9 @@ def load_scene(path: Path, *, knowledge: SceneKnowledge | None = None) -> SceneS
         spec, found = _validated(data, path, knowledge)
         faults += [_found(shown_path, node, finding) for finding in found]
     elif not faults:
-        faults = [_placed(shown_path, Mark(1, 1), "", "is empty; a scene is a mapping (key: value)")]
+        faults = [
+            _placed(shown_path, Mark(1, 1), "", "is empty; a scene is a mapping (key: value)")
+        ]
     if spec is None or faults:
         raise SceneError(_in_order(faults))
     return spec
@@ -73,7 +75,7 @@ def _validated(
 
 
 def _name_faults(data: dict[str, Any], stem: str) -> Iterator[Finding]:
-    """A scene is found by its file's name, so it must not call itself otherwise."""
+    """Refuse a name other than the file's, by which the scene is found."""
     name = data.get("name")
     if isinstance(name, str) and name != stem:
         yield Finding(

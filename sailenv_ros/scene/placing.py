@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from pydantic import Field
 
 from sailenv_ros.geometry import Pose, look_at, quat_xyzw_from_rpy_deg
-from sailenv_ros.scene.fields import Orientation, Position, Rotation, SceneModel
+from sailenv_ros.scene.fields import Orientation, Position, Rotation, Rule, SceneModel
 from sailenv_ros.scene.rules import at_most_one, away_from_position, unit_quaternion
 
 __all__ = ["Aimed", "Turned"]
@@ -16,7 +18,7 @@ Vector3 = tuple[float, float, float]
 class Turned(SceneModel):
     """An entry that is turned by angles or by a quaternion, or not at all."""
 
-    rules = (at_most_one("rotation", "orientation"), unit_quaternion)
+    rules: ClassVar[tuple[Rule, ...]] = (at_most_one("rotation", "orientation"), unit_quaternion)
 
     rotation: Rotation | None = Field(
         default=None, description="[roll, pitch, yaw] about the fixed axes x, y, z [deg]"
@@ -35,7 +37,7 @@ class Turned(SceneModel):
 class Aimed(Turned):
     """An entry that may face a point instead of being turned."""
 
-    rules = (
+    rules: ClassVar[tuple[Rule, ...]] = (
         at_most_one("rotation", "orientation", "look_at"),
         unit_quaternion,
         away_from_position,

@@ -63,9 +63,9 @@ def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool 
 
 
 def unit_quaternion(entry: Entry) -> Faults:
-    """An orientation is a quaternion of unit length, within 1e-3."""
-    numbers = entry.get("orientation")
-    if not _are_numbers(numbers, 4):
+    """Refuse a quaternion whose length is not 1 within 1e-3."""
+    numbers = _numbers(entry.get("orientation"), 4)
+    if numbers is None:
         return
     length = math.hypot(*numbers)
     if abs(length - 1.0) > _UNIT_TOLERANCE:
@@ -77,14 +77,14 @@ def unit_quaternion(entry: Entry) -> Faults:
 
 
 def without_zero_length(entry: Entry) -> Faults:
-    """A direction is a direction only if it has a length."""
-    numbers = entry.get("direction")
-    if _are_numbers(numbers, 3) and math.hypot(*numbers) < 1e-9:
+    """Refuse a direction without a length."""
+    numbers = _numbers(entry.get("direction"), 3)
+    if numbers is not None and math.hypot(*numbers) < 1e-9:
         yield ("direction",), "must be three numbers [x, y, z], not all 0"
 
 
 def static_never_moves(entry: Entry) -> Faults:
-    """A static object has neither behaviours nor velocities."""
+    """Refuse behaviours and velocities of a static object."""
     if entry.get("static") is not True:
         return
     for key in ("behaviours", "velocity", "angular_velocity"):
@@ -98,14 +98,14 @@ def static_never_moves(entry: Entry) -> Faults:
 
 
 def away_from_position(entry: Entry) -> Faults:
-    """What faces a point is not at that point."""
-    eye, target = entry.get("position"), entry.get("look_at")
-    if _are_numbers(eye, 3) and _are_numbers(target, 3) and math.dist(eye, target) < 1e-6:
+    """Refuse to face the point where one is."""
+    eye, target = _numbers(entry.get("position"), 3), _numbers(entry.get("look_at"), 3)
+    if eye is not None and target is not None and math.dist(eye, target) < 1e-6:
         yield ("look_at",), f"must be a point away from position, got {shown(target)}"
 
 
 def turned_where_placed(entry: Entry) -> Faults:
-    """An agent that is turned needs a place, else the turn would be lost."""
+    """Refuse a turn without a place: it would be lost."""
     if entry.get("position") is None:
         for key in ("rotation", "orientation"):
             if entry.get(key) is not None:
@@ -140,7 +140,7 @@ def distinct_values(key: str) -> Rule:
 
 
 def movers_exist(scene: Entry) -> Faults:
-    """An agent follows a mover that the scene has."""
+    """Refuse an agent that follows a mover which the scene lacks."""
     single = scene.get("mover")
     movers = [single] if isinstance(single, Mapping) else _listed(scene, "movers")
     names = [m.get("name", "mover") for m in movers if isinstance(m, Mapping)] or ["mover"]
@@ -168,9 +168,8 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _are_numbers(values: Any, count: int) -> bool:
-    return (
-        isinstance(values, list | tuple)
-        and len(values) == count
-        and all(_is_number(value) for value in values)
-    )
+def _numbers(values: Any, count: int) -> list[float] | None:
+    """Give the numbers of a list of so many; ``None`` if it is anything else."""
+    if not isinstance(values, list | tuple) or len(values) != count:
+        return None
+    return list(values) if all(_is_number(value) for value in values) else None

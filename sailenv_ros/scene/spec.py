@@ -7,12 +7,13 @@ kilograms, seconds and degrees; colours are ``#rrggbb`` (sRGB) or linear numbers
 from __future__ import annotations
 
 import colorsys
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from sailenv_ros.labels import Category
-from sailenv_ros.scene.fields import Acceleration, Name, Number, SceneModel, Text
+from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
+from sailenv_ros.scene.kinds import Number, Text
 from sailenv_ros.scene.rules import at_most_one, distinct, movers_exist
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
@@ -56,9 +57,9 @@ class CategorySpec(SceneModel):
     id: Annotated[int, Number(least=FIRST_SCENE_CATEGORY_ID, most=254, whole=True)] = Field(
         description="value of its pixels; lower ids belong to the fixed table"
     )
-    colour: Annotated[str, Text("#[0-9a-fA-F]{6}", "a colour such as '#ff8800' (quoted)")] | None = (
-        Field(default=None, description="of its pictures (sRGB); chosen by the id if left out")
-    )
+    colour: (
+        Annotated[str, Text("#[0-9a-fA-F]{6}", "a colour such as '#ff8800' (quoted)")] | None
+    ) = Field(default=None, description="of its pictures (sRGB); chosen by the id if left out")
 
     def to_category(self) -> Category:
         """Give the noun that labels take."""
@@ -74,7 +75,7 @@ class CategorySpec(SceneModel):
 class SceneSpec(SceneModel):
     """A scene: its surroundings, lights, objects, movers and agents."""
 
-    rules = (
+    rules: ClassVar[tuple[Rule, ...]] = (
         at_most_one("mover", "movers"),
         distinct("name", "lights", "objects", "movers", "agents", "categories"),
         distinct("id", "categories"),

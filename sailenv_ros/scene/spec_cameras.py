@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
@@ -10,13 +10,8 @@ from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS
 from sailenv_ros.geometry import Pose
-from sailenv_ros.scene.fields import (
-    Name,
-    Number,
-    Position,
-    Switch,
-    Text,
-)
+from sailenv_ros.scene.fields import Name, Position, Rule
+from sailenv_ros.scene.kinds import Choice, Number, Switch, Text
 from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.rules import below, distinct_values, turned_where_placed
 
@@ -26,9 +21,9 @@ _Size: TypeAlias = Annotated[
     int, Number(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
 ]
 _Clip: TypeAlias = Annotated[float, Number(least=1e-3, most=1e4, unit="m")]
-_ViewName: TypeAlias = Annotated[
-    str, Text("|".join(VIEWS), f"a view (one of: {', '.join(VIEWS)})")
-]
+_ViewName: TypeAlias = Annotated[str, Choice(tuple(VIEWS))]
+
+Controller = Literal["waypoint", "rigidbody"]
 
 _DEFAULTS = CameraIntrinsics()
 _START = (0.0, 0.0, 1.0)
@@ -61,7 +56,7 @@ class MoverSpec(Aimed):
     loop: Annotated[bool, Switch()] = Field(
         default=True, description="true: the last waypoint leads on to the first"
     )
-    controller: Literal["waypoint", "rigidbody"] = Field(
+    controller: Annotated[Controller, Choice(get_args(Controller))] = Field(
         default="waypoint",
         description="what moves it at the start: its waypoints, or commands and set poses",
     )
@@ -82,7 +77,7 @@ class MoverSpec(Aimed):
 class AgentSpecModel(Turned):
     """A camera that the scene brings along."""
 
-    rules = (
+    rules: ClassVar[tuple[Rule, ...]] = (
         *Turned.rules,
         turned_where_placed,
         below("near", "far", {"near": _DEFAULTS.near_m, "far": _DEFAULTS.far_m}),

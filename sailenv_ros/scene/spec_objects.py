@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field
 
@@ -15,13 +15,12 @@ from sailenv_ros.scene.fields import (
     LinearColour,
     MetresPerSecond,
     Name,
-    Number,
     Position,
+    Rule,
     Scale,
     SceneModel,
-    Switch,
-    Text,
 )
+from sailenv_ros.scene.kinds import Number, Switch, Text
 from sailenv_ros.scene.placing import Turned
 from sailenv_ros.scene.rules import static_never_moves
 
@@ -52,7 +51,7 @@ class BehaviourSpec(SceneModel):
 class ObjectSpec(Turned):
     """One object: what it is, where it stands, how it behaves in physics."""
 
-    rules = (*Turned.rules, static_never_moves)
+    rules: ClassVar[tuple[Rule, ...]] = (*Turned.rules, static_never_moves)
 
     name: Name = Field(description="unique among the objects of the scene")
     asset: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of an asset")] = Field(
@@ -72,9 +71,7 @@ class ObjectSpec(Turned):
         ]
         | None
     ) = Field(default=None, description="[kg]; the asset's own if left out")
-    gravity: Annotated[bool, Switch()] = Field(
-        default=True, description="false for what floats"
-    )
+    gravity: Annotated[bool, Switch()] = Field(default=True, description="false for what floats")
     friction: Annotated[float, Number(least=0.0, most=10.0)] = Field(
         default=0.5, description="coefficient of sliding friction"
     )
@@ -105,4 +102,3 @@ class ObjectSpec(Turned):
     def pose(self) -> Pose:
         """Where it starts."""
         return self.pose_at(self.position)
-

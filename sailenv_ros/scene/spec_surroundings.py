@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import Field
 
 from sailenv_ros.lights import Environment, Light
-from sailenv_ros.scene.fields import (
-    Direction,
-    Name,
-    Number,
-    Position,
-    Radiance,
-    SceneModel,
-)
+from sailenv_ros.scene.fields import Direction, Name, Position, Radiance, Rule, SceneModel
+from sailenv_ros.scene.kinds import Choice, Number
 from sailenv_ros.scene.rules import below, without_zero_length
 
 __all__ = [
@@ -39,7 +33,7 @@ class EnvironmentSpec(SceneModel):
     ambient: Radiance = Field(
         default=_STANDARD.ambient, description="light that arrives from everywhere (radiance)"
     )
-    background: Literal["sky", "colour"] = Field(
+    background: Annotated[Literal["sky", "colour"], Choice(("sky", "colour"))] = Field(
         default=_STANDARD.background, description="what is seen where there is no object"
     )
     background_colour: Radiance = Field(
@@ -96,7 +90,7 @@ class _LightBase(SceneModel):
 class DirectionalLightSpec(_LightBase):
     """Parallel light from far away, such as the sun's."""
 
-    rules = (without_zero_length,)
+    rules: ClassVar[tuple[Rule, ...]] = (without_zero_length,)
 
     type: Literal["directional"]
     direction: Direction = Field(
@@ -115,11 +109,9 @@ class PointLightSpec(_LightBase):
 class SpotLightSpec(PointLightSpec):
     """A cone of light."""
 
-    rules = (
+    rules: ClassVar[tuple[Rule, ...]] = (
         without_zero_length,
-        below(
-            "inner_cone", "outer_cone", {"inner_cone": 20.0, "outer_cone": 35.0}, equal=True
-        ),
+        below("inner_cone", "outer_cone", {"inner_cone": 20.0, "outer_cone": 35.0}, equal=True),
     )
 
     type: Literal["spot"]  # type: ignore[assignment]
@@ -137,7 +129,7 @@ class SpotLightSpec(PointLightSpec):
 class AreaLightSpec(_LightBase):
     """A shining rectangle."""
 
-    rules = (without_zero_length,)
+    rules: ClassVar[tuple[Rule, ...]] = (without_zero_length,)
 
     type: Literal["area"]
     position: Position = Field(default=(0.0, 0.0, 3.0), description="its centre [m]")

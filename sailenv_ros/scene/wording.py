@@ -34,7 +34,9 @@ def shown_number(value: float) -> str:
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """Find the known name that is spelt most alike; ``None`` if none is near."""
-    by_folded = {entry.casefold(): entry for entry in known}
+    by_folded: dict[str, str] = {}
+    for entry in known:
+        by_folded.setdefault(entry.casefold(), entry)
     near = difflib.get_close_matches(name.casefold()[:200], by_folded, n=1, cutoff=0.6)
     return by_folded[near[0]] if near else None
 

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 
 import yaml
 
-__all__ = ["Loc", "Mark", "Node", "TextFault", "compose"]
+__all__ = ["Loc", "Mark", "Node", "TextFault", "compose", "plain_scalar"]
 
 MAX_DEPTH = 32
 MAX_NODES = 200_000
@@ -111,14 +111,14 @@ def compose(text: str) -> tuple[Node | None, list[TextFault]]:
     node: Node | None = None
     try:
         node = composer.document()
-    except _Stop:
+    except _ReadingError:
         pass
     except yaml.YAMLError as error:
         composer.faults.append(_syntax_fault(error))
     return node, composer.faults
 
 
-class _Stop(Exception):
+class _ReadingError(Exception):
     """Reading on makes no sense; the fault is in the list."""
 
 
@@ -134,8 +134,7 @@ class _Composer:
     def document(self) -> Node | None:
         """Read the one document; ``None`` if the text is empty."""
         next(self._events)  # the stream's start
-        event = next(self._events)
-        if isinstance(event, yaml.StreamEndEvent):
+        if isinstance(next(self._events), yaml.StreamEndEvent):
             return None
         node = self._node(next(self._events), 0)
         next(self._events)  # the document's end
@@ -147,24 +146,25 @@ class _Composer:
     def _node(self, event: yaml.Event, depth: int) -> Node:
         if isinstance(event, yaml.AliasEvent):
             return self._alias(event)
+        # Every event at this place begins a scalar, a sequence or a mapping.
+        assert isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent)
         if depth > MAX_DEPTH:
-            self._stop(event, f"is nested deeper than {MAX_DEPTH} levels")
-        if event.tag is not None and not _is_implied(event):
+            raise self._stop(event, f"is nested deeper than {MAX_DEPTH} levels")
+        if event.tag is not None:
             self._fault(event, f"tags such as {event.tag[:40]} are not accepted; leave it out")
         if event.anchor is not None:
             self._anchors[event.anchor] = None
-        self._count += 1
         node = self._content(event, depth)
-        if node.size > MAX_NODES or self._count > MAX_NODES:
-            self._stop(event, f"the file stands for more than {MAX_NODES} values")
+        self._count += 1
+        if max(node.size, self._count) > MAX_NODES:
+            raise self._stop(event, f"the file stands for more than {MAX_NODES} values")
         if event.anchor is not None:
             self._anchors[event.anchor] = node
         return node
 
-    def _content(self, event: yaml.Event, depth: int) -> Node:
+    def _content(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent, depth: int) -> Node:
         if isinstance(event, yaml.ScalarEvent):
-            plain = event.implicit[0] and event.style in (None, "")
-            return Node(_mark(event), _scalar(event.value) if plain else event.value)
+            return Node(_mark(event), event.value if event.style else plain_scalar(event.value))
         if isinstance(event, yaml.SequenceStartEvent):
             return self._sequence(event, depth)
         return self._mapping(event, depth)
@@ -186,7 +186,7 @@ class _Composer:
                 continue
             if key in node.value:
                 first = node.key_marks[key]
-                self._fault(entry, f"the key {key!r} stands in line {first.line} already")
+                self._fault(entry, f"the key {key[:40]!r} stands in line {first.line} already")
                 continue
             node.value[key] = child
             node.key_marks[key] = _mark(entry)
@@ -194,33 +194,31 @@ class _Composer:
         return node
 
     def _key(self, event: yaml.Event, depth: int) -> str | None:
-        node = self._node(event, depth + 1)
-        if node.value == "<<" and isinstance(event, yaml.ScalarEvent) and not event.style:
+        self._node(event, depth + 1)
+        if not isinstance(event, yaml.ScalarEvent):
+            self._fault(event, "a key must be a word")
+            return None
+        if event.value == "<<" and not event.style:
             self._fault(event, "merge keys (<<) are not accepted; write the keys out")
             return None
-        if isinstance(node.value, str):
-            return node.value
         # A key such as 2 or true, too, is meant as a name.
-        if isinstance(event, yaml.ScalarEvent):
-            return str(event.value)
-        self._fault(event, "a key must be a word")
-        return None
+        return str(event.value)
 
-    def _alias(self, event: yaml.Event) -> Node:
+    def _alias(self, event: yaml.AliasEvent) -> Node:
         if event.anchor not in self._anchors:
-            self._stop(event, f"*{event.anchor} refers to nothing that stands before it")
+            raise self._stop(event, f"*{event.anchor} refers to nothing that stands before it")
         node = self._anchors[event.anchor]
         if node is None:
-            self._stop(event, f"*{event.anchor} refers to itself")
+            raise self._stop(event, f"*{event.anchor} refers to itself")
         self._count += 1
         return node
 
     def _fault(self, event: yaml.Event, message: str) -> None:
         self.faults.append(TextFault(_mark(event), message))
 
-    def _stop(self, event: yaml.Event, message: str) -> Any:
+    def _stop(self, event: yaml.Event, message: str) -> _ReadingError:
         self._fault(event, message)
-        raise _Stop
+        return _ReadingError(message)
 
 
 def _parse(text: str) -> Iterator[yaml.Event]:
@@ -230,12 +228,8 @@ def _parse(text: str) -> Iterator[yaml.Event]:
 
 
 def _mark(event: yaml.Event) -> Mark:
-    return Mark(event.start_mark.line + 1, event.start_mark.column + 1)
-
-
-def _is_implied(event: yaml.Event) -> bool:
-    """True for the tag "!" that libyaml gives to quoted scalars."""
-    return event.tag == "!" and getattr(event, "style", None) not in (None, "")
+    start = event.start_mark
+    return Mark(1, 1) if start is None else Mark(start.line + 1, start.column + 1)
 
 
 def _syntax_fault(error: yaml.YAMLError) -> TextFault:
@@ -271,7 +265,7 @@ _WORDS: dict[str, object] = {
 }
 
 
-def _scalar(text: str) -> object:
+def plain_scalar(text: str) -> object:
     """Give the value of an unquoted scalar (the core schema of YAML 1.2, without 0x and 0o)."""
     if text in _WORDS:
         return _WORDS[text]
