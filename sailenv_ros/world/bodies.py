@@ -180,6 +180,9 @@ class Body:
             _LINK_OF_BASE,
             lateralFriction=placement.friction,
             restitution=placement.restitution,
+            # Bullet's own default of 0.04 /s would make free fall and free flight inexact.
+            linearDamping=0.0,
+            angularDamping=0.0,
             rollingFriction=0.002 if self.mass_kg else 0.0,
             spinningFriction=0.002 if self.mass_kg else 0.0,
         )

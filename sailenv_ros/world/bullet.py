@@ -28,11 +28,11 @@ def sim_time_ns(step: int) -> int:
 
 
 def load_pybullet() -> Any:
-    """Import pybullet without the build-time banner it prints on standard output."""
+    """Import pybullet without the build-time banner it prints."""
     with _import_lock:
         if "pybullet" in sys.modules:
             return sys.modules["pybullet"]
-        with _silent_stdout():
+        with _silent_output():
             import pybullet
         return pybullet
 
@@ -87,15 +87,18 @@ class BulletClient:
 
 
 @contextmanager
-def _silent_stdout() -> Iterator[None]:
-    """Send file descriptor 1 to nowhere: the banner is written by C code."""
+def _silent_output() -> Iterator[None]:
+    """Send file descriptors 1 and 2 to nowhere: the banner is written by C code to either."""
     sys.stdout.flush()
-    saved = os.dup(1)
+    sys.stderr.flush()
+    saved = {descriptor: os.dup(descriptor) for descriptor in (1, 2)}
     sink = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(sink, 1)
+        for descriptor in saved:
+            os.dup2(sink, descriptor)
         yield
     finally:
-        os.dup2(saved, 1)
-        os.close(saved)
+        for descriptor, copy in saved.items():
+            os.dup2(copy, descriptor)
+            os.close(copy)
         os.close(sink)

@@ -1,0 +1,158 @@
+"""What is drawn: the parts of all instances, sorted into batches, with their matrices per frame.
+
+Scene contents come in once, poses and camera each frame; out come one storage buffer of rows and
+one indirect command buffer per batch. All matrices are composed in double precision and rounded
+once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.model import Material
+from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.materials import MaterialBuffers
+from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+
+__all__ = ["Batch", "BatchKind", "DrawList"]
+
+ROW = np.dtype(
+    [
+        ("clip_from_object", "<f4", (4, 4)),
+        ("optical_normal_from_object", "<f4", (3, 4)),
+        ("instance_id", "<f4"),
+        ("material", "<u4"),
+        ("unused", "<f4", 2),
+    ]
+)
+
+COMMAND = np.dtype(
+    [
+        ("index_count", "<u4"),
+        ("instance_count", "<u4"),
+        ("first_index", "<u4"),
+        ("base_vertex", "<i4"),
+        ("base_instance", "<u4"),
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class BatchKind:
+    """What draws must share to be issued together.
+
+    Attributes
+    ----------
+    textured : bool
+        True if the material has any texture.
+    masked : bool
+        True if pixels may be dropped by alpha.
+    double_sided : bool
+        True if back faces are drawn.
+    """
+
+    textured: bool
+    masked: bool
+    double_sided: bool
+
+    @classmethod
+    def of(cls, material: Material) -> BatchKind:
+        """Classify a material."""
+        textures = (
+            material.base_colour_texture,
+            material.metallic_roughness_texture,
+            material.normal_texture,
+        )
+        return cls(
+            any(texture is not None for texture in textures),
+            material.alpha == "mask",
+            material.double_sided,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Consecutive draws of one kind."""
+
+    kind: BatchKind
+    commands: moderngl.Buffer
+    count: int
+
+
+class DrawList:
+    """The draws of one scene's contents.
+
+    Parts whose material is see-through (``blend``) are not drawn: their pixels show, and are
+    labelled as, what lies behind.
+    """
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        contents: SceneContents,
+        geometry: GeometryBuffers,
+        materials: MaterialBuffers,
+    ) -> None:
+        parts = sorted(
+            (
+                (BatchKind.of(part.material), row, part)
+                for row, drawn in enumerate(contents.instances)
+                for part in drawn.model.parts
+                if part.material.alpha != "blend"
+            ),
+            key=lambda entry: (entry[0], entry[1]),
+        )
+        self.contents = contents
+        self._instance_rows = np.array([row for _, row, _ in parts], dtype=np.intp)
+        self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
+        self._rows = np.zeros(max(1, len(parts)), ROW)
+        self._rows["instance_id"][: len(parts)] = contents.instance_ids[self._instance_rows]
+        self._rows["material"][: len(parts)] = [materials.row(part.material) for *_, part in parts]
+        commands = np.zeros(len(parts), COMMAND)
+        for number, (*_, part) in enumerate(parts):
+            lies = geometry.slice(part.mesh)
+            commands[number] = (lies.index_count, 1, lies.first_index, lies.first_vertex, number)
+        self.row_buffer = context.buffer(reserve=self._rows.nbytes, dynamic=True)
+        self.draw_numbers = context.buffer(np.arange(max(1, len(parts)), dtype=np.int32).tobytes())
+        self.batches = tuple(_batches(context, [kind for kind, *_ in parts], commands))
+
+    def place(
+        self, snapshot: WorldSnapshot, clip_from_eye: NDArray[np.float64], eye_from_world: NDArray[np.float64]
+    ) -> None:
+        """Write the matrices of one eye (a camera or a light) into the rows.
+
+        Parameters
+        ----------
+        clip_from_eye, eye_from_world : (4, 4) float64
+        """
+        count = len(self._instance_rows)
+        if count:
+            eye_from_body = eye_from_world @ snapshot.world_from_body
+            eye_from_object = eye_from_body.copy()
+            eye_from_object[:, :, :3] *= self._scales[:, None, :]
+            clip = clip_from_eye @ eye_from_object
+            # Normals go by the inverse transpose: the rotation with the reciprocal scale.
+            normal = eye_from_body[:, :3, :3] / self._scales[:, None, :]
+            rows = self._rows[:count]
+            # GLSL stores columns, NumPy rows: the transpose is what GLSL reads as the matrix.
+            rows["clip_from_object"] = clip.transpose(0, 2, 1)[self._instance_rows]
+            rows["optical_normal_from_object"][:, :, :3] = normal[self._instance_rows]
+        self.row_buffer.write(self._rows.tobytes())
+
+    def close(self) -> None:
+        """Free the buffers."""
+        for buffer in (self.row_buffer, self.draw_numbers, *(b.commands for b in self.batches)):
+            buffer.release()
+
+
+def _batches(
+    context: moderngl.Context, kinds: list[BatchKind], commands: NDArray[np.void]
+) -> Iterator[Batch]:
+    for kind in sorted(set(kinds)):
+        chosen = commands[[k == kind for k in kinds]]
+        yield Batch(kind, context.buffer(chosen.tobytes()), len(chosen))

@@ -1,0 +1,160 @@
+"""The geometry pass: one walk over all triangles that leaves every pixel's surface.
+
+A `DrawList` with its matrices in place comes in; textures with depth and instance id, and for
+pictures normal and material, go out. Only the attachments that are asked for exist in the pass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moderngl
+
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.render.draw_list import BatchKind, DrawList
+from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.materials import MaterialBuffers
+from sailenv_ros.render.programs import ProgramCache, set_uniform
+
+__all__ = ["GeometryPass", "Targets"]
+
+GL_DEPTH_CLAMP = 0x864F
+GL_CLIP_DISTANCE0 = 0x3000
+
+_VERTEX_FORMAT = {"in_position": "3f", "in_normal": "3f", "in_uv": "2f"}
+_PADDING = {"in_position": "3x4", "in_normal": "3x4", "in_uv": "2x4"}
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """The textures of one picture size.
+
+    Attributes
+    ----------
+    surface : Texture
+        Depth along the optical axis [m] and instance id, 2 x float32.
+    shape, albedo : Texture or None
+        Normal, roughness, metallic; square root of albedo, emission.
+    normals : Texture or None
+        Unit normals in the optical frame, 4 x float32.
+    framebuffer : Framebuffer
+    """
+
+    surface: moderngl.Texture
+    shape: moderngl.Texture | None
+    albedo: moderngl.Texture | None
+    normals: moderngl.Texture | None
+    depth: moderngl.Renderbuffer
+    framebuffer: moderngl.Framebuffer
+
+    def close(self) -> None:
+        """Free the textures."""
+        self.framebuffer.release()
+        for texture in (self.surface, self.shape, self.albedo, self.normals, self.depth):
+            if texture is not None:
+                texture.release()
+
+
+class GeometryPass:
+    """Draws surfaces into targets."""
+
+    def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
+        self._context = context
+        self._programs = programs
+
+    def make_targets(self, width: int, height: int, *, shaded: bool, normals: bool) -> Targets:
+        """Make the textures of a picture size."""
+        size = (width, height)
+        surface = self._context.texture(size, 2, dtype="f4")
+        shape = self._context.texture(size, 4, dtype="f2") if shaded else None
+        albedo = self._context.texture(size, 4) if shaded else None
+        normal = self._context.texture(size, 4, dtype="f4") if normals else None
+        for texture in (surface, shape, albedo, normal):
+            if texture is not None:
+                texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        depth = self._context.depth_renderbuffer(size)
+        attached = [texture for texture in (surface, shape, albedo, normal) if texture is not None]
+        framebuffer = self._context.framebuffer(attached, depth)
+        return Targets(surface, shape, albedo, normal, depth, framebuffer)
+
+    def draw(
+        self,
+        targets: Targets,
+        draws: DrawList,
+        geometry: GeometryBuffers,
+        materials: MaterialBuffers,
+        intrinsics: CameraIntrinsics,
+    ) -> None:
+        """Draw everything; `draws` must have been placed for the camera."""
+        context = self._context
+        targets.framebuffer.use()
+        # Nothing hit: infinitely far, instance 0. The other attachments are not read there.
+        targets.framebuffer.clear(float("inf"), 0.0, 0.0, 0.0, depth=1.0)
+        context.enable_only(moderngl.DEPTH_TEST)
+        context.enable_direct(GL_DEPTH_CLAMP)
+        context.enable_direct(GL_CLIP_DISTANCE0)
+        # The projection turns the picture upside down, so that row 0 of OpenGL's window is the
+        # picture's top row and no array is ever flipped; front faces turn the other way with it.
+        context.front_face = "cw"
+        draws.row_buffer.bind_to_storage_buffer(0)
+        try:
+            for batch in draws.batches:
+                program = self._program(batch.kind, targets)
+                set_uniform(program, "far_m", intrinsics.far_m)
+                set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.0))
+                materials.bind(program)
+                if batch.kind.double_sided:
+                    context.disable(moderngl.CULL_FACE)
+                else:
+                    context.enable(moderngl.CULL_FACE)
+                issue(context, program, draws, geometry, batch.commands, batch.count)
+        finally:
+            context.disable_direct(GL_CLIP_DISTANCE0)
+            context.disable_direct(GL_DEPTH_CLAMP)
+            context.front_face = "ccw"
+
+    def _program(self, kind: BatchKind, targets: Targets) -> moderngl.Program:
+        switches: dict[str, int] = {}
+        shaded = targets.shape is not None
+        # Masked materials need their alpha even where no picture is made.
+        if shaded or kind.masked or targets.normals is not None:
+            switches["SHADED"] = 1
+            if kind.textured:
+                switches["TEXTURED"] = 1
+            if kind.masked:
+                switches["MASKED"] = 1
+        if targets.normals is not None:
+            switches["NORMALS"] = 1
+            switches["LOCATION_NORMALS"] = 3 if shaded else 1
+        if "SHADED" in switches and not shaded:
+            switches["UNLIT"] = 1
+        return self._programs.get("geometry.vert", "geometry.frag", **switches)
+
+
+def issue(
+    context: moderngl.Context,
+    program: moderngl.Program,
+    draws: DrawList,
+    geometry: GeometryBuffers,
+    commands: moderngl.Buffer,
+    count: int,
+) -> None:
+    """Issue a batch of indirect draws with a program that reads the rows of `draws`."""
+    formats, names = [], []
+    for name in _VERTEX_FORMAT:
+        used = name in program
+        formats.append(_VERTEX_FORMAT[name] if used else _PADDING[name])
+        names += [name] if used else []
+    array = context.vertex_array(
+        program,
+        [
+            (geometry.vertex_buffer, " ".join(formats), *names),
+            (draws.draw_numbers, "1i /i", "in_draw"),
+        ],
+        index_buffer=geometry.index_buffer,
+        index_element_size=4,
+    )
+    try:
+        array.render_indirect(commands, mode=moderngl.TRIANGLES, count=count)
+    finally:
+        array.release()

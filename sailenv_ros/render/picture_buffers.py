@@ -1,0 +1,98 @@
+"""The textures that passes draw into, by size, and reading them back into arrays.
+
+Agents of several sizes share one renderer: the textures of the sizes used last are kept.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Any
+
+import cv2
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.render.geometry_pass import GeometryPass, Targets
+from sailenv_ros.render.lighting_pass import LightingPass
+
+__all__ = ["PictureBuffers"]
+
+KEPT_SIZES = 24
+"""Sets of textures that are kept: 16 agents, some with and without a picture."""
+
+Pictures = tuple[moderngl.Framebuffer, moderngl.Framebuffer]
+
+
+class PictureBuffers:
+    """Textures by size and use."""
+
+    def __init__(self, geometry_pass: GeometryPass, lighting_pass: LightingPass) -> None:
+        self._geometry_pass = geometry_pass
+        self._lighting_pass = lighting_pass
+        self._targets: OrderedDict[tuple[int, int, bool, bool], Targets] = OrderedDict()
+        self._pictures: OrderedDict[tuple[int, int], Pictures] = OrderedDict()
+
+    def targets(self, intrinsics: CameraIntrinsics, *, shaded: bool, normals: bool) -> Targets:
+        """Give the targets of the geometry pass."""
+        width, height = intrinsics.width, intrinsics.height
+        key = (width, height, shaded, normals)
+        if key not in self._targets:
+            while len(self._targets) >= KEPT_SIZES:
+                self._targets.popitem(last=False)[1].close()
+            self._targets[key] = self._geometry_pass.make_targets(
+                width, height, shaded=shaded, normals=normals
+            )
+        self._targets.move_to_end(key)
+        return self._targets[key]
+
+    def pictures(self, intrinsics: CameraIntrinsics) -> Pictures:
+        """Give the lit and the finished picture."""
+        key = (intrinsics.width, intrinsics.height)
+        if key not in self._pictures:
+            while len(self._pictures) >= KEPT_SIZES:
+                _release(self._pictures.popitem(last=False)[1])
+            self._pictures[key] = self._lighting_pass.make_pictures(*key)
+        self._pictures.move_to_end(key)
+        return self._pictures[key]
+
+    def read_picture(self, finished: moderngl.Framebuffer) -> NDArray[np.uint8]:
+        """Read an RGB picture; a fresh (H, W, 3) array."""
+        four = np.empty((finished.height, finished.width, 4), np.uint8)
+        finished.read_into(four, components=4)
+        # Reading three components makes the driver convert them, ten times slower.
+        return np.asarray(cv2.cvtColor(four, cv2.COLOR_RGBA2RGB), dtype=np.uint8)
+
+    def read_surface(self, targets: Targets) -> NDArray[np.float32]:
+        """Read depth and instance id; a fresh (H, W, 2) array."""
+        return _read_float(targets.surface, 2)
+
+    def read_normals(self, targets: Targets) -> NDArray[Any]:
+        """Read unit normals, 0 where nothing was hit; a fresh (H, W, 3) array."""
+        assert targets.normals is not None  # noqa: S101 - asked for only where they were drawn
+        four = _read_float(targets.normals, 4)
+        # The clear colour's fourth component is 0, a surface's is 1.
+        return np.where(four[..., 3:] > 0.0, four[..., :3], np.float32(0.0))
+
+    def close(self) -> None:
+        """Free all textures."""
+        for targets in self._targets.values():
+            targets.close()
+        for pictures in self._pictures.values():
+            _release(pictures)
+        self._targets.clear()
+        self._pictures.clear()
+
+
+def _read_float(texture: moderngl.Texture, components: int) -> NDArray[np.float32]:
+    array = np.empty((texture.height, texture.width, components), np.float32)
+    texture.read_into(array)
+    return array
+
+
+def _release(pictures: Pictures) -> None:
+    for framebuffer in pictures:
+        texture = framebuffer.color_attachments[0]
+        framebuffer.release()
+        texture.release()

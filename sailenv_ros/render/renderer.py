@@ -1,0 +1,197 @@
+"""The OpenGL renderer: which passes run, in which order, and what is read back.
+
+A snapshot, a camera and names of views come in, arrays go out. Passes that no wanted view needs
+do not run.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.camera import Camera
+from sailenv_ros.errors import RenderError
+from sailenv_ros.frame import checked_views
+from sailenv_ros.render.annotate import annotate, warm_up
+from sailenv_ros.render.backend import RenderedViews
+from sailenv_ros.render.context import create_context
+from sailenv_ros.render.draw_list import DrawList
+from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.geometry_pass import GeometryPass
+from sailenv_ros.render.lighting_pass import LightingPass, main_light
+from sailenv_ros.render.materials import MaterialBuffers
+from sailenv_ros.render.picture_buffers import PictureBuffers
+from sailenv_ros.render.programs import ProgramCache
+from sailenv_ros.render.shadow_pass import ShadowPass
+from sailenv_ros.snapshot import Observation, WorldSnapshot
+
+__all__ = ["Renderer"]
+
+_UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
+"""Row 0 of OpenGL's window becomes the picture's top row: nothing is flipped afterwards."""
+
+
+class Renderer:
+    """Draws with OpenGL, without a window; belongs to the thread that makes it.
+
+    Parameters
+    ----------
+    device : int or None
+        EGL's number of the device; None takes graphics hardware if there is any.
+
+    Raises
+    ------
+    ContextError
+        If no OpenGL context is to be had.
+    """
+
+    def __init__(self, *, device: int | None = None) -> None:
+        self._context, self._device = create_context(device)
+        try:
+            with self._context:
+                self._programs = ProgramCache(self._context)
+                self._geometry = GeometryBuffers(self._context)
+                self._materials = MaterialBuffers(self._context)
+                self._geometry_pass = GeometryPass(self._context, self._programs)
+                self._shadow_pass = ShadowPass(self._context, self._programs)
+                self._lighting_pass = LightingPass(self._context, self._programs)
+                self._pictures = PictureBuffers(self._geometry_pass, self._lighting_pass)
+        except BaseException:
+            self._context.release()
+            raise
+        self._draws: DrawList | None = None
+        self._closed = False
+        warm_up()
+
+    @property
+    def description(self) -> str:
+        """One line: back end, device, driver."""
+        kind = "software OpenGL" if self.software else "OpenGL"
+        device = self._device
+        return f"{kind} {device.version} on EGL device {device.index}: {device.renderer}"
+
+    @property
+    def software(self) -> bool:
+        """True if no graphics hardware is used."""
+        return self._device.software
+
+    def render(
+        self,
+        snapshot: WorldSnapshot,
+        previous: Observation | None,
+        camera: Camera,
+        views: Iterable[str],
+    ) -> RenderedViews:
+        """Make the wanted views of one camera; see `RenderBackend.render`."""
+        if self._closed:
+            raise RenderError("the renderer was closed")
+        wanted = frozenset(checked_views(views))
+        timings: dict[str, float] = {}
+        with self._context:
+            if "occlusion" in wanted and previous is not None and previous.depth is None:
+                previous = self._with_depth(previous)
+            arrays = self._draw(snapshot, camera, wanted, timings)
+        began = time.perf_counter()
+        truth = annotate(arrays.pop("surface"), snapshot, previous, camera, wanted)
+        timings["annotate"] = time.perf_counter() - began
+        arrays.update(truth)
+        depth: NDArray[np.float32] = truth["depth"]
+        return RenderedViews(
+            views={name: arrays[name] for name in wanted},
+            # A caller may write into its own views; the past must stay what it was.
+            depth=depth if "depth" not in wanted else depth.copy() if "occlusion" in wanted else None,
+            timings_s=timings,
+        )
+
+    def close(self) -> None:
+        """Free everything on the GPU; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        with self._context:
+            for resource in (
+                self._draws,
+                self._pictures,
+                self._lighting_pass,
+                self._shadow_pass,
+                self._materials,
+                self._geometry,
+                self._programs,
+            ):
+                if resource is not None:
+                    resource.close()
+        self._context.release()
+
+    def _draw(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        wanted: frozenset[str],
+        timings: dict[str, float],
+    ) -> dict[str, NDArray[Any]]:
+        """Run the passes and read back what they left."""
+        marks = [("", time.perf_counter())]
+
+        def mark(stage: str) -> None:
+            # Without this the time of a pass would be booked on whoever reads its result.
+            self._context.finish()
+            marks.append((stage, time.perf_counter()))
+
+        draws = self._draws_of(snapshot)
+        mark("upload")
+        contents = snapshot.contents
+        lights = contents.lights
+        sun = main_light(lights) if "rgb" in wanted else None
+        if sun is not None:
+            self._shadow_pass.draw(sun, snapshot, draws, self._geometry)
+            mark("shadow")
+        intrinsics = camera.intrinsics
+        draws.place(snapshot, _UPSIDE_DOWN @ intrinsics.clip_from_optical(), camera.camera_from_world)
+        targets = self._pictures.targets(
+            intrinsics, shaded="rgb" in wanted, normals="normals" in wanted
+        )
+        self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
+        mark("geometry")
+        arrays: dict[str, NDArray[Any]] = {}
+        if "rgb" in wanted:
+            lit, finished = self._pictures.pictures(intrinsics)
+            self._lighting_pass.draw(
+                targets, lit, camera, lights, contents.environment, self._shadow_pass
+            )
+            mark("lighting")
+            self._lighting_pass.smooth_edges(lit, finished)
+            mark("edges")
+            arrays["rgb"] = self._pictures.read_picture(finished)
+        arrays["surface"] = self._pictures.read_surface(targets)
+        if targets.normals is not None:
+            arrays["normals"] = self._pictures.read_normals(targets)
+        mark("readback")
+        for (_, start), (stage, end) in zip(marks, marks[1:], strict=False):
+            timings[stage] = end - start
+        return arrays
+
+    def _draws_of(self, snapshot: WorldSnapshot) -> DrawList:
+        """Give the draw list of the snapshot's contents; kept until the contents change."""
+        contents = snapshot.contents
+        if self._draws is not None and self._draws.contents is contents:
+            return self._draws
+        models = [drawn.model for drawn in contents.instances]
+        self._geometry.upload(models)
+        self._materials.upload(part.material for model in models for part in model.parts)
+        if self._draws is not None:
+            self._draws.close()
+        self._draws = DrawList(self._context, contents, self._geometry, self._materials)
+        return self._draws
+
+    def _with_depth(self, previous: Observation) -> Observation:
+        """Render the depth that an earlier frame was not asked for: it is a function of its pose."""
+        arrays = self._draw(previous.snapshot, previous.camera, frozenset({"depth"}), {})
+        truth = annotate(arrays["surface"], previous.snapshot, None, previous.camera, frozenset())
+        return Observation(
+            snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"]
+        )
+

@@ -1,0 +1,56 @@
+// Leaves depth and instance id of each pixel; for pictures also normal and material.
+#include "draws.glsl"
+
+flat in int draw_row;
+
+layout(location = 0) out vec2 out_surface;  // depth along the optical axis [m], instance id
+
+#ifdef SHADED
+#include "materials.glsl"
+
+uniform vec4 lens;  // focal length, cx, cy [px], unused
+
+in vec3 optical_normal;
+in vec2 uv;
+#ifndef UNLIT
+layout(location = 1) out vec4 out_shape;   // octahedral normal, roughness, metallic
+layout(location = 2) out vec4 out_albedo;  // square root of linear albedo, emission / 16
+#endif
+#endif
+#ifdef NORMALS
+layout(location = LOCATION_NORMALS) out vec4 out_normal;  // unit, optical frame
+#endif
+
+#if defined(SHADED) && !defined(UNLIT)
+vec2 octahedral(vec3 n) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    return n.z >= 0.0 ? p : folded;
+}
+#endif
+
+void main() {
+    // Clip w is the depth, and gl_FragCoord.w its reciprocal, which is linear in the window:
+    // the most exact form in which the rasteriser knows it.
+    out_surface = vec2(1.0 / gl_FragCoord.w, draws[draw_row].instance_id);
+#ifdef SHADED
+    Material material = materials[draws[draw_row].material];
+    vec4 base = base_colour(material, uv);
+#ifdef MASKED
+    if (base.a < material.alpha_cutoff) discard;
+#endif
+    vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
+#ifdef NORMALS
+    out_normal = vec4(normal, 1.0);
+#endif
+#ifndef UNLIT
+#ifdef TEXTURED
+    vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
+    normal = mapped_normal(material, uv, normal, point);
+#endif
+    vec2 rough_metal = roughness_metallic(material, uv);
+    out_shape = vec4(octahedral(normal), rough_metal);
+    out_albedo = vec4(sqrt(base.rgb), material.emission);
+#endif
+#endif
+}

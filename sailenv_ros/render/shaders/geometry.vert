@@ -1,0 +1,30 @@
+// Object space to clip space with one matrix composed in double precision: no sum of large numbers.
+in vec3 in_position;
+in vec3 in_normal;
+in vec2 in_uv;
+in int in_draw;  // advances once per draw: the base instance chooses the row
+
+#include "draws.glsl"
+
+uniform float far_m;
+
+flat out int draw_row;
+#ifdef SHADED
+out vec3 optical_normal;
+out vec2 uv;
+#endif
+
+out float gl_ClipDistance[1];
+
+void main() {
+    gl_Position = draws[in_draw].clip_from_object * vec4(in_position, 1.0);
+    // Depth clamp lets surfaces nearer than near through; it must not let those beyond far.
+    gl_ClipDistance[0] = far_m - gl_Position.w;
+    draw_row = in_draw;
+#ifdef SHADED
+    optical_normal = vec3(dot(draws[in_draw].optical_normal_from_object[0].xyz, in_normal),
+                          dot(draws[in_draw].optical_normal_from_object[1].xyz, in_normal),
+                          dot(draws[in_draw].optical_normal_from_object[2].xyz, in_normal));
+    uv = in_uv;
+#endif
+}

@@ -1,0 +1,121 @@
+"""The shadow map of the main directional light: depth as the light sees the scene.
+
+A snapshot and a light come in, a depth texture and the matrix into it go out. It is drawn again
+only when something that it depends on has changed.
+"""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.lights import Light
+from sailenv_ros.render.draw_list import DrawList
+from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.geometry_pass import issue
+from sailenv_ros.render.programs import ProgramCache
+from sailenv_ros.snapshot import WorldSnapshot
+
+__all__ = ["ShadowPass"]
+
+SIZE_PX = 1024
+
+LARGEST_CASTER_M = 12.0
+"""Bodies with a longer diagonal (grounds) do not stretch the map: what they cast from beyond the
+others is not seen."""
+
+
+class ShadowPass:
+    """The shadow map of one renderer."""
+
+    def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
+        self._context = context
+        self._program = programs.get("shadow.vert", "shadow.frag")
+        self.texture = context.depth_texture((SIZE_PX, SIZE_PX))
+        self.texture.compare_func = "<="
+        self.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        self.texture.repeat_x = self.texture.repeat_y = False
+        self._framebuffer = context.framebuffer(depth_attachment=self.texture)
+        self._drawn: tuple[object, ...] = ()
+        self._poses: NDArray[np.float64] | None = None
+        self.map_from_world: NDArray[np.float64] = np.eye(4)
+        self.texel_m = 0.0
+
+    def draw(
+        self, light: Light, snapshot: WorldSnapshot, draws: DrawList, geometry: GeometryBuffers
+    ) -> None:
+        """Bring the map up to date; leaves the rows of `draws` placed for the light if it drew."""
+        key = (snapshot.contents, light.direction)
+        poses = snapshot.world_from_body
+        if self._drawn == key and self._poses is not None and np.array_equal(self._poses, poses):
+            return
+        self._drawn, self._poses = key, poses
+        clip_from_light, light_from_world, width_m = _frustum(light, snapshot)
+        self.texel_m = width_m / SIZE_PX
+        # From clip space, -1 to 1, to texture space, 0 to 1.
+        half = np.diag([0.5, 0.5, 0.5, 1.0])
+        half[:3, 3] = 0.5
+        self.map_from_world = half @ clip_from_light @ light_from_world
+        draws.place(snapshot, clip_from_light, light_from_world)
+        context = self._context
+        self._framebuffer.use()
+        self._framebuffer.clear(depth=1.0)
+        context.enable_only(moderngl.DEPTH_TEST)
+        self._context.polygon_offset = 1.5, 2.0
+        draws.row_buffer.bind_to_storage_buffer(0)
+        for batch in draws.batches:
+            issue(context, self._program, draws, geometry, batch.commands, batch.count)
+        self._context.polygon_offset = 0.0, 0.0
+
+    def close(self) -> None:
+        """Free the map."""
+        self._framebuffer.release()
+        self.texture.release()
+
+
+def _frustum(
+    light: Light, snapshot: WorldSnapshot
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Fit an orthographic box along the light around everything that casts."""
+    forward = np.asarray(light.direction)
+    helper = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
+    right = np.cross(forward, helper)
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    light_from_world = np.eye(4)
+    light_from_world[:3, :3] = np.stack([right, up, forward])
+    low, high = _caster_bounds(light_from_world, snapshot)
+    width = float(max(high[0] - low[0], high[1] - low[1], 0.5)) * 1.05
+    centre = 0.5 * (low + high)
+    near, far = float(low[2]) - 0.5, float(high[2]) + 0.5
+    clip = np.diag([2.0 / width, 2.0 / width, 2.0 / (far - near), 1.0])
+    clip[:3, 3] = [
+        -2.0 * centre[0] / width,
+        -2.0 * centre[1] / width,
+        -(far + near) / (far - near),
+    ]
+    return clip, light_from_world, width
+
+
+def _caster_bounds(
+    light_from_world: NDArray[np.float64], snapshot: WorldSnapshot
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    spheres = [
+        (np.mean(bounds, axis=0), 0.5 * float(np.linalg.norm(bounds[1] - bounds[0])))
+        for bounds in (
+            drawn.model.bounds() * np.asarray(drawn.scale) for drawn in snapshot.contents.instances
+        )
+    ]
+    for matrix, (middle, radius) in zip(snapshot.world_from_body, spheres, strict=True):
+        if 2.0 * radius > LARGEST_CASTER_M and len(spheres) > 1:
+            continue
+        world = matrix[:3, :3] @ middle + matrix[:3, 3]
+        centre = light_from_world[:3, :3] @ world
+        low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
+    if not np.isfinite(low).all():
+        return np.full(3, -5.0), np.full(3, 5.0)
+    # What receives the shadow may lie behind the last caster.
+    high[2] += 6.0
+    return low, high

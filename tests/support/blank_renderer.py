@@ -1,0 +1,39 @@
+"""A renderer that draws nothing but remembers what it was asked: for tests of scheduling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from sailenv_ros.camera import Camera
+from sailenv_ros.frame import VIEWS, checked_views
+from sailenv_ros.render.backend import RenderedViews
+from sailenv_ros.snapshot import Observation, WorldSnapshot
+
+
+class BlankRenderer:
+    """Gives zeros of the right shape; `calls` holds (snapshot, previous, camera, views)."""
+
+    description = "blank"
+    software = True
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[WorldSnapshot, Observation | None, Camera, tuple[str, ...]]] = []
+        self.closed = False
+
+    def render(
+        self,
+        snapshot: WorldSnapshot,
+        previous: Observation | None,
+        camera: Camera,
+        views: Iterable[str],
+    ) -> RenderedViews:
+        wanted = checked_views(views)
+        self.calls.append((snapshot, previous, camera, wanted))
+        height, width = camera.intrinsics.height, camera.intrinsics.width
+        arrays = {v: np.zeros(VIEWS[v].shape(height, width), VIEWS[v].dtype) for v in wanted}
+        return RenderedViews(views=arrays, depth=arrays.get("depth"), timings_s={})
+
+    def close(self) -> None:
+        self.closed = True

@@ -1,0 +1,266 @@
+"""Requests, schedules and histories, with a renderer that only remembers what it was asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest, NameTaken, SceneError, UnknownName
+from sailenv_ros.geometry import Pose
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.scenes import SceneLibrary
+from tests.support.blank_renderer import BlankRenderer
+
+SMALL = CameraIntrinsics(width=16, height=12)
+
+
+def make_core(**kwargs: object) -> tuple[SimulationCore, BlankRenderer]:
+    renderer = BlankRenderer()
+    settings = {"mode": "lockstep", "real_time_factor": 1.0, "seed": 0, "paused": False, **kwargs}
+    core = SimulationCore(SceneLibrary(), "optical", renderer, **settings)  # type: ignore[arg-type]  # settings of a test
+    return core, renderer
+
+
+@pytest.fixture
+def core() -> Iterator[SimulationCore]:
+    made, _ = make_core()
+    yield made
+    made.close()
+
+
+def spec(name: str = "eye", **kwargs: object) -> AgentSpec:
+    return AgentSpec(name=name, intrinsics=SMALL, **kwargs)  # type: ignore[arg-type]  # settings of a test
+
+
+def test_streamed_frames_fall_on_the_rate_s_grid() -> None:
+    """30 Hz is a frame every 8 steps: after a second 31 frames, the first at time 0."""
+    core, renderer = make_core()
+    core.register_agent(spec())
+    stream = core.open_stream("eye", ("depth",), lambda _: None)
+    core.render_due()
+    core.step(240)
+    steps = [snapshot.step for snapshot, *_ in renderer.calls]
+    assert steps == list(range(0, 241, 8))
+    assert stream.dropped == 30
+    assert stream.get(0.0).sequence == 31
+
+
+@given(rate=st.floats(0.5, 240.0))
+def test_any_rate_gives_its_number_of_frames(rate: float) -> None:
+    """Over two seconds an agent gets rate x 2 frames and the first, to one frame; none twice."""
+    core, renderer = make_core()
+    core.register_agent(spec(rate_hz=rate))
+    core.open_stream("eye", ("depth",), lambda _: None)
+    core.step(480)
+    steps = [snapshot.step for snapshot, *_ in renderer.calls]
+    assert abs(len(steps) - (2 * rate + 1)) <= 1.0
+    assert sorted(set(steps)) == steps
+    core.close()
+
+
+def test_a_view_that_nobody_wants_is_not_rendered() -> None:
+    """Nothing is rendered without a stream, and only the union of what streams want with some."""
+    core, renderer = make_core()
+    core.register_agent(spec())
+    core.step(48)
+    assert renderer.calls == []
+    core.open_stream("eye", (), lambda _: None)
+    core.step(48)
+    assert renderer.calls == []
+    core.open_stream("eye", ("depth",), lambda _: None)
+    core.open_stream("eye", ("flow", "rgb"), lambda _: None)
+    core.step(8)
+    assert {views for *_, views in renderer.calls} == {("rgb", "depth", "flow")}
+
+
+def test_a_late_loop_renders_the_last_frame_and_counts_the_others() -> None:
+    """Catching up 48 steps at 30 Hz shows one frame and says that five were skipped."""
+    core, renderer = make_core()
+    core.register_agent(spec())
+    core.open_stream("eye", ("depth",), lambda _: None)
+    core.render_due()
+    core.advance_to(48, every_frame=False)
+    assert [snapshot.step for snapshot, *_ in renderer.calls] == [0, 48]
+    assert core.skipped_frames == 5
+
+
+def test_flow_refers_to_the_last_frame_of_an_earlier_instant() -> None:
+    """The first frame has no past; two frames of one instant share theirs; a step moves it on."""
+    core, renderer = make_core()
+    core.register_agent(spec())
+    first = core.capture("eye", ["flow"])
+    again = core.capture("eye", ["flow"])
+    core.step(3)
+    third = core.capture("eye", ["flow"])
+    fourth = core.capture("eye", ["flow"])
+    assert (first.dt_ns, again.dt_ns) == (0, 0)
+    assert third.dt_ns == fourth.dt_ns == 12_500_000
+    pasts = [previous for _, previous, *_ in renderer.calls]
+    assert pasts[:2] == [None, None]
+    assert pasts[2] is not None
+    assert pasts[2].snapshot.step == 0
+    assert [frame.sequence for frame in (first, again, third, fourth)] == [1, 2, 3, 4]
+
+
+def test_a_set_pose_is_motion_and_a_teleport_is_not(core: SimulationCore) -> None:
+    """After set_position the next frame keeps its past; after a teleport it has none."""
+    core.register_agent(spec(following=False))
+    core.capture("eye", ["depth"])
+    core.step(8)
+    core.set_position("eye", (1.0, 0.0, 1.0))
+    assert core.capture("eye", ["depth"]).dt_ns > 0
+    core.step(8)
+    core.set_position("eye", (2.0, 0.0, 1.0), teleport=True)
+    assert core.capture("eye", ["depth"]).dt_ns == 0
+
+
+def test_a_following_agent_moves_its_mover_and_all_who_follow(core: SimulationCore) -> None:
+    """set_position on a follower moves every follower; a free agent stays."""
+    for name, following in (("a", True), ("b", True), ("free", False)):
+        core.register_agent(spec(name, following=following))
+    before = core.get_pose("free").pose
+    core.set_position("a", (1.0, 2.0, 3.0))
+    core.step(24)
+    assert core.get_pose("a").pose == core.get_pose("b").pose
+    assert core.get_pose("b").pose.position_m == (1.0, 2.0, 3.0)
+    assert core.get_pose("free").pose == before
+    assert core.info.movers[0].controller == "rigidbody"
+
+
+def test_an_agent_that_stops_following_stays_where_it_is(core: SimulationCore) -> None:
+    """toggle_follow leaves the agent in place; toggled back it is at the mover again."""
+    core.register_agent(spec())
+    core.step(100)
+    here = core.get_pose("eye").pose
+    assert core.toggle_follow("eye") is False
+    core.step(100)
+    assert core.get_pose("eye").pose == here
+    assert core.toggle_follow("eye") is True
+    assert core.get_pose("eye").pose != here
+
+
+def test_rotation_and_position_leave_each_other_alone(core: SimulationCore) -> None:
+    """set_rotation keeps the position, set_position the rotation, to the bit."""
+    core.register_agent(spec(following=False, pose=Pose.from_rpy_deg((1, 2, 3), (10, 20, 30))))
+    core.set_rotation("eye", (0.0, 0.0, 90.0))
+    assert core.get_pose("eye").pose.position_m == (1.0, 2.0, 3.0)
+    turned = core.get_pose("eye").pose.orientation_xyzw
+    core.set_position("eye", (0.0, 0.0, 1.0))
+    assert core.get_pose("eye").pose.orientation_xyzw == turned
+
+
+def test_a_new_scene_and_a_reset_have_no_past() -> None:
+    """Epochs grow, time starts at 0, flow has nothing to refer to, agents live on."""
+    core, renderer = make_core()
+    core.register_agent(spec())
+    core.step(50)
+    core.capture("eye", ["flow"])
+    core.change_scene("solid_benchmark")
+    assert core.info.scene == "solid_benchmark"
+    assert core.capture("eye", ["flow"]).dt_ns == 0
+    core.step(10)
+    assert core.reset() == 3
+    frame = core.capture("eye", ["flow"])
+    assert (frame.dt_ns, frame.stamp_ns, frame.epoch) == (0, 0, 3)
+    assert renderer.calls[-1][1] is None
+
+
+def test_a_reset_puts_every_byte_back(core: SimulationCore) -> None:
+    """After a reset the same steps give the same poses, whatever was done meanwhile."""
+    core.register_agent(spec())
+    core.step(200)
+    before = core.world.snapshot().world_from_body.tobytes()
+    pose = core.get_pose("eye").pose
+    core.set_position("eye", (9.0, 9.0, 9.0))
+    core.toggle_follow("eye")
+    core.step(33)
+    core.reset()
+    core.step(200)
+    assert core.world.snapshot().world_from_body.tobytes() == before
+    assert core.get_pose("eye").pose == pose
+
+
+def test_no_frame_is_newer_than_the_scene_info_told() -> None:
+    """Listeners have heard of a revision before a frame carries it."""
+    core, _ = make_core()
+    told: list[SceneInfo] = []
+    core.on_info = told.append
+    core.register_agent(spec())
+    for change in (core.reset, lambda: core.change_scene("solid_benchmark")):
+        change()
+        frame = core.capture("eye", ["instance"])
+        assert frame.revision <= told[-1].revision
+        assert frame.epoch == told[-1].epoch
+    assert [info.revision for info in told] == sorted({info.revision for info in told})
+
+
+BAD_REQUESTS = [
+    (lambda c: c.change_scene("optcal"), UnknownName, "did you mean 'optical'"),
+    (lambda c: c.set_position("eye", (float("nan"), 0, 0)), InvalidRequest, "three finite numbers"),
+    (lambda c: c.set_position("eye", (float("inf"), 0, 0)), InvalidRequest, "three finite numbers"),
+    (lambda c: c.set_position("eye", (1e9, 0, 0)), InvalidRequest, "within ±10000"),
+    (lambda c: c.set_rotation("eye", (0, 0)), InvalidRequest, "three finite numbers"),
+    (lambda c: c.set_position("nobody", (0, 0, 0)), UnknownName, "agent must be one of: eye"),
+    (lambda c: c.get_pose("nobody"), UnknownName, "agent must be one of: eye"),
+    (lambda c: c.delete_agent("nobody"), UnknownName, "agent must be one of: eye"),
+    (lambda c: c.register_agent(spec()), NameTaken, "agent name must be a name that is not in use"),
+    (lambda c: c.register_agent(spec("b", mover="bus")), UnknownName, "mover must be one of: mover"),
+    (lambda c: c.step(-1), InvalidRequest, "steps must be an integer from 1 to 1000000, got -1"),
+    (lambda c: c.step(0), InvalidRequest, "steps must be an integer from 1"),
+    (lambda c: c.step(1.5), InvalidRequest, "steps must be an integer from 1"),
+    (lambda c: c.reset(-1), InvalidRequest, "seed must be an integer from 0"),
+    (lambda c: c.capture("eye", ["colour"]), UnknownName, "view must be one of: rgb, depth"),
+    (lambda c: c.capture("eye", []), InvalidRequest, "views must be at least one of"),
+    (lambda c: c.pause(), InvalidRequest, "mode must be realtime to be paused"),
+]
+
+
+@pytest.mark.parametrize(("call", "error", "sentence"), BAD_REQUESTS)
+def test_a_refused_request_changes_nothing(core: SimulationCore, call, error, sentence) -> None:  # type: ignore[no-untyped-def]  # three columns of a table
+    """Each bad request gets one sentence, and world, agents and info are as before."""
+    core.register_agent(spec())
+    info, snapshot, pose = core.info, core.world.snapshot(), core.get_pose("eye")
+    with pytest.raises(error, match=sentence):
+        call(core)
+    assert core.world.snapshot() is snapshot
+    assert core.get_pose("eye") == pose
+    assert core.info.revision == info.revision
+    assert core.info.agents == info.agents
+
+
+def test_a_scene_file_with_faults_leaves_the_present_one(core: SimulationCore, tmp_path: Path) -> None:
+    """Changing to a broken file raises all its faults and the old world goes on."""
+    broken = tmp_path / "broken.yaml"
+    broken.write_text("version: 1\nobjects:\n  - {name: a, asset: cubee, colr: red}\n")
+    world = core.world
+    with pytest.raises(SceneError) as caught:
+        core.change_scene(str(broken))
+    assert len(caught.value.faults) == 2
+    assert core.world is world
+    core.step(1)
+
+
+def test_at_most_sixteen_agents(core: SimulationCore) -> None:
+    """The seventeenth is refused in words."""
+    for number in range(16):
+        core.register_agent(spec(f"agent_{number}"))
+    with pytest.raises(InvalidRequest, match="at most 16; delete one first"):
+        core.register_agent(spec("one_more"))
+
+
+def test_a_running_simulation_is_not_stepped_by_hand() -> None:
+    """step is for paused and lockstep simulations."""
+    core, renderer = make_core(mode="realtime")
+    with pytest.raises(InvalidRequest, match="simulation must be paused"):
+        core.step(1)
+    core.pause()
+    assert core.step(2) == 8_333_333
+    core.close()
+    assert renderer.closed
