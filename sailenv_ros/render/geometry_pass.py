@@ -38,6 +38,9 @@ class Targets:
     normals : Texture or None
         Unit normals in the optical frame, 4 x float32.
     framebuffer : Framebuffer
+        What the geometry pass draws into.
+    picture : Framebuffer or None
+        What the lighting pass draws into, on the same depth buffer: sRGB, luma in alpha.
     """
 
     surface: moderngl.Texture
@@ -46,10 +49,15 @@ class Targets:
     normals: moderngl.Texture | None
     depth: moderngl.Renderbuffer
     framebuffer: moderngl.Framebuffer
+    picture: moderngl.Framebuffer | None
 
     def close(self) -> None:
         """Free the textures."""
         self.framebuffer.release()
+        if self.picture is not None:
+            texture = self.picture.color_attachments[0]
+            self.picture.release()
+            texture.release()
         for texture in (self.surface, self.shape, self.albedo, self.normals, self.depth):
             if texture is not None:
                 texture.release()
@@ -75,7 +83,8 @@ class GeometryPass:
         depth = self._context.depth_renderbuffer(size)
         attached = [texture for texture in (surface, shape, albedo, normal) if texture is not None]
         framebuffer = self._context.framebuffer(attached, depth)
-        return Targets(surface, shape, albedo, normal, depth, framebuffer)
+        picture = self._context.framebuffer([self._context.texture(size, 4)], depth) if shaded else None
+        return Targets(surface, shape, albedo, normal, depth, framebuffer, picture)
 
     def draw(
         self,

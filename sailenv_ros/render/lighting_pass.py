@@ -32,7 +32,7 @@ ROW = np.dtype(
         ("colour_kind", "<f4", 4),
         ("position_range", "<f4", 4),
         ("direction_inner", "<f4", 4),
-        ("outer_shadow", "<f4", 4),
+        ("outer_cone", "<f4", 4),
     ]
 )
 
@@ -49,49 +49,61 @@ class LightingPass:
     def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
         self._context = context
         self._light = programs.get("screen.vert", "lighting.frag", MAX_LIGHTS=MAX_LIGHTS)
-        self._edges = programs.get("screen.vert", "edges.frag")
+        self._sky = programs.get("screen.vert", "sky.frag")
         self._light_array = context.vertex_array(self._light, [])
-        self._edge_array = context.vertex_array(self._edges, [])
+        self._sky_array = context.vertex_array(self._sky, [])
         self._lights = context.buffer(reserve=MAX_LIGHTS * ROW.itemsize, dynamic=True)
-
-    def make_pictures(self, width: int, height: int) -> tuple[moderngl.Framebuffer, moderngl.Framebuffer]:
-        """Make the lit and the finished picture of a size."""
-        pictures = []
-        for _ in range(2):
-            texture = self._context.texture((width, height), 4)
-            texture.repeat_x = texture.repeat_y = False
-            pictures.append(self._context.framebuffer([texture]))
-        return pictures[0], pictures[1]
 
     def draw(
         self,
         targets: Targets,
-        lit: moderngl.Framebuffer,
         camera: Camera,
         lights: Sequence[Light],
         environment: Environment,
         shadow: ShadowPass,
     ) -> None:
-        """Light the surfaces of `targets` into `lit`."""
+        """Light the surfaces of `targets` into its picture."""
+        assert targets.picture is not None  # noqa: S101 - targets of a picture have one
+        targets.picture.use()
+        context = self._context
+        context.enable_only(moderngl.DEPTH_TEST)
+        for program in (self._light, self._sky):
+            _set_camera(program, camera, environment)
+        self._set_lights(targets, camera, lights, shadow)
+        # The covering triangle lies at the far end: in front of it are surfaces, on it is sky.
+        try:
+            targets.picture.depth_mask = False
+            context.depth_func = ">"
+            self._light_array.render(moderngl.TRIANGLES, vertices=3)
+            context.depth_func = "=="
+            self._sky_array.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            targets.picture.depth_mask = True
+            context.depth_func = "<"
+
+    def close(self) -> None:
+        """Free the buffers."""
+        for resource in (self._light_array, self._sky_array, self._lights):
+            resource.release()
+
+    def _set_lights(
+        self, targets: Targets, camera: Camera, lights: Sequence[Light], shadow: ShadowPass
+    ) -> None:
         program = self._light
         sun = main_light(lights)
-        rows = _light_rows(lights, sun, camera)
-        self._lights.write(rows.tobytes())
+        lamps = [light for light in lights if light is not sun and light.intensity > 0.0]
+        self._lights.write(_light_rows(lamps, camera).tobytes())
         self._lights.bind_to_uniform_block(0)
-        intrinsics = camera.intrinsics
-        exposure = 2.0**environment.exposure
-        set_uniform(program, "light_count", min(len(lights), MAX_LIGHTS))
-        set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))
-        rotation = camera.world_from_camera[:3, :3]
-        set_uniform(program, "world_from_optical", _columns(rotation))
-        set_uniform(program, "shadow_from_optical", _columns(shadow.map_from_world @ camera.world_from_camera))
+        set_uniform(program, "light_count", min(len(lamps), MAX_LIGHTS))
+        colour, towards = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+        if sun is not None:
+            colour = tuple(c * sun.intensity for c in sun.colour)
+            towards = tuple(-camera.camera_from_world[:3, :3] @ np.asarray(sun.direction))
+        set_uniform(program, "main_colour", colour)
+        set_uniform(program, "main_towards", towards)
+        matrix = shadow.map_from_world @ camera.world_from_camera
+        set_uniform(program, "shadow_from_optical", _columns(matrix))
         set_uniform(program, "shadow_texel", (shadow.texel_m, 1.0 / SIZE_PX, PENUMBRA_TEXELS))
-        set_uniform(program, "ambient", environment.ambient)
-        for name in ("sky_zenith", "sky_horizon", "sky_ground"):
-            set_uniform(program, name, getattr(environment, name))
-        plain = 1.0 if environment.background == "colour" else 0.0
-        set_uniform(program, "background", (*environment.background_colour, plain))
-        assert targets.shape is not None and targets.albedo is not None  # noqa: PT018, S101 - lit targets have both
         for unit, (name, texture) in enumerate(
             (
                 ("surface", targets.surface),
@@ -102,33 +114,27 @@ class LightingPass:
         ):
             texture.use(unit)
             set_uniform(program, name, unit)
-        self._context.enable_only(moderngl.NOTHING)
-        lit.use()
-        self._light_array.render(moderngl.TRIANGLES, vertices=3)
 
-    def smooth_edges(self, lit: moderngl.Framebuffer, finished: moderngl.Framebuffer) -> None:
-        """Smooth the stair-steps of `lit` into `finished`."""
-        texture = lit.color_attachments[0]
-        texture.use(0)
-        set_uniform(self._edges, "picture", 0)
-        set_uniform(self._edges, "texel", (1.0 / lit.width, 1.0 / lit.height))
-        self._context.enable_only(moderngl.NOTHING)
-        finished.use()
-        self._edge_array.render(moderngl.TRIANGLES, vertices=3)
 
-    def close(self) -> None:
-        """Free the buffers."""
-        for resource in (self._light_array, self._edge_array, self._lights):
-            resource.release()
+def _set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+    intrinsics = camera.intrinsics
+    exposure = 2.0**environment.exposure
+    set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))
+    set_uniform(program, "world_from_optical", _columns(camera.world_from_camera[:3, :3]))
+    set_uniform(program, "ambient", environment.ambient)
+    for name in ("sky_zenith", "sky_horizon", "sky_ground"):
+        set_uniform(program, name, getattr(environment, name))
+    plain = 1.0 if environment.background == "colour" else 0.0
+    set_uniform(program, "background", (*environment.background_colour, plain))
 
 
 def _strength(light: Light) -> float:
     return light.intensity * max(light.colour)
 
 
-def _light_rows(lights: Sequence[Light], sun: Light | None, camera: Camera) -> NDArray[np.void]:
+def _light_rows(lamps: Sequence[Light], camera: Camera) -> NDArray[np.void]:
     rows = np.zeros(MAX_LIGHTS, ROW)
-    strongest = sorted(lights, key=_strength, reverse=True)[:MAX_LIGHTS]
+    strongest = sorted(lamps, key=_strength, reverse=True)[:MAX_LIGHTS]
     for row, light in zip(rows, strongest, strict=False):
         power = np.asarray(light.colour) * light.intensity
         if light.type == "area":
@@ -139,8 +145,7 @@ def _light_rows(lights: Sequence[Light], sun: Light | None, camera: Camera) -> N
         row["position_range"] = [*position[:3], max(light.range_m, 1e-3)]
         direction = camera.camera_from_world[:3, :3] @ np.asarray(light.direction)
         row["direction_inner"] = [*direction, np.cos(np.radians(light.inner_cone_deg))]
-        outer = np.cos(np.radians(light.outer_cone_deg))
-        row["outer_shadow"] = [outer, 1.0 if light is sun else 0.0, 0.0, 0.0]
+        row["outer_cone"] = np.cos(np.radians(light.outer_cone_deg))
     return rows
 
 

@@ -8,31 +8,26 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import Any
 
-import cv2
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.render.geometry_pass import GeometryPass, Targets
-from sailenv_ros.render.lighting_pass import LightingPass
+from sailenv_ros.render.smooth_edges import smooth_edges
 
 __all__ = ["PictureBuffers"]
 
 KEPT_SIZES = 24
 """Sets of textures that are kept: 16 agents, some with and without a picture."""
 
-Pictures = tuple[moderngl.Framebuffer, moderngl.Framebuffer]
-
 
 class PictureBuffers:
     """Textures by size and use."""
 
-    def __init__(self, geometry_pass: GeometryPass, lighting_pass: LightingPass) -> None:
+    def __init__(self, geometry_pass: GeometryPass) -> None:
         self._geometry_pass = geometry_pass
-        self._lighting_pass = lighting_pass
         self._targets: OrderedDict[tuple[int, int, bool, bool], Targets] = OrderedDict()
-        self._pictures: OrderedDict[tuple[int, int], Pictures] = OrderedDict()
 
     def targets(self, intrinsics: CameraIntrinsics, *, shaded: bool, normals: bool) -> Targets:
         """Give the targets of the geometry pass."""
@@ -47,22 +42,13 @@ class PictureBuffers:
         self._targets.move_to_end(key)
         return self._targets[key]
 
-    def pictures(self, intrinsics: CameraIntrinsics) -> Pictures:
-        """Give the lit and the finished picture."""
-        key = (intrinsics.width, intrinsics.height)
-        if key not in self._pictures:
-            while len(self._pictures) >= KEPT_SIZES:
-                _release(self._pictures.popitem(last=False)[1])
-            self._pictures[key] = self._lighting_pass.make_pictures(*key)
-        self._pictures.move_to_end(key)
-        return self._pictures[key]
-
-    def read_picture(self, finished: moderngl.Framebuffer) -> NDArray[np.uint8]:
-        """Read an RGB picture; a fresh (H, W, 3) array."""
-        four = np.empty((finished.height, finished.width, 4), np.uint8)
-        finished.read_into(four, components=4)
-        # Reading three components makes the driver convert them, ten times slower.
-        return np.asarray(cv2.cvtColor(four, cv2.COLOR_RGBA2RGB), dtype=np.uint8)
+    def read_picture(self, targets: Targets) -> NDArray[np.uint8]:
+        """Read the picture with its edges smoothed; a fresh (H, W, 3) array."""
+        assert targets.picture is not None  # noqa: S101 - asked for only where it was drawn
+        four = np.empty((targets.picture.height, targets.picture.width, 4), np.uint8)
+        # Reading three components would make the driver convert them, ten times slower.
+        targets.picture.read_into(four, components=4)
+        return smooth_edges(four)
 
     def read_surface(self, targets: Targets) -> NDArray[np.float32]:
         """Read depth and instance id; a fresh (H, W, 2) array."""
@@ -79,10 +65,7 @@ class PictureBuffers:
         """Free all textures."""
         for targets in self._targets.values():
             targets.close()
-        for pictures in self._pictures.values():
-            _release(pictures)
         self._targets.clear()
-        self._pictures.clear()
 
 
 def _read_float(texture: moderngl.Texture, components: int) -> NDArray[np.float32]:
@@ -90,9 +73,3 @@ def _read_float(texture: moderngl.Texture, components: int) -> NDArray[np.float3
     texture.read_into(array)
     return array
 
-
-def _release(pictures: Pictures) -> None:
-    for framebuffer in pictures:
-        texture = framebuffer.color_attachments[0]
-        framebuffer.release()
-        texture.release()

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import checked_views
-from sailenv_ros.render.annotate import annotate, warm_up
+from sailenv_ros.render import annotate as ground_truth
+from sailenv_ros.render import smooth_edges
 from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
@@ -59,13 +60,14 @@ class Renderer:
                 self._geometry_pass = GeometryPass(self._context, self._programs)
                 self._shadow_pass = ShadowPass(self._context, self._programs)
                 self._lighting_pass = LightingPass(self._context, self._programs)
-                self._pictures = PictureBuffers(self._geometry_pass, self._lighting_pass)
+                self._pictures = PictureBuffers(self._geometry_pass)
         except BaseException:
             self._context.release()
             raise
         self._draws: DrawList | None = None
         self._closed = False
-        warm_up()
+        ground_truth.warm_up()
+        smooth_edges.warm_up()
 
     @property
     def description(self) -> str:
@@ -96,7 +98,7 @@ class Renderer:
                 previous = self._with_depth(previous)
             arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
-        truth = annotate(arrays.pop("surface"), snapshot, previous, camera, wanted)
+        truth = ground_truth.annotate(arrays.pop("surface"), snapshot, previous, camera, wanted)
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
         depth: NDArray[np.float32] = truth["depth"]
@@ -158,14 +160,12 @@ class Renderer:
         mark("geometry")
         arrays: dict[str, NDArray[Any]] = {}
         if "rgb" in wanted:
-            lit, finished = self._pictures.pictures(intrinsics)
             self._lighting_pass.draw(
-                targets, lit, camera, lights, contents.environment, self._shadow_pass
+                targets, camera, lights, contents.environment, self._shadow_pass
             )
             mark("lighting")
-            self._lighting_pass.smooth_edges(lit, finished)
+            arrays["rgb"] = self._pictures.read_picture(targets)
             mark("edges")
-            arrays["rgb"] = self._pictures.read_picture(finished)
         arrays["surface"] = self._pictures.read_surface(targets)
         if targets.normals is not None:
             arrays["normals"] = self._pictures.read_normals(targets)
@@ -190,7 +190,7 @@ class Renderer:
     def _with_depth(self, previous: Observation) -> Observation:
         """Render the depth that an earlier frame was not asked for: it is a function of its pose."""
         arrays = self._draw(previous.snapshot, previous.camera, frozenset({"depth"}), {})
-        truth = annotate(arrays["surface"], previous.snapshot, None, previous.camera, frozenset())
+        truth = ground_truth.annotate(arrays["surface"], previous.snapshot, None, previous.camera, frozenset())
         return Observation(
             snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"]
         )
