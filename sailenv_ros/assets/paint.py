@@ -9,7 +9,7 @@ import dataclasses
 import threading
 import weakref
 
-from sailenv_ros.model import Material, Model, ModelPart
+from sailenv_ros.model import Material, Model, ModelPart, Texture
 
 __all__ = ["painted"]
 
@@ -33,7 +33,8 @@ def painted(
     ----------
     model : Model
     colour : (3,) tuple of float or None
-        Linear red, green, blue, 0 to 1; replaces colour textures but keeps a material's alpha.
+        Linear red, green, blue, 0 to 1; replaces colour textures but keeps their alpha where a
+        material is cut out or transparent.
     metallic, roughness : float or None
         0 to 1; either one replaces the metallic-roughness texture.
 
@@ -64,7 +65,7 @@ def _painted(
         material = dataclasses.replace(
             material,
             base_colour=(red, green, blue, material.base_colour[3]),
-            base_colour_texture=None,
+            base_colour_texture=_outline(material),
         )
     if metallic is not None or roughness is not None:
         material = dataclasses.replace(
@@ -74,3 +75,14 @@ def _painted(
             metallic_roughness_texture=None,
         )
     return material
+
+
+def _outline(material: Material) -> Texture | None:
+    """Keep a texture's alpha where it cuts a shape out (leaves, strings), in white."""
+    texture = material.base_colour_texture
+    if texture is None or material.alpha == "opaque":
+        return None
+    white = texture.copy()
+    white[..., :3] = 255
+    white.flags.writeable = False
+    return white

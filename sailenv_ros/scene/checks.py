@@ -8,21 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from sailenv_ros.scene.fields import BROKEN_RULE
+from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.kinds import FAULT
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.spec import CategorySpec, SceneSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
-from sailenv_ros.scene.tree import entries, model_at
+from sailenv_ros.scene.tree import Entry, entries
 from sailenv_ros.scene.wording import nearest, shown, suggestion
 from sailenv_ros.scene.yaml_nodes import Loc
 
 __all__ = ["Finding", "findings"]
+
+
+Models: TypeAlias = Mapping[Loc, type[SceneModel]]
+"""Which model stands for the mapping at a place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,26 +61,33 @@ def findings(
     knowledge : SceneKnowledge or None
         Names are not checked without it.
     """
-    for details in error.errors(include_url=False) if error is not None else ():
-        if details["type"] != BROKEN_RULE:
-            yield _translated(details, data)
-    for loc, model, entry in entries(SceneSpec, data):
+    found = list(entries(SceneSpec, data))
+    if error is not None:
+        models = {loc: model for loc, model, _ in found}
+        for details in error.errors(include_url=False):
+            if details["type"] != BROKEN_RULE:
+                yield _translated(details, data, models)
+    for loc, model, entry in found:
         for rule in model.rules:
             for place, sentence in rule(entry):
                 yield Finding((*loc, *place), sentence)
     if knowledge is not None:
-        yield from _unknown_names(data, knowledge)
+        yield from _unknown_names(data, found, knowledge)
 
 
-def _unknown_names(data: Mapping[str, Any], knowledge: SceneKnowledge) -> Iterator[Finding]:
+def _unknown_names(
+    data: Mapping[str, Any], found: Iterable[Entry], knowledge: SceneKnowledge
+) -> Iterator[Finding]:
     listed = data.get("categories")
     own = [c for c in listed if isinstance(c, Mapping)] if isinstance(listed, list) else []
     own_names = [c["name"] for c in own if isinstance(c.get("name"), str)]
     categories = [name for name in knowledge.categories if name != "background"] + own_names
-    for loc, model, entry in entries(SceneSpec, data):
+    for loc, model, entry in found:
         if issubclass(model, ObjectSpec):
             yield from _unknown(loc, entry, "asset", knowledge.assets)
             yield from _unknown(loc, entry, "category", categories)
+            for place, sentence in knowledge.object_faults(entry):
+                yield Finding((*loc, *place), sentence)
         elif issubclass(model, CategorySpec):
             if entry.get("name") in knowledge.categories:
                 yield Finding(
@@ -97,16 +108,16 @@ def _unknown(
         yield Finding((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
 
 
-def _translated(details: ErrorDetails, data: Mapping[str, Any]) -> Finding:
+def _translated(details: ErrorDetails, data: Mapping[str, Any], models: Models) -> Finding:
     kind, context = details["type"], details.get("ctx", {})
     loc = _without_tags(details["loc"], data)
     got = shown(details["input"])
     if kind == FAULT:
         return Finding(loc, context["sentence"])
     if kind == "extra_forbidden":
-        return Finding(loc, _unknown_key(loc, data), of_key=True)
+        return Finding(loc, _unknown_key(loc, models), of_key=True)
     if kind == "missing":
-        return Finding(loc, _missing(loc, data))
+        return Finding(loc, _missing(loc, models))
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         return _tag_fault(kind, loc, context)
     sentence = _SENTENCES.get(kind)
@@ -139,23 +150,25 @@ def _tag_fault(kind: str, loc: Loc, context: Mapping[str, Any]) -> Finding:
     return Finding(place, f"must be one of: {', '.join(expected)}{hint}, got {shown(tag)}")
 
 
-def _unknown_key(loc: Loc, data: Mapping[str, Any]) -> str:
-    model = model_at(SceneSpec, data, loc[:-1])
+def _unknown_key(loc: Loc, models: Models) -> str:
+    model = models.get(loc[:-1])
     known = list(model.model_fields) if model is not None else []
     return f"is not a key that is known here; {suggestion(str(loc[-1]), known)}"
 
 
-def _missing(loc: Loc, data: Mapping[str, Any]) -> str:
-    model = model_at(SceneSpec, data, loc[:-1])
+def _missing(loc: Loc, models: Models) -> str:
+    model = models.get(loc[:-1])
     field = model.model_fields.get(str(loc[-1])) if model is not None else None
     return f"is missing ({field.description})" if field is not None else "is missing"
 
 
 def _without_tags(loc: Loc, data: object) -> Loc:
-    """Take out what pydantic adds to a path: the tags of the kinds of lights."""
+    """Take out what the file lacks: kinds of lights, places inside a number for several."""
     kept: list[str | int] = []
     tagged = False
     for index, part in enumerate(loc):
+        if not isinstance(data, Mapping | list):
+            break  # one number that stands for several
         last = index == len(loc) - 1
         if isinstance(data, Mapping) and part == data.get("type") and not tagged and not last:
             tagged = True

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
-__all__ = ["SceneKnowledge"]
+__all__ = ["Faults", "SceneKnowledge"]
+
+Faults: TypeAlias = Iterable[tuple[tuple[str | int, ...], str]]
+"""Paths inside an entry, each with a sentence that says what is wrong there."""
+
+
+def _no_faults(entry: Mapping[str, Any]) -> Faults:
+    return ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,17 +22,18 @@ class SceneKnowledge:
 
     Attributes
     ----------
-    assets : iterable of str
+    assets : tuple of str
         Every name that an object's `asset` may have.
-    categories : iterable of str
+    categories : tuple of str
         Names of the fixed table.
     behaviour_faults : callable
-        ``behaviour_faults(type, parameters)`` yields what is wrong with a behaviour: the path
-        inside it, and a sentence.
+        ``behaviour_faults(type, parameters)`` yields what is wrong with a behaviour.
+    object_faults : callable
+        ``object_faults(entry)`` yields why an object's asset cannot be placed as its entry says.
+        The entry is plain data; nothing in it is certain.
     """
 
     assets: tuple[str, ...]
     categories: tuple[str, ...]
-    behaviour_faults: Callable[
-        [str, Mapping[str, Any]], Iterable[tuple[tuple[str | int, ...], str]]
-    ]
+    behaviour_faults: Callable[[str, Mapping[str, Any]], Faults]
+    object_faults: Callable[[Mapping[str, Any]], Faults] = _no_faults

@@ -7,6 +7,7 @@ Knows YAML text and the models; which assets, categories and behaviours exist is
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,10 @@ __all__ = ["MAX_BYTES", "SceneKnowledge", "load_scene"]
 
 MAX_BYTES = 4_000_000
 MAX_FAULTS = 100
+"""So many are told at most."""
+
+MAX_FINDINGS = 1000
+"""So many are looked at before they are sorted: a hostile file must not cost minutes."""
 
 
 def load_scene(path: Path, *, knowledge: SceneKnowledge | None = None) -> SceneSpec:
@@ -70,7 +75,7 @@ def _validated(
         spec = SceneSpec.model_validate({"name": stem, **data})
     except ValidationError as problem:
         error = problem
-    faults.extend(findings(data, error, knowledge))
+    faults.extend(islice(findings(data, error, knowledge), MAX_FINDINGS))
     return spec, faults
 
 
@@ -132,5 +137,6 @@ def _in_order(faults: list[SceneFault]) -> list[SceneFault]:
     ordered = sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
     if len(ordered) <= MAX_FAULTS:
         return ordered
-    rest = f"and {len(ordered) - MAX_FAULTS} more faults"
+    count = len(ordered) - MAX_FAULTS
+    rest = f"and {count if len(ordered) < MAX_FINDINGS else 'many'} more faults"
     return [*ordered[:MAX_FAULTS], _unplaced(ordered[0].path, rest)]

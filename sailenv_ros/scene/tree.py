@@ -12,7 +12,7 @@ from typing import Any, get_args
 from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.scene.yaml_nodes import Loc
 
-__all__ = ["Entry", "entries", "model_at"]
+__all__ = ["Entry", "entries"]
 
 Entry = tuple[Loc, type[SceneModel], Mapping[str, Any]]
 
@@ -33,11 +33,6 @@ def entries(model: type[SceneModel], data: object, loc: Loc = ()) -> Iterator[En
             if chosen is not None:
                 place = (*loc, key) if index is None else (*loc, key, index)
                 yield from entries(chosen, part, place)
-
-
-def model_at(model: type[SceneModel], data: object, loc: Loc) -> type[SceneModel] | None:
-    """Find the model that stands for the mapping at a place."""
-    return next((found for place, found, _ in entries(model, data) if place == loc), None)
 
 
 def _models_in(annotation: Any) -> list[type[SceneModel]]:

@@ -114,7 +114,7 @@ def compose(text: str) -> tuple[Node | None, list[TextFault]]:
     except _ReadingError:
         pass
     except yaml.YAMLError as error:
-        composer.faults.append(_syntax_fault(error))
+        composer.faults.append(_syntax_fault(error, text))
     return node, composer.faults
 
 
@@ -232,15 +232,17 @@ def _mark(event: yaml.Event) -> Mark:
     return Mark(1, 1) if start is None else Mark(start.line + 1, start.column + 1)
 
 
-def _syntax_fault(error: yaml.YAMLError) -> TextFault:
+def _syntax_fault(error: yaml.YAMLError, text: str) -> TextFault:
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
     context = getattr(error, "context", None)
     message = f"is not YAML: {context + ', ' if context else ''}{problem}"
-    if "\\t" in problem or "'\\t'" in str(error):
-        message += " (indent with spaces, not tabs)"
     if mark is None:
         return TextFault(Mark(1, 1), message)
+    # libyaml does not say which character it stumbled over.
+    lines = text.split("\n")
+    if mark.line < len(lines) and lines[mark.line][mark.column : mark.column + 1] == "\t":
+        message += " (indent with spaces, not tabs)"
     return TextFault(Mark(mark.line + 1, mark.column + 1), message)
 
 

@@ -1,0 +1,73 @@
+"""Whether an asset can be placed as an object's entry in a scene file says.
+
+Plain data in, places and sentences out, so that a scene's faults are found before it is built.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeAlias
+
+from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.model import Asset, CylinderShape, SphereShape, TriangleShape
+
+__all__ = ["ObjectFit"]
+
+Faults: TypeAlias = Iterator[tuple[tuple[str | int, ...], str]]
+
+
+class ObjectFit:
+    """Checks entries of objects against the assets of a library.
+
+    Parameters
+    ----------
+    library : AssetLibrary
+    """
+
+    def __init__(self, library: AssetLibrary) -> None:
+        self._library = library
+        self._known = frozenset(library.all_names)
+
+    def __call__(self, entry: Mapping[str, Any]) -> Faults:
+        """Yield what does not fit; keep silent about an asset that is unknown.
+
+        Raises
+        ------
+        AssetError
+            If the asset cannot be loaded.
+        """
+        name = entry.get("asset")
+        if not isinstance(name, str) or name not in self._known:
+            return
+        asset = self._library.get(name)
+        yield from _scale_faults(asset, entry.get("scale"))
+        if not entry.get("static", False) and _is_hollow(asset):
+            yield (
+                ("asset",),
+                f"{name!r} collides as hollow geometry, which cannot move; add static: true",
+            )
+
+
+def _scale_faults(asset: Asset, scale: object) -> Faults:
+    if not isinstance(scale, list | tuple) or len(scale) != 3 or not all(map(_is_number, scale)):
+        return
+    for shape in asset.collision:
+        if isinstance(shape, SphereShape) and not _equal(scale):
+            yield (("scale",), f"must be equal in x, y and z: {asset.name} collides as a ball")
+            return
+        if isinstance(shape, CylinderShape) and not _equal(scale[:2]):
+            yield (("scale",), f"must be equal in x and y: {asset.name} collides as a cylinder")
+            return
+
+
+def _is_hollow(asset: Asset) -> bool:
+    return any(isinstance(shape, TriangleShape) for shape in asset.collision)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _equal(values: Any) -> bool:
+    return bool(max(values) - min(values) <= 1e-9 * abs(max(values)))

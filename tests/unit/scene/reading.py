@@ -1,0 +1,42 @@
+"""Helpers of the tests of scene files: text in, spec or faults out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from sailenv_ros.errors import SceneError
+from sailenv_ros.scene import SceneKnowledge, SceneSpec, load_scene
+from sailenv_ros.scene.knowledge import Faults
+
+
+def _behaviour_faults(type_: str, parameters: Mapping[str, Any]) -> Faults:
+    if type_ != "spin":
+        yield ("type",), "must be one of: spin"
+    elif "rate" in parameters and not isinstance(parameters["rate"], int):
+        yield ("rate",), "must be an integer"
+
+
+KNOWLEDGE = SceneKnowledge(
+    assets=("cube", "Cube", "sphere", "chair_01", "Chair 01"),
+    categories=("background", "cube", "chair", "dining table"),
+    behaviour_faults=_behaviour_faults,
+)
+
+
+def read(
+    folder: Path, text: str | bytes, *, knowledge: SceneKnowledge | None = KNOWLEDGE
+) -> SceneSpec:
+    path = folder / "room.yaml"
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return load_scene(path, knowledge=knowledge)
+
+
+def faults(folder: Path, text: str | bytes) -> list[str]:
+    """Give the faults as ``line:column: field: message``; empty if there are none."""
+    try:
+        read(folder, text)
+    except SceneError as error:
+        return [str(fault).removeprefix(f"{folder / 'room.yaml'}:") for fault in error.faults]
+    return []

@@ -1,0 +1,80 @@
+"""Hypothesis strategies for scenes, as the plain data that a file holds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import strategies as st
+
+Entries = st.SearchStrategy[dict[str, Any]]
+
+metres = st.floats(-100, 100)
+positions = st.tuples(metres, metres, metres).map(list)
+angles = st.tuples(*[st.floats(-360, 360)] * 3).map(list)
+fractions = st.floats(0, 1)
+colours = st.from_regex(r"#[0-9a-f]{6}", fullmatch=True) | st.tuples(*[fractions] * 3).map(list)
+# Names that YAML could take for something else are the interesting ones.
+names = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9 _.-]{0,10}", fullmatch=True) | st.sampled_from(
+    ["1e3", "007", "null", "true", "yes", "1.5", "1 - 2", "0x1F", "1_0"]
+)
+titles = st.text(st.characters(exclude_categories=["Cs", "Cc", "Cn"]), max_size=40)
+
+
+def _name(entry: dict[str, Any]) -> str:
+    return str(entry["name"])
+
+
+def some(**optional: st.SearchStrategy[Any]) -> st.SearchStrategy[dict[str, Any]]:
+    """Any of these keys."""
+    return st.fixed_dictionaries({}, optional=optional)
+
+
+def _merged(parts: tuple[dict[str, Any], ...]) -> dict[str, Any]:
+    return {key: value for part in parts for key, value in part.items()}
+
+
+turns = some(rotation=angles) | st.just({"orientation": [0.5, -0.5, 0.5, 0.5]})
+
+behaviours: Entries = st.fixed_dictionaries(
+    {"type": st.just("spin")},
+    optional={"rate": st.integers(), "words": st.lists(names, max_size=2)},
+)
+
+objects: Entries = st.tuples(
+    st.fixed_dictionaries({"name": names, "asset": st.sampled_from(["cube", "Chair 01"])}),
+    turns,
+    some(
+        position=positions,
+        scale=st.floats(0.01, 10) | st.tuples(*[st.floats(0.01, 10)] * 3).map(list),
+        mass=st.none() | st.floats(1e-6, 1e6),
+        gravity=st.booleans(),
+        friction=st.floats(0, 10),
+        restitution=fractions,
+        category=st.sampled_from([None, "chair", "dining table"]),
+        colour=st.none() | colours,
+        metallic=fractions,
+        velocity=positions,
+        behaviours=st.lists(behaviours, max_size=2),
+    ),
+).map(_merged)
+
+lights: Entries = st.tuples(
+    st.fixed_dictionaries({"name": names, "type": st.sampled_from(["point", "spot"])}),
+    some(colour=colours, intensity=st.floats(0, 1e5), position=positions),
+).map(_merged)
+
+waypoints: Entries = st.tuples(
+    st.fixed_dictionaries({"position": positions}), turns | st.just({"look_at": [500.0, 0.0, 0.0]})
+).map(_merged)
+
+scenes: Entries = st.fixed_dictionaries(
+    {"version": st.just(1)},
+    optional={
+        "title": titles,
+        "gravity": positions,
+        "environment": some(ambient=colours, exposure=st.floats(-20, 20)),
+        "lights": st.lists(lights, max_size=3, unique_by=_name),
+        "objects": st.lists(objects, max_size=3, unique_by=_name),
+        "mover": some(waypoints=st.lists(waypoints, max_size=3), total_time=st.floats(0.1, 1e4)),
+    },
+)

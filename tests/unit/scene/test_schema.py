@@ -1,0 +1,127 @@
+"""The exported JSON Schema accepts what the loader accepts, and is not stale."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema
+import pytest
+import yaml
+from hypothesis import given
+from pydantic import BaseModel
+
+from sailenv_ros.behaviours import behaviour_kinds
+from sailenv_ros.scene import SceneCatalogue
+from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, scene_schema, schema_text
+from tests.unit.scene.strategies import scenes
+from tests.unit.scene.test_faults import HEAD, VALUES
+
+BEHAVIOURS = {name: kind.parameters for name, kind in behaviour_kinds().items()}
+OWN_FOLDER = SceneCatalogue().folders[-1]
+
+
+class _Spin(BaseModel):
+    rate: int = 0
+    words: list[str] = []
+
+
+class _Inner(BaseModel):
+    speed: float
+
+
+class _Nested(BaseModel):
+    inner: _Inner
+
+
+def _validator(behaviours: dict[str, type[BaseModel]]) -> jsonschema.Draft7Validator:
+    return jsonschema.Draft7Validator(scene_schema(behaviours))
+
+
+def test_the_file_beside_the_scenes_is_not_stale() -> None:
+    """Else: run ``sailenv scene schema``."""
+    assert not is_stale(OWN_FOLDER / SCHEMA_FILE, BEHAVIOURS)
+
+
+def test_staleness_is_noticed(tmp_path: Any) -> None:
+    path = tmp_path / SCHEMA_FILE
+    assert is_stale(path, BEHAVIOURS)
+    path.write_text(schema_text(BEHAVIOURS), encoding="utf-8")
+    assert not is_stale(path, BEHAVIOURS)
+    assert is_stale(path, {})
+
+
+def test_the_schema_is_a_schema() -> None:
+    jsonschema.Draft7Validator.check_schema(scene_schema(BEHAVIOURS))
+
+
+@pytest.mark.parametrize("name", SceneCatalogue().names)
+def test_the_package_s_scenes_fit_it(name: str) -> None:
+    data = yaml.safe_load(SceneCatalogue().path(name).read_text(encoding="utf-8"))
+    _validator(BEHAVIOURS).validate(data)
+
+
+@given(scenes)
+def test_what_the_loader_accepts_fits_it(data: dict[str, Any]) -> None:
+    _validator({"spin": _Spin}).validate(data)
+
+
+BEYOND_A_SCHEMA = {
+    # It cannot compare entries, know what assets there are, or tell YAML's NaN from a number.
+    "NaN inside a vector",
+    "quaternion that is not of unit length",
+    "two rotations",
+    "behaviour on a static object",
+    "velocity of a static object",
+    "unknown asset",
+    "unknown category",
+    "the background is no category of objects",
+    "two objects of one name",
+}
+
+
+@pytest.mark.parametrize("case", [case for case in VALUES if case not in BEYOND_A_SCHEMA])
+def test_what_the_loader_refuses_does_not_fit_it(case: str) -> None:
+    data = yaml.safe_load(HEAD + VALUES[case][0].replace("yes", "'yes'"))
+    assert not _validator({"spin": _Spin}).is_valid(data)
+
+
+def test_behaviours_bring_their_parameters_along() -> None:
+    validator = _validator({"spin": _Spin, "nested": _Nested})
+
+    def scene(**behaviour: Any) -> dict[str, Any]:
+        return {"version": 1, "objects": [{"name": "a", "asset": "a", "behaviours": [behaviour]}]}
+
+    assert validator.is_valid(scene(type="nested", inner={"speed": 1}))
+    assert not validator.is_valid(scene(type="nested", inner={"speed": "fast"}))
+    assert not validator.is_valid(scene(type="nested"))
+    assert not validator.is_valid(scene(type="spin", rate="fast"))
+
+
+def _properties(schema: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(schema, list):
+        schema = dict(enumerate(schema))
+    if isinstance(schema, dict):
+        properties = schema.get("properties", {})
+        if isinstance(properties, dict) and "if" not in properties:
+            yield from properties.items()
+        for key, value in schema.items():
+            if key != "if":
+                yield from _properties(value)
+
+
+def test_every_key_is_described() -> None:
+    """Editors and the documentation show these words."""
+    keys = list(_properties(scene_schema(BEHAVIOURS)))
+    assert len(keys) > 50
+    constants = [name for name, entry in keys if "const" in entry]
+    assert set(constants) == {"type"}
+    assert [
+        name for name, entry in keys if "const" not in entry and not entry.get("description")
+    ] == []
+
+
+def test_the_text_is_json_in_the_order_of_the_models() -> None:
+    schema = json.loads(schema_text(BEHAVIOURS))
+    assert list(schema["properties"])[:3] == ["version", "name", "title"]
