@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
+from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.behaviours import behaviour_faults
 from sailenv_ros.labels import CategoryTable
@@ -60,6 +61,7 @@ class SceneLibrary:
             assets=self._assets.all_names,
             categories=tuple(category.name for category in self.categories.values()),
             behaviour_faults=behaviour_faults,
+            object_faults=ObjectFit(self._assets),
         )
 
     def load(self, scene: str | Path) -> SceneSpec:
