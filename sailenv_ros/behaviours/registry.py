@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
 from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.scene.kinds import FAULT
 
 __all__ = ["behaviour_faults", "behaviour_kinds", "start_behaviour"]
 
@@ -81,4 +82,8 @@ def _sentence(type_: str, fault: Any) -> str:
     if fault["type"] == "extra_forbidden":
         known = ", ".join(_KINDS[type_].parameters.model_fields)
         return f"is not a parameter of {type_}; its parameters are: {known}"
+    if fault["type"] == FAULT:
+        return str(fault["ctx"]["sentence"])
+    if fault["type"] == "missing":
+        return "is missing"
     return f"{fault['msg'][0].lower()}{fault['msg'][1:]}, got {fault['input']!r}"

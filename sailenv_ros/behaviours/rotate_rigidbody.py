@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from sailenv_ros.behaviours.base import Action, BehaviourParameters, BodyState, behaviour
+from sailenv_ros.scene.fields import DegreesPerSecond
 
 __all__ = ["RotateRigidbody", "rotate_rigidbody"]
 
@@ -16,7 +17,7 @@ __all__ = ["RotateRigidbody", "rotate_rigidbody"]
 class RotateRigidbody(BehaviourParameters):
     """Parameters of `rotate_rigidbody`."""
 
-    angular_velocity: tuple[float, float, float] = Field(
+    angular_velocity: DegreesPerSecond = Field(
         default=(0.0, 0.0, 45.0), description="turn about the world's axes x, y, z [deg/s]"
     )
 

@@ -1,0 +1,108 @@
+"""`sailenv scene`: check scene files, list scenes, export the JSON Schema of the format."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from sailenv_ros.behaviours import behaviour_kinds
+from sailenv_ros.errors import AssetError, SceneError, UnknownName
+from sailenv_ros.scene.catalogue import SUFFIXES, SceneCatalogue
+from sailenv_ros.scene.loader import load_scene
+from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, schema_text, write_schema
+from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.simulation.scenes import SceneLibrary
+
+__all__ = ["add_parser", "run"]
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add the command to those of `sailenv`."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "scene", help="check scene files, list scenes, export the schema of the format"
+    )
+    parser.set_defaults(run=run)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    check = actions.add_parser("check", help="report every fault of scene files, with its place")
+    check.add_argument("scenes", nargs="+", metavar="FILE", help="a YAML file, or a scene's name")
+    actions.add_parser("list", help="list the scenes that come with the package")
+    schema = actions.add_parser("schema", help="write the JSON Schema that editors complete by")
+    schema.add_argument(
+        "--check", action="store_true", help="only tell if the file is not up to date"
+    )
+    schema.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help=f"where to, - for standard output (default: {SCHEMA_FILE} beside the scenes)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Do what was asked; 0 if all is well, 1 if there are faults."""
+    if args.action == "check":
+        return _check(args.scenes)
+    if args.action == "list":
+        return _list()
+    return _schema(args.output, check=args.check)
+
+
+def _check(scenes: list[str]) -> int:
+    library, status = SceneLibrary(), 0
+    for scene in scenes:
+        try:
+            print(f"{scene}: ok ({_counts(_load(library, scene))})")
+        except (SceneError, AssetError, UnknownName) as problem:
+            print(problem)
+            status = 1
+    return status
+
+
+def _load(library: SceneLibrary, scene: str) -> SceneSpec:
+    """Load a file, also one that is not there: then its own error is the clearest."""
+    if Path(scene).suffix in SUFFIXES:
+        return load_scene(Path(scene), knowledge=library.knowledge)
+    return library.load(scene)
+
+
+def _counts(spec: SceneSpec) -> str:
+    counts = {
+        "object": len(spec.objects),
+        "light": len(spec.lights),
+        "mover": len(spec.all_movers),
+        "agent": len(spec.agents),
+    }
+    return ", ".join(f"{count} {noun}{'' if count == 1 else 's'}" for noun, count in counts.items())
+
+
+def _list() -> int:
+    library, status = SceneLibrary(), 0
+    width = max(map(len, library.scene_names), default=0)
+    for name in library.scene_names:
+        try:
+            print(f"{name:<{width}}  {library.load(name).title}".rstrip())
+        except (SceneError, AssetError):
+            print(f"{name:<{width}}  (has faults: see sailenv scene check {name})")
+            status = 1
+    return status
+
+
+def _schema(output: Path | None, *, check: bool) -> int:
+    behaviours = {name: kind.parameters for name, kind in behaviour_kinds().items()}
+    path = SceneCatalogue().folders[-1] / SCHEMA_FILE if output is None else output
+    if check:
+        stale = is_stale(path, behaviours)
+        print(f"{path}: {'stale; run sailenv scene schema' if stale else 'up to date'}")
+        return int(stale)
+    if str(path) == "-":
+        sys.stdout.write(schema_text(behaviours))
+        return 0
+    try:
+        write_schema(path, behaviours)
+    except OSError as problem:
+        print(f"{path}: cannot be written: {problem.strerror}")
+        return 1
+    print(path)
+    return 0
