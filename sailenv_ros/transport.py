@@ -45,7 +45,7 @@ class ProfileChoice:
 
 
 def use_shared_memory_profile(
-    profile: Path,
+    profile: Path | None = None,
     *,
     environment: MutableMapping[str, str] = os.environ,
     shared_memory: Path = SHARED_MEMORY,
@@ -54,8 +54,8 @@ def use_shared_memory_profile(
 
     Parameters
     ----------
-    profile : Path
-        Our profile file.
+    profile : Path or None
+        Our profile file, if not the installed one.
     environment : mutable mapping
     shared_memory : Path
         The folder whose file system holds the segments.
@@ -64,6 +64,7 @@ def use_shared_memory_profile(
     -------
     choice : ProfileChoice
     """
+    profile = _own_profile() if profile is None else profile
     why_not = _reason_against(profile, environment, shared_memory)
     if why_not:
         _log.info("without the shared-memory profile, as %s", why_not)
@@ -91,3 +92,7 @@ def _reason_against(
         mib = 2**20
         return f"{shared_memory} has {free // mib} MiB free and {NEEDED_BYTES // mib} are needed"
     return ""
+
+
+def _own_profile() -> Path:
+    return Path(__file__).resolve().parents[1] / "config" / "fastdds.xml"

@@ -1,0 +1,4 @@
+"""The facade for people who know no ROS: `sailenv_ros.Agent` and what it stands on.
+
+Importing this package imports no ROS; `sailenv_ros.agent.agent` does.
+"""

@@ -1,0 +1,326 @@
+"""The facade: a camera in the simulator as one Python object, for people who know no ROS.
+
+Has the method names of the original SAILenv client. Raises typed errors and never prints; every
+wait has a deadline. World coordinates are those of ROS (x forward, y left, z up) [m], angles [deg].
+"""
+
+from __future__ import annotations
+
+import atexit
+import threading
+import time
+import uuid
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from numpy.typing import ArrayLike
+from std_srvs.srv import SetBool, Trigger
+
+from sailenv_msgs.srv import (
+    Capture,
+    DeleteAgent,
+    GetPose,
+    RegisterAgent,
+    SetPose,
+    SetPosition,
+    SetRotation,
+)
+from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
+from sailenv_msgs_py.transforms import point_to_msg, pose_from_msg, pose_to_msg
+from sailenv_ros.agent.client import SimulatorClient
+from sailenv_ros.agent.received import frame_of_bundle
+from sailenv_ros.agent.topics import AgentTopics
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import (
+    DeadlineExceeded,
+    SailenvError,
+    SimulationClosed,
+    SimulatorLost,
+)
+from sailenv_ros.frame import checked_views
+from sailenv_ros.geometry import Pose, vector
+
+__all__ = ["Agent"]
+
+ATTEMPTS = 3
+"""How often a frame is asked for before `get_frame` gives up, if its images do not arrive."""
+
+ATTEMPT_S = 2.0
+"""How long the images of one attempt may take after the simulator has sent them [s]."""
+
+END_S = 2.0
+"""How long the simulator may take to take note of an Agent's end [s]."""
+
+
+class Agent(SimulatorClient):
+    """A camera of its own in the simulator; a context manager.
+
+    Parameters
+    ----------
+    main_frame_active, object_frame_active, category_frame_active, flow_frame_active, \
+depth_frame_active : bool
+        Which views `get_frame` gives.
+    width, height : int
+        Size of the frames [px], 8 to 4096.
+    views : sequence of str
+        More views, by their names in `sailenv_ros.frame.VIEWS`.
+    vertical_fov_deg : float
+        Full vertical angle of view [deg].
+    near_m, far_m : float
+        Nearest and farthest depth that is seen [m].
+    depth_range_m : float
+        Depth that the 8-bit depth picture shows as black [m].
+    following : bool
+        True if the camera starts on the scene's mover.
+    name : str
+        Name of the agent; empty makes a unique one.
+    namespace : str
+        The simulator's ROS namespace.
+    domain_id : int or None
+        ROS domain; None means that of the environment.
+    simulator : mapping or None
+        Parameters of the simulator node if one has to be started, e.g. ``{"scene": "optical"}``.
+    timeout_s : float
+        Deadline of each request [s]; starting a simulator may take up to `start_timeout_s`.
+
+    Raises
+    ------
+    InvalidRequest, RequestRefused
+        If an argument cannot be accepted.
+    SimulationClosed, DeadlineExceeded
+        If there is no simulator and none could be started.
+    """
+
+    def __init__(
+        self,
+        main_frame_active: bool = True,
+        object_frame_active: bool = True,
+        category_frame_active: bool = True,
+        flow_frame_active: bool = True,
+        depth_frame_active: bool = True,
+        width: int = 640,
+        height: int = 480,
+        *,
+        views: Sequence[str] = (),
+        vertical_fov_deg: float = 60.0,
+        near_m: float = 0.05,
+        far_m: float = 100.0,
+        depth_range_m: float = 10.0,
+        following: bool = True,
+        name: str = "",
+        namespace: str = "/sailenv",
+        domain_id: int | None = None,
+        simulator: Mapping[str, object] | None = None,
+        timeout_s: float = 10.0,
+        start_timeout_s: float = 60.0,
+    ) -> None:
+        active = {
+            "rgb": main_frame_active,
+            "depth": depth_frame_active,
+            "category": category_frame_active,
+            "instance": object_frame_active,
+            "flow": flow_frame_active,
+        }
+        wanted = [view for view, is_active in active.items() if is_active]
+        self._spec = AgentSpec(
+            name=name or f"agent_{uuid.uuid4().hex[:10]}",
+            intrinsics=CameraIntrinsics(
+                width=width,
+                height=height,
+                vertical_fov_deg=vertical_fov_deg,
+                near_m=near_m,
+                far_m=far_m,
+            ),
+            depth_range_m=depth_range_m,
+            rate_hz=0.0,
+            views=checked_views([*wanted, *views]),
+            following=following,
+        )
+        self._lock = threading.RLock()
+        self._topics: AgentTopics | None = None
+        self._closed = False
+        self.recaptured = 0
+        super().__init__(
+            namespace=namespace,
+            domain_id=domain_id,
+            simulator=simulator,
+            timeout_s=timeout_s,
+            start_timeout_s=start_timeout_s,
+        )
+        atexit.register(self.close)
+        try:
+            self.register()
+        except BaseException:
+            self.close()
+            raise
+
+    # -- life ------------------------------------------------------------------------------
+
+    @property
+    def id(self) -> str:
+        """Name of this agent in the simulator, and of its topics."""
+        return self._spec.name
+
+    def register(self) -> None:
+        """Make the agent known to the simulator; done on construction, needed after `delete`."""
+        with self._lock:
+            if self._topics is not None:
+                return
+            request = RegisterAgent.Request(agent=agent_spec_to_msg(self._spec))
+            # Readers first: the agent's publishers then know them from their first message on.
+            topics = AgentTopics(self._connection, self.id, self._spec.views)
+            try:
+                answer = self._call(RegisterAgent, "register_agent", request)
+                self._topics = topics
+                self._spec = agent_spec_from_msg(answer.accepted)
+                topics.await_publishers(self._timeout_s)
+            except BaseException:
+                topics.close()
+                self._topics = None
+                raise
+
+    def delete(self) -> None:
+        """Remove the agent from the simulator; a second call does nothing."""
+        with self._lock:
+            if self._topics is not None:
+                self._topics.close()
+                self._topics = None
+                self._connection.forget_services(self.id)
+                self._call(DeleteAgent, "delete_agent", DeleteAgent.Request(name=self.id))
+
+    def close(self) -> None:
+        """Remove the agent and disconnect; a second call does nothing.
+
+        A simulator that was started for this agent ends with the last one that uses it.
+        """
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            atexit.unregister(self.close)
+            self._timeout_s = min(self._timeout_s, END_S)
+            try:
+                self.delete()
+            except SailenvError:
+                pass  # the simulator is gone, and with it the agent
+            finally:
+                self._release()
+
+    def __enter__(self) -> Agent:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    # -- frames ----------------------------------------------------------------------------
+
+    def get_frame(self, *, timeout_s: float | None = None) -> dict[str, Any]:
+        """Have one frame rendered now and give it.
+
+        It shows the world after everything that this agent asked for before.
+
+        Parameters
+        ----------
+        timeout_s : float or None
+            Deadline [s]; None means the agent's own.
+
+        Returns
+        -------
+        frame : dict
+            See `sailenv_ros.agent.frame_dict.frame_dict`; every array is the caller's own.
+
+        Raises
+        ------
+        SimulatorLost
+            If the simulator has ended.
+        DeadlineExceeded
+            If no complete frame arrived in time; `recaptured` counts the attempts that were
+            repeated because images did not arrive.
+        """
+        limit_s = self._timeout_s if timeout_s is None else timeout_s
+        deadline = time.monotonic() + limit_s
+        with self._lock:
+            for attempt in range(ATTEMPTS):
+                left_s = deadline - time.monotonic()
+                is_last = attempt == ATTEMPTS - 1
+                frame = self._capture(left_s, left_s if is_last else min(left_s, ATTEMPT_S))
+                if frame is not None:
+                    return frame
+                self.recaptured += 1
+        raise DeadlineExceeded(f"the images of a frame of agent {self.id!r}", limit_s)
+
+    # -- where the agent is ----------------------------------------------------------------
+
+    def get_position(self) -> tuple[float, float, float]:
+        """Give the camera's world coordinates [m]."""
+        return self.get_pose().position_m
+
+    def set_position(self, position: ArrayLike, *, teleport: bool = False) -> None:
+        """Move the camera to world coordinates [m].
+
+        A set pose is motion, which flow shows; `teleport` cuts the past off instead.
+        """
+        point = point_to_msg(vector("position", position))
+        request = SetPosition.Request(position=point, teleport=teleport)
+        self._call_own(SetPosition, "set_position", request)
+
+    def get_rotation(self) -> tuple[float, float, float]:
+        """Give the camera's roll, pitch, yaw about fixed axes [deg]."""
+        return self.get_pose().rpy_deg
+
+    def set_rotation(self, rotation: ArrayLike, *, teleport: bool = False) -> None:
+        """Turn the camera to roll, pitch, yaw about fixed axes [deg]."""
+        roll, pitch, yaw = vector("rotation (roll, pitch, yaw)", rotation)
+        request = SetRotation.Request(
+            roll_deg=roll, pitch_deg=pitch, yaw_deg=yaw, teleport=teleport
+        )
+        self._call_own(SetRotation, "set_rotation", request)
+
+    def get_pose(self) -> Pose:
+        """Give the pose of the camera's body (x forward, y left, z up) in the world."""
+        return pose_from_msg(self._call_own(GetPose, "get_pose", GetPose.Request()).pose.pose)
+
+    def set_pose(self, pose: Pose, *, teleport: bool = False) -> None:
+        """Move and turn the camera."""
+        request = SetPose.Request(pose=pose_to_msg(pose), teleport=teleport)
+        self._call_own(SetPose, "set_pose", request)
+
+    def toggle_follow(self) -> bool:
+        """Begin or end to follow the scene's mover; give the new state."""
+        self._call_own(Trigger, "toggle_follow", Trigger.Request())
+        return bool(self._call_own(GetPose, "get_pose", GetPose.Request()).following)
+
+    def set_follow(self, following: bool) -> None:
+        """Follow the scene's mover or stop."""
+        self._call_own(SetBool, "set_follow", SetBool.Request(data=following))
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _call_own(self, srv_type: Any, service: str, request: Any) -> Any:
+        if self._topics is None:
+            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
+        return self._call(srv_type, f"{self.id}/{service}", request)
+
+    def _capture(self, timeout_s: float, images_timeout_s: float) -> dict[str, Any] | None:
+        """Have a frame rendered and sent; give None if its images did not arrive."""
+        deadline = time.monotonic() + timeout_s
+        if self._topics is None:
+            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
+        self._topics.clear()
+        request = Capture.Request(views=list(self._spec.views))
+        service = f"{self.id}/capture"
+        answer = self._connection.call(Capture, service, request, timeout_s)
+        left_s = min(images_timeout_s, max(0.0, deadline - time.monotonic()))
+        try:
+            bundle = self._topics.take(answer.sequence, left_s)
+        except SimulatorLost:
+            raise
+        except DeadlineExceeded:
+            return None
+        if set(bundle.images) != set(self._spec.views):
+            return None
+        # The ids of a frame are to be found in `instances` from now on.
+        revision = bundle.info.revision
+        self._await_info(lambda info: info.revision >= revision, "what the frame shows")
+        return frame_of_bundle(bundle, self._spec.intrinsics)

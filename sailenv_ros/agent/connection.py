@@ -1,0 +1,247 @@
+"""One private ROS context and its thread: requests with deadlines, the scene as it is now.
+
+All Agents of a process that talk to one simulator share a connection, so that they share its
+memory and its discovery. It lives beside whatever the user does with rclpy.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import threading
+import time
+import uuid
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
+from sailenv_msgs.srv import RegisterAgent
+from sailenv_msgs_py.scene_info import scene_info_from_msg
+from sailenv_ros.errors import DeadlineExceeded, RequestRefused, SimulationClosed, SimulatorLost
+from sailenv_ros.presence import simulator_is_present
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.transport import use_shared_memory_profile
+
+__all__ = ["Connection"]
+
+_log = logging.getLogger(__name__)
+
+LOOK_INTERVAL_S = 0.1
+"""How often a wait looks whether the simulator still lives [s]."""
+
+POLL_INTERVAL_S = 0.005
+"""How often a condition of the ROS graph is looked at, which tells of no change by itself [s]."""
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Connection:
+    """A client's node in a context of its own.
+
+    Parameters
+    ----------
+    domain_id : int
+    namespace : str
+        The simulator's, e.g. ``"/sailenv"``.
+    """
+
+    def __init__(self, domain_id: int, namespace: str) -> None:
+        self.domain_id = domain_id
+        self.namespace = namespace
+        self._process_id = os.getpid()
+        self._info: SceneInfo | None = None
+        self._changed = threading.Condition()
+        self._closed = False
+        self._clients: dict[str, Any] = {}
+        self._is_alive: Callable[[], bool] = lambda: True
+        use_shared_memory_profile()
+        self._context = Context()
+        # No arguments: those on this process's command line are not for us.
+        rclpy.init(args=[], context=self._context, domain_id=domain_id)
+        self.node = Node(
+            f"client_{os.getpid()}_{uuid.uuid4().hex[:6]}",
+            context=self._context,
+            namespace=namespace,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self.node.create_subscription(SceneInfoMsg, "scene_info", self._take_info, _LATCHED)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._thread = threading.Thread(target=self._spin, name="sailenv-client", daemon=True)
+        self._thread.start()
+
+    # -- the simulator ---------------------------------------------------------------------
+
+    def watch(self, is_alive: Callable[[], bool]) -> None:
+        """Have every wait break off once the simulator lives no more."""
+        self._is_alive = is_alive
+
+    def simulator_lives(self) -> bool:
+        """Say whether nothing is known of the simulator's end."""
+        return self._is_alive()
+
+    def simulator_answers(self) -> bool:
+        """Say whether there is a simulator that takes requests now."""
+        return bool(self._client(RegisterAgent, "register_agent").service_is_ready())
+
+    def simulator_is_here(self) -> bool:
+        """Say whether a simulator of this name runs on this host."""
+        return simulator_is_present(self.domain_id, self.namespace)
+
+    # -- requests --------------------------------------------------------------------------
+
+    def call(self, srv_type: Any, service: str, request: Any, timeout_s: float) -> Any:
+        """Ask a service of the simulator.
+
+        Parameters
+        ----------
+        srv_type : type
+        service : str
+            Its name within the namespace.
+        request : message
+        timeout_s : float
+            Deadline for everything [s].
+
+        Returns
+        -------
+        response : message
+            One that says success.
+
+        Raises
+        ------
+        RequestRefused
+            With the simulator's own sentence.
+        SimulatorLost
+            If the simulator has ended.
+        DeadlineExceeded
+            If there was no answer in time.
+        """
+        deadline = time.monotonic() + timeout_s
+        client = self._client(srv_type, service)
+        what = f"the service {self.namespace}/{service}"
+        self.wait_until(client.service_is_ready, what, timeout_s)
+        answered = threading.Event()
+        future = client.call_async(request)
+        future.add_done_callback(lambda _: answered.set())
+        try:
+            self._wait(answered.wait, f"an answer of {what}", deadline, timeout_s)
+        except DeadlineExceeded:
+            client.remove_pending_request(future)
+            raise
+        response = future.result()
+        if not response.success:
+            raise RequestRefused(service, response.message)
+        return response
+
+    def forget_services(self, prefix: str) -> None:
+        """Free the clients of the services below that name."""
+        for service in [name for name in self._clients if name.startswith(f"{prefix}/")]:
+            self.node.destroy_client(self._clients.pop(service))
+
+    # -- waiting ---------------------------------------------------------------------------
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last."""
+        if self._info is None:
+            raise SimulationClosed("no simulator has announced its scene yet")
+        return self._info
+
+    def await_info(
+        self, condition: Callable[[SceneInfo], bool], what: str, timeout_s: float
+    ) -> SceneInfo:
+        """Wait until the announced scene is as it should be."""
+        found: list[SceneInfo] = []
+
+        def met(interval_s: float) -> bool:
+            with self._changed:
+                if self._info is None or not condition(self._info):
+                    self._changed.wait(interval_s)
+                if self._info is not None and condition(self._info):
+                    found.append(self._info)
+            return bool(found)
+
+        self._wait(met, what, time.monotonic() + timeout_s, timeout_s)
+        return found[0]
+
+    def wait_until(self, condition: Callable[[], bool], what: str, timeout_s: float) -> None:
+        """Wait for a condition of the ROS graph.
+
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If the simulator ended meanwhile, or the condition was not met in time.
+        """
+        never = threading.Event()
+
+        def met(interval_s: float) -> bool:
+            return condition() or never.wait(min(interval_s, POLL_INTERVAL_S)) or condition()
+
+        self._wait(met, what, time.monotonic() + timeout_s, timeout_s)
+
+    def wait_for(self, met: Callable[[float], bool], what: str, timeout_s: float) -> None:
+        """Wait with a function that waits up to so many seconds and says whether it was enough."""
+        self._wait(met, what, time.monotonic() + timeout_s, timeout_s)
+
+    def _wait(
+        self, met: Callable[[float], bool], what: str, deadline: float, timeout_s: float
+    ) -> None:
+        if os.getpid() != self._process_id:
+            raise SimulationClosed("this process was forked; make an Agent of its own in it")
+        while not met(max(0.0, min(LOOK_INTERVAL_S, deadline - time.monotonic()))):
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            # What came in before the simulator ended is still taken.
+            if not self._is_alive() and not met(0.0):
+                raise SimulatorLost(what, timeout_s)
+            if time.monotonic() >= deadline:
+                raise DeadlineExceeded(what, timeout_s)
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _client(self, srv_type: Any, service: str) -> Any:
+        if self._closed:
+            raise SimulationClosed("the Agent was closed")
+        if service not in self._clients:
+            self._clients[service] = self.node.create_client(srv_type, service)
+        return self._clients[service]
+
+    def _take_info(self, msg: SceneInfoMsg) -> None:
+        info = scene_info_from_msg(msg)
+        with self._changed:
+            self._info = info
+            self._changed.notify_all()
+
+    def _spin(self) -> None:
+        while not self._closed and self._context.ok():
+            try:
+                self._executor.spin()
+            except ExternalShutdownException:
+                return
+            except Exception:
+                # A message that cannot be read must not end the thread that reads all others.
+                if not self._closed:
+                    _log.exception("a message of the simulator could not be taken")
+
+    def close(self) -> None:
+        """End the thread and free the context; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        with self._changed:
+            self._changed.notify_all()
+        self._executor.shutdown(0)
+        if self._thread is not threading.current_thread():
+            self._thread.join(5.0)
+        self.node.destroy_node()
+        with contextlib.suppress(RuntimeError):  # the interpreter's end may have come before
+            self._context.try_shutdown()

@@ -1,0 +1,125 @@
+"""One frame as the original client's dict: `main`, `category`, `object`, `flow`, `depth` and more.
+
+Views of a frame in, a plain dict of the caller's own arrays out. Knows no ROS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.camera import Camera
+from sailenv_ros.labels import instance_colours
+
+__all__ = ["depth_picture", "frame_dict"]
+
+_INSTANCE_BGR = np.ascontiguousarray(instance_colours()[:, ::-1])
+
+
+def frame_dict(
+    views: Mapping[str, NDArray[Any]],
+    *,
+    camera: Camera,
+    depth_range_m: float,
+    scene: str,
+    sequence: int,
+    stamp_ns: int,
+    dt_ns: int,
+) -> dict[str, Any]:
+    """Make the dict of one frame.
+
+    Parameters
+    ----------
+    views : mapping of str to array
+        As `sailenv_ros.frame.VIEWS` says; handed over: arrays are written to and passed on.
+    camera : Camera
+        What the frame was seen by.
+    depth_range_m : float
+        Depth that the 8-bit depth picture shows as black [m].
+    scene : str
+    sequence, stamp_ns, dt_ns : int
+        Number of the frame, its simulated time [ns], time since the frame that flow refers to [ns].
+
+    Returns
+    -------
+    frame : dict
+        Of the views that there are: ``main`` (H, W, 3) uint8 BGR; ``depth`` (H, W, 1) uint8, nearer
+        is lighter, and ``depth_m`` (H, W) float32 [m]; ``category`` (H, W) uint8; ``instance``
+        (H, W) uint16 and ``object`` (H, W, 3) uint8 BGR, one colour per instance; ``flow``
+        (H, W, 2) float32 [px/s], 0 where ``flow_valid`` (H, W) bool is False; others by their
+        names. Besides ``sizes`` (bytes of each view as received), ``deltaTime`` and ``dt`` [s],
+        ``stamp_ns``, ``sequence``, ``scene``, ``K`` (3, 3), ``world_from_camera`` (4, 4) of the
+        optical frame.
+    """
+    frame: dict[str, Any] = {}
+    sizes: dict[str, int] = {}
+    for view, values in views.items():
+        name, arrays = _entries(view, values, camera.intrinsics.near_m, depth_range_m)
+        sizes[name] = values.nbytes
+        frame.update(arrays)
+    frame.update(
+        sizes=sizes,
+        deltaTime=dt_ns * 1e-9,
+        dt=dt_ns * 1e-9,
+        stamp_ns=stamp_ns,
+        sequence=sequence,
+        scene=scene,
+        K=camera.intrinsics.K,
+        world_from_camera=camera.world_from_camera.copy(),
+    )
+    return frame
+
+
+def depth_picture(
+    depth_m: NDArray[np.float32], *, near_m: float, range_m: float
+) -> NDArray[np.uint8]:
+    """Show depth as grey: 255 at the near plane, linearly down to 0 at the range and beyond.
+
+    Parameters
+    ----------
+    depth_m : (H, W) float32
+        Depth [m]; ``inf`` (nothing hit) becomes 0, ``nan`` (nearer than the near plane) 255.
+    near_m, range_m : float
+        Depths that are shown as 255 and as 0 [m].
+
+    Returns
+    -------
+    picture : (H, W) uint8
+        A new array.
+    """
+    scale = np.float32(255.0 / (range_m - near_m))
+    grey = (np.float32(range_m) - depth_m) * scale
+    grey += np.float32(0.5)
+    # fmin takes the number of a number and a NaN, which is just what is wanted of the too near.
+    np.fmin(grey, np.float32(255.0), out=grey)
+    np.maximum(grey, np.float32(0.0), out=grey)
+    return grey.astype(np.uint8)
+
+
+def _entries(
+    view: str, values: NDArray[Any], near_m: float, range_m: float
+) -> tuple[str, dict[str, NDArray[Any]]]:
+    """Give the original's name for a view, and the dict's entries that come of it."""
+    if view == "rgb":
+        return "main", {"main": _channels_reversed(values)}
+    if view == "depth":
+        picture = depth_picture(values, near_m=near_m, range_m=range_m)
+        return "depth", {"depth": picture[..., None], "depth_m": values}
+    if view == "instance":
+        return "object", {"object": np.take(_INSTANCE_BGR, values, axis=0), "instance": values}
+    if view == "flow":
+        invalid = np.isnan(values[..., 0])
+        values[invalid] = 0.0
+        return "flow", {"flow": values, "flow_valid": ~invalid}
+    return view, {view: values}
+
+
+def _channels_reversed(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    # Channel by channel: four times as fast as copying picture[..., ::-1].
+    result = np.empty_like(picture)
+    for channel in range(3):
+        result[..., channel] = picture[..., 2 - channel]
+    return result

@@ -1,0 +1,143 @@
+"""Connections that the Agents of a process share, and the simulator that they may have started.
+
+`acquire` gives a link to a simulator that answers: it joins a running one or starts one. The
+simulator that was started here ends with the last Agent that is linked to it.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sailenv_ros.agent.connection import Connection
+from sailenv_ros.agent.simulator_process import SimulatorProcess
+from sailenv_ros.errors import DeadlineExceeded, SimulatorLost
+
+__all__ = ["Link", "acquire", "release"]
+
+DISCOVERY_S = 1.0
+"""How long a simulator on another host may take to be found before one is started here [s]."""
+
+
+@dataclass(slots=True, eq=False)
+class Link:
+    """A connection with the number of its users.
+
+    Attributes
+    ----------
+    connection : Connection
+    process : SimulatorProcess or None
+        The simulator, if it was started here.
+    users : int
+    """
+
+    connection: Connection
+    process: SimulatorProcess | None = None
+    users: int = 0
+
+    def close(self) -> None:
+        """End the connection, and the simulator if it was started here."""
+        self.connection.close()
+        if self.process is not None:
+            self.process.close()
+
+
+_links: dict[tuple[int, str], Link] = {}
+_lock = threading.Lock()
+
+
+def acquire(
+    domain_id: int, namespace: str, parameters: Mapping[str, object], timeout_s: float
+) -> Link:
+    """Connect to the simulator of that name; start it if there is none.
+
+    Parameters
+    ----------
+    domain_id : int
+    namespace : str
+        Full namespace, e.g. ``"/sailenv"``.
+    parameters : mapping
+        Of the node, if it is started.
+    timeout_s : float
+        Deadline for the simulator to answer [s].
+
+    Raises
+    ------
+    SimulationClosed
+        If a simulator was started and ended at once; with its own last words.
+    DeadlineExceeded
+        If none answered in time.
+    """
+    with _lock:
+        key = (domain_id, namespace)
+        link = _links.get(key)
+        if link is None or not link.connection.simulator_lives():
+            # Those who still hold the old link close it when they close.
+            link = _links[key] = _connect(domain_id, namespace, parameters, timeout_s)
+        link.users += 1
+        return link
+
+
+def release(link: Link) -> None:
+    """Say that one user of a link is done with it."""
+    with _lock:
+        link.users -= 1
+        if link.users == 0:
+            key = (link.connection.domain_id, link.connection.namespace)
+            if _links.get(key) is link:
+                del _links[key]
+            link.close()
+
+
+def _connect(
+    domain_id: int, namespace: str, parameters: Mapping[str, object], timeout_s: float
+) -> Link:
+    link = Link(Connection(domain_id, namespace))
+    connection = link.connection
+    try:
+        if not connection.simulator_is_here() and not _answers_soon(connection):
+            link.process = SimulatorProcess(domain_id, namespace, parameters)
+            connection.watch(link.process.is_alive)
+        try:
+            _await_answer(connection, timeout_s)
+        except SimulatorLost:
+            _join_the_winner(link)
+            _await_answer(connection, timeout_s)
+        if link.process is None and connection.simulator_is_here():
+            connection.watch(connection.simulator_is_here)
+    except BaseException:
+        link.close()
+        raise
+    return link
+
+
+def _join_the_winner(link: Link) -> None:
+    """Go on with the simulator that another process started at the same time, if there is one.
+
+    Raises
+    ------
+    SimulationClosed
+        If ours ended for another reason.
+    """
+    assert link.process is not None
+    failure = link.process.failure()
+    link.process.close()
+    link.process = None
+    if not link.connection.simulator_is_here():
+        raise failure
+    link.connection.watch(lambda: True)
+
+
+def _await_answer(connection: Connection, timeout_s: float) -> None:
+    what = f"a simulator in {connection.namespace} of ROS domain {connection.domain_id}"
+    connection.wait_until(connection.simulator_answers, what, timeout_s)
+    connection.await_info(lambda info: True, f"the scene_info of {what}", timeout_s)
+
+
+def _answers_soon(connection: Connection) -> bool:
+    try:
+        connection.wait_until(connection.simulator_answers, "a simulator", DISCOVERY_S)
+    except DeadlineExceeded:
+        return False
+    return True

@@ -1,0 +1,124 @@
+"""The topics of one agent as its client reads them: whole frames, by number.
+
+Messages arrive in the connection's thread and are matched there; the Agent takes the frame that
+it asked for. Subscribes before the agent exists, so that its publishers find their readers at once.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+
+from sailenv_msgs.msg import FrameInfo
+from sailenv_msgs_py.stamps import ns_from_stamp
+from sailenv_ros.agent.connection import Connection
+from sailenv_ros.agent.frame_sync import Bundle, FrameSync
+
+__all__ = ["AgentTopics"]
+
+_QOS = QoSProfile(depth=3)
+
+
+class AgentTopics:
+    """Subscriptions to an agent's frame_info and to those views of it that are wanted.
+
+    Parameters
+    ----------
+    connection : Connection
+    agent : str
+        Its name; it need not exist yet.
+    views : tuple of str
+    """
+
+    def __init__(self, connection: Connection, agent: str, views: tuple[str, ...]) -> None:
+        self._connection = connection
+        self._agent = agent
+        self._sync = FrameSync()
+        self._changed = threading.Condition()
+        self._newest: Bundle | None = None
+        self._subscriptions: dict[str, Any] = {}
+        self._subscribe("frame_info", FrameInfo, self._take_info)
+        self.add_views(views)
+
+    @property
+    def incomplete(self) -> int:
+        """How many frames were given up because an image of theirs never came."""
+        return self._sync.incomplete
+
+    def add_views(self, views: tuple[str, ...]) -> None:
+        """Subscribe to more views."""
+        for view in views:
+            if view not in self._subscriptions:
+                self._subscribe(view, Image, self._taker(view))
+
+    def await_publishers(self, timeout_s: float) -> None:
+        """Wait until every topic has a publisher."""
+        topics = self._subscriptions.values()
+        self._connection.wait_until(
+            lambda: all(topic.get_publisher_count() for topic in topics),
+            f"the topics of agent {self._agent!r}",
+            timeout_s,
+        )
+
+    def clear(self) -> None:
+        """Forget what came so far."""
+        with self._changed:
+            self._sync.clear()
+            self._newest = None
+
+    def take(self, sequence: int, timeout_s: float) -> Bundle:
+        """Wait for the frame of that number.
+
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If it did not come.
+        """
+        taken: list[Bundle] = []
+
+        def met(interval_s: float) -> bool:
+            with self._changed:
+                if self._newest is None or self._newest.sequence != sequence:
+                    self._changed.wait(interval_s)
+                if self._newest is not None and self._newest.sequence == sequence:
+                    taken.append(self._newest)
+                    self._newest = None
+            return bool(taken)
+
+        self._connection.wait_for(met, f"frame {sequence} of agent {self._agent!r}", timeout_s)
+        return taken[0]
+
+    def close(self) -> None:
+        """End the subscriptions."""
+        for subscription in self._subscriptions.values():
+            self._connection.node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+
+    def _subscribe(self, topic: str, kind: type, callback: Callable[[Any, Any], None]) -> None:
+        self._subscriptions[topic] = self._connection.node.create_subscription(
+            kind, f"{self._agent}/{topic}", callback, _QOS
+        )
+
+    def _taker(self, view: str) -> Callable[[Image, Any], None]:
+        def take(msg: Image, about: Any) -> None:
+            stamp_ns = ns_from_stamp(msg.header.stamp)
+            with self._changed:
+                self._deliver(self._sync.add_image(view, stamp_ns, about["source_timestamp"], msg))
+
+        return take
+
+    def _take_info(self, msg: FrameInfo, about: Any) -> None:
+        stamp_ns = ns_from_stamp(msg.header.stamp)
+        views = tuple(msg.views)
+        with self._changed:
+            sent_ns = about["source_timestamp"]
+            self._deliver(self._sync.add_info(msg.sequence, stamp_ns, views, sent_ns, msg))
+
+    def _deliver(self, bundle: Bundle | None) -> None:
+        if bundle is not None:
+            self._newest = bundle
+            self._changed.notify_all()
