@@ -1,0 +1,39 @@
+"""One renderer for all tests of a process: contexts are slow to make."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from numpy.typing import NDArray
+
+from sailenv_ros.camera import Camera
+from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.snapshot import Observation, WorldSnapshot
+
+Render = Callable[..., dict[str, NDArray[Any]]]
+
+
+@pytest.fixture(scope="session")
+def renderer() -> Iterator[Renderer]:
+    """The renderer under test."""
+    made = Renderer()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def render(renderer: Renderer) -> Render:
+    """Render views of a snapshot: ``render(snapshot, camera, *views, past=(snapshot, camera))``."""
+
+    def call(
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        *views: str,
+        past: tuple[WorldSnapshot, Camera] | None = None,
+    ) -> dict[str, NDArray[Any]]:
+        previous = None if past is None else Observation(snapshot=past[0], camera=past[1])
+        return dict(renderer.render(snapshot, previous, camera, views).views)
+
+    return call
