@@ -1,0 +1,158 @@
+"""A view of numbers as colours: flow by direction and speed, depth by a ramp, ids by tables.
+
+Each function takes one view as `sailenv_ros.frame.VIEWS` describes it and gives a new array.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.labels import CategoryTable, colour_instances
+
+__all__ = ["colour_categories", "colour_depth", "colour_flow", "grey_depth", "view_picture"]
+
+Rgb = NDArray[np.uint8]
+
+DEPTH_RANGE_M = 10.0
+
+
+def colour_flow(flow: NDArray[np.float32], *, full_px_s: float | None = None) -> Rgb:
+    """Show flow as hue by direction and value by speed, at full saturation.
+
+    Parameters
+    ----------
+    flow : (H, W, 2) float32
+        Velocity in the image [px/s], u right, v down; NaN where it does not exist.
+    full_px_s : float or None
+        Speed that is shown at full brightness [px/s]; None means the fastest of the picture.
+
+    Returns
+    -------
+    rgb : (H, W, 3) uint8
+        Red is to the right, then yellow-green down, cyan left, violet up; black stands still or
+        has no flow.
+    """
+    u, v = np.nan_to_num(flow[..., 0]), np.nan_to_num(flow[..., 1])
+    speed = np.hypot(u, v)
+    full = float(speed.max(initial=0.0)) if full_px_s is None else full_px_s
+    value = np.minimum(speed / full, 1.0) if full > 0.0 else np.zeros_like(speed)
+    sixth = np.arctan2(v, u) * np.float32(3.0 / math.pi)
+    # The textbook conversion from hue and value at saturation 1, without its six cases.
+    distance = np.abs(np.mod(sixth[..., None] + np.array([0.0, 4.0, 2.0], np.float32), 6.0) - 3.0)
+    full_hue = np.clip(distance - 1.0, 0.0, 1.0)
+    return (255.0 * value[..., None] * full_hue + 0.5).astype(np.uint8)
+
+
+def grey_depth(
+    depth_m: NDArray[np.float32], *, near_m: float = 0.0, range_m: float = DEPTH_RANGE_M
+) -> NDArray[np.uint8]:
+    """Show depth as grey: 255 at the near plane, linearly down to 0 at the range and beyond.
+
+    Parameters
+    ----------
+    depth_m : (H, W) float32
+        Depth [m]; ``inf`` (nothing hit) becomes 0, ``nan`` (nearer than the near plane) 255.
+    near_m, range_m : float
+        Depths that are shown as 255 and as 0 [m].
+
+    Returns
+    -------
+    grey : (H, W) uint8
+    """
+    scale = np.float32(255.0 / (range_m - near_m))
+    grey = (np.float32(range_m) - depth_m) * scale
+    grey += np.float32(0.5)
+    # fmin takes the number of a number and a NaN, which is just what is wanted of the too near.
+    np.fmin(grey, np.float32(255.0), out=grey)
+    np.maximum(grey, np.float32(0.0), out=grey)
+    return grey.astype(np.uint8)
+
+
+def colour_depth(
+    depth_m: NDArray[np.float32], *, near_m: float = 0.0, range_m: float = DEPTH_RANGE_M
+) -> Rgb:
+    """Show depth by a ramp of colours whose brightness falls with depth; see `grey_depth`.
+
+    Returns
+    -------
+    rgb : (H, W, 3) uint8
+    """
+    return np.take(_RAMP, grey_depth(depth_m, near_m=near_m, range_m=range_m), axis=0)
+
+
+def colour_categories(category: NDArray[np.uint8], table: CategoryTable) -> Rgb:
+    """Show each category in its own colour.
+
+    Parameters
+    ----------
+    category : (H, W) uint8
+    table : CategoryTable
+        Grey where it has no such category.
+
+    Returns
+    -------
+    rgb : (H, W, 3) uint8
+    """
+    return np.take(table.palette, category, axis=0)
+
+
+def view_picture(
+    view: str,
+    values: NDArray[Any],
+    *,
+    table: CategoryTable,
+    near_m: float = 0.0,
+    depth_range_m: float = DEPTH_RANGE_M,
+) -> Rgb:
+    """Show any view as a picture.
+
+    Parameters
+    ----------
+    view : str
+        Its name in `sailenv_ros.frame.VIEWS`.
+    values : (H, W) or (H, W, C) array
+        As described there.
+    table : CategoryTable
+        Colours of categories.
+    near_m, depth_range_m : float
+        Ends of the ramp for depth [m].
+
+    Returns
+    -------
+    rgb : (H, W, 3) uint8
+    """
+    if view == "rgb":
+        return values.copy()
+    if view == "depth":
+        return colour_depth(values, near_m=near_m, range_m=depth_range_m)
+    if view == "category":
+        return colour_categories(values, table)
+    if view == "instance":
+        return colour_instances(values)
+    if view == "flow":
+        return colour_flow(values)
+    if view == "normals":
+        return (127.5 * values + 128.0).astype(np.uint8)
+    return np.repeat(np.where(values, 255, 0).astype(np.uint8)[..., None], 3, axis=-1)
+
+
+def _cubehelix() -> Rgb:
+    """Give (256, 3): black to white through colours, brightness rising evenly.
+
+    D. A. Green, "A colour scheme for the display of astronomical intensity images", 2011.
+    """
+    start, turns, hue = 0.0, -0.6, 1.4
+    brightness = np.linspace(0.0, 1.0, 256)
+    angle = 2.0 * math.pi * (start / 3.0 + turns * brightness)
+    amplitude = hue * brightness * (1.0 - brightness) / 2.0
+    mix = np.array([[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]])
+    turn = np.stack([np.cos(angle), np.sin(angle)])
+    rgb = brightness[:, None] + amplitude[:, None] * (mix @ turn).T
+    return (np.clip(rgb, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+
+
+_RAMP = _cubehelix()
