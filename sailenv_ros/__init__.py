@@ -1,3 +1,46 @@
-"""A virtual visual environment: furnished, simulated rooms with exact per-pixel ground truth."""
+"""A virtual visual environment: furnished, simulated rooms with exact per-pixel ground truth.
+
+`Agent` is the way in for people who know no ROS, `Simulation` is the simulator in this process
+and without ROS, `load_scene` reads a scene file. They are imported when they are first used, so
+that importing the package imports neither ROS nor OpenGL.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sailenv_ros.agent.agent import Agent
+    from sailenv_ros.scene.loader import load_scene
+    from sailenv_ros.simulation import Simulation
+
+__all__ = ["Agent", "Simulation", "__version__", "load_scene"]
 
 __version__ = "0.1.0"
+
+_HOMES = {
+    "Agent": "sailenv_ros.agent.agent",
+    "Simulation": "sailenv_ros.simulation",
+    "load_scene": "sailenv_ros.scene.loader",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        value = getattr(importlib.import_module(_HOMES[name]), name)
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").partition(".")[0] not in {"rclpy", "sailenv_msgs", "sensor_msgs"}:
+            raise
+        raise ImportError(
+            f"{name} needs ROS 2 and the interface package sailenv_msgs, and there is no "
+            f"{missing.name} in this Python; scripts/run installs both, or source your ROS 2"
+        ) from missing
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

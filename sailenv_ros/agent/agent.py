@@ -11,6 +11,7 @@ import threading
 import time
 import uuid
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -28,6 +29,7 @@ from sailenv_msgs.srv import (
 from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.transforms import point_to_msg, pose_from_msg, pose_to_msg
 from sailenv_ros.agent.client import SimulatorClient
+from sailenv_ros.agent.frame_pictures import frame_pictures
 from sailenv_ros.agent.received import frame_of_bundle
 from sailenv_ros.agent.topics import AgentTopics
 from sailenv_ros.agents import AgentSpec
@@ -40,6 +42,7 @@ from sailenv_ros.errors import (
 )
 from sailenv_ros.frame import checked_views
 from sailenv_ros.geometry import Pose, vector
+from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 
 __all__ = ["Agent"]
 
@@ -249,6 +252,11 @@ depth_frame_active : bool
                     return frame
                 self.recaptured += 1
         raise DeadlineExceeded(f"the images of a frame of agent {self.id!r}", limit_s)
+
+    def save_contact_sheet(self, path: str | Path, frame: Mapping[str, Any]) -> Path:
+        """Write all views of a frame as one labelled PNG file; give its path."""
+        table, range_m = self._info.categories, self._spec.depth_range_m
+        return save_contact_sheet(path, frame_pictures(frame, table, depth_range_m=range_m))
 
     # -- where the agent is ----------------------------------------------------------------
 

@@ -78,6 +78,11 @@ class SimulatorClient:
         self._link = acquire(_domain(domain_id), name, dict(simulator or {}), start_timeout_s)
         self._connection = self._link.connection
 
+    @property
+    def simulator_pid(self) -> int | None:
+        """Process id of the simulator if it was started here, else None."""
+        return None if self._link.process is None else self._link.process.pid
+
     # -- the scene -------------------------------------------------------------------------
 
     @property

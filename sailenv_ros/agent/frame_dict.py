@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.labels import instance_colours
+from sailenv_ros.pictures.colours import grey_depth
 
-__all__ = ["depth_picture", "frame_dict"]
+__all__ = ["frame_dict"]
 
 _INSTANCE_BGR = np.ascontiguousarray(instance_colours()[:, ::-1])
 
@@ -28,6 +29,7 @@ def frame_dict(
     sequence: int,
     stamp_ns: int,
     dt_ns: int,
+    render_s: float = 0.0,
 ) -> dict[str, Any]:
     """Make the dict of one frame.
 
@@ -42,6 +44,8 @@ def frame_dict(
     scene : str
     sequence, stamp_ns, dt_ns : int
         Number of the frame, its simulated time [ns], time since the frame that flow refers to [ns].
+    render_s : float
+        Wall time that rendering took [s].
 
     Returns
     -------
@@ -51,8 +55,8 @@ def frame_dict(
         (H, W) uint16 and ``object`` (H, W, 3) uint8 BGR, one colour per instance; ``flow``
         (H, W, 2) float32 [px/s], 0 where ``flow_valid`` (H, W) bool is False; others by their
         names. Besides ``sizes`` (bytes of each view as received), ``deltaTime`` and ``dt`` [s],
-        ``stamp_ns``, ``sequence``, ``scene``, ``K`` (3, 3), ``world_from_camera`` (4, 4) of the
-        optical frame.
+        ``stamp_ns``, ``sequence``, ``scene``, ``render_s``, ``K`` (3, 3), and the optical frame's
+        ``world_from_camera`` (4, 4).
     """
     frame: dict[str, Any] = {}
     sizes: dict[str, int] = {}
@@ -67,36 +71,11 @@ def frame_dict(
         stamp_ns=stamp_ns,
         sequence=sequence,
         scene=scene,
+        render_s=render_s,
         K=camera.intrinsics.K,
         world_from_camera=camera.world_from_camera.copy(),
     )
     return frame
-
-
-def depth_picture(
-    depth_m: NDArray[np.float32], *, near_m: float, range_m: float
-) -> NDArray[np.uint8]:
-    """Show depth as grey: 255 at the near plane, linearly down to 0 at the range and beyond.
-
-    Parameters
-    ----------
-    depth_m : (H, W) float32
-        Depth [m]; ``inf`` (nothing hit) becomes 0, ``nan`` (nearer than the near plane) 255.
-    near_m, range_m : float
-        Depths that are shown as 255 and as 0 [m].
-
-    Returns
-    -------
-    picture : (H, W) uint8
-        A new array.
-    """
-    scale = np.float32(255.0 / (range_m - near_m))
-    grey = (np.float32(range_m) - depth_m) * scale
-    grey += np.float32(0.5)
-    # fmin takes the number of a number and a NaN, which is just what is wanted of the too near.
-    np.fmin(grey, np.float32(255.0), out=grey)
-    np.maximum(grey, np.float32(0.0), out=grey)
-    return grey.astype(np.uint8)
 
 
 def _entries(
@@ -106,7 +85,7 @@ def _entries(
     if view == "rgb":
         return "main", {"main": _channels_reversed(values)}
     if view == "depth":
-        picture = depth_picture(values, near_m=near_m, range_m=range_m)
+        picture = grey_depth(values, near_m=near_m, range_m=range_m)
         return "depth", {"depth": picture[..., None], "depth_m": values}
     if view == "instance":
         return "object", {"object": np.take(_INSTANCE_BGR, values, axis=0), "instance": values}

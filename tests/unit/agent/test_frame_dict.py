@@ -7,15 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from sailenv_ros.agent.frame_dict import depth_picture, frame_dict
+from sailenv_ros.agent.frame_dict import frame_dict
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import colour_instances
 
-NAN, INF = math.nan, math.inf
+NAN = math.nan
 CAMERA = Camera(
     intrinsics=CameraIntrinsics(width=8, height=9),
     pose=Pose.from_rpy_deg((1.0, 2.0, 3.0), (0.0, 10.0, 90.0)),
@@ -51,21 +49,6 @@ def test_depth_comes_in_metres_and_as_a_picture() -> None:
     assert frame["depth_m"] is depth
     assert (frame["depth"].shape, frame["depth"].dtype) == ((9, 8, 1), np.uint8)
     assert frame["sizes"] == {"depth": 9 * 8 * 4}
-
-
-def test_the_depth_picture_is_linear_and_nearer_is_lighter() -> None:
-    """255 at the near plane, 0 from the range on; nothing hit is black, too near is white."""
-    depth = np.array([[0.5, 1.5, 2.5, 4.0, INF, NAN, 0.1]], np.float32)
-    picture = depth_picture(depth, near_m=0.5, range_m=2.5)
-    assert picture.tolist() == [[255, 128, 0, 0, 0, 255, 255]]
-
-
-@given(st.lists(st.floats(0.0, 1e4, width=32), min_size=2, max_size=20))
-def test_the_depth_picture_never_grows_with_depth(depths: list[float]) -> None:
-    """Farther is never lighter."""
-    ordered = np.sort(np.array([depths], np.float32))
-    picture = depth_picture(ordered, near_m=0.05, range_m=10.0).astype(int)
-    assert (np.diff(picture) <= 0).all()
 
 
 def test_instances_come_as_ids_and_as_colours() -> None:
