@@ -1,0 +1,211 @@
+"""Time a frame's whole way: render, fill messages, publish, and `Agent.get_frame()` end to end.
+
+    python benchmarks/end_to_end.py [--frames N] [--scene NAME] [--json FILE]
+
+Two simulators of one scene stand side by side in lockstep: one in this process, one as a node that
+an Agent asks. Each round times both, so that what disturbs the machine disturbs both alike. The
+overhead is what an Agent's frame costs beyond the rendering that its own frame_info tells of.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+
+from sailenv_msgs_py.frame_info import header_of_frame
+from sailenv_msgs_py.images import image_from_view
+from sailenv_ros import Agent, Simulation
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.transport import use_shared_memory_profile
+
+SIZES = ((240, 180), (320, 240), (640, 480), (800, 600), (1024, 768), (1280, 960))
+STEPS = 8
+"""Physics steps between two frames: 30 frames per simulated second."""
+
+WARM_UP = 5
+QOS = QoSProfile(depth=3)
+NAMESPACE = f"/bench_{os.getpid()}"
+
+READER = """
+import sys, rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+rclpy.init(args=[])
+node = rclpy.create_node("reader")
+for topic in sys.argv[1:]:
+    node.create_subscription(Image, topic, lambda msg: None, QoSProfile(depth=3))
+try:
+    rclpy.spin(node)
+except BaseException:
+    pass
+finally:
+    rclpy.try_shutdown()
+"""
+
+
+class Stopwatch:
+    """Times of each stage, in milliseconds."""
+
+    def __init__(self) -> None:
+        self.times: dict[str, list[float]] = defaultdict(list)
+
+    @contextmanager
+    def __call__(self, stage: str) -> Iterator[None]:
+        """Time one run of a stage."""
+        began = time.perf_counter()
+        yield
+        self.times[stage].append((time.perf_counter() - began) * 1e3)
+
+    def summary(self) -> dict[str, dict[str, float]]:
+        """Give median and 90th percentile of each stage, without the warm-up."""
+        result = {}
+        for stage, times in self.times.items():
+            kept = sorted(times[WARM_UP:])
+            p90 = kept[min(len(kept) - 1, int(0.9 * len(kept)))]
+            result[stage] = {"median": statistics.median(kept), "p90": p90}
+        return result
+
+
+class Topics:
+    """Five image topics with a reader in another process."""
+
+    def __init__(self) -> None:
+        self._context = Context()
+        rclpy.init(args=[], context=self._context)
+        self._node = Node("bench", context=self._context, namespace=NAMESPACE)
+        names = [f"{NAMESPACE}/bench/{view}" for view in FIVE_VIEWS]
+        self._topics = {
+            view: self._node.create_publisher(Image, name, QOS)
+            for view, name in zip(FIVE_VIEWS, names, strict=True)
+        }
+        self._reader = subprocess.Popen([sys.executable, "-c", READER, *names])
+        await_true(lambda: all(t.get_subscription_count() for t in self._topics.values()))
+
+    def publish(self, images: dict[str, Image]) -> None:
+        """Publish an image on each topic."""
+        for view, image in images.items():
+            self._topics[view].publish(image)
+
+    def close(self) -> None:
+        """End the reader and the node."""
+        self._reader.terminate()
+        self._reader.wait(10)
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+
+def await_true(condition: Callable[[], bool], timeout_s: float = 20.0) -> None:
+    """Wait for a condition."""
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise TimeoutError("the benchmark's reader was not found in time")
+        time.sleep(0.01)
+
+
+def measure(size: tuple[int, int], frames: int, scene: str, topics: Topics) -> dict[str, Any]:
+    """Time every stage at one size of picture."""
+    watch = Stopwatch()
+    width, height = size
+    intrinsics = CameraIntrinsics(width=width, height=height)
+    lockstep = {"scene": scene, "mode": "lockstep", "agent.name": ""}
+    with (
+        Simulation(scene, mode="lockstep") as simulation,
+        Agent(width=width, height=height, namespace=NAMESPACE, simulator=lockstep) as agent,
+    ):
+        simulation.register_agent(AgentSpec(name="bench", intrinsics=intrinsics, rate_hz=0.0))
+        for _ in range(WARM_UP + frames):
+            with watch("physics step"):
+                simulation.step(1)
+            simulation.step(STEPS - 1)
+            agent.step(STEPS)
+            with watch("render, in process"):
+                frame = simulation.capture("bench")
+            with watch("fill messages"):
+                images = filled(frame)
+            with watch("publish"):
+                topics.publish(images)
+            with watch("get_frame, end to end"):
+                received = agent.get_frame()
+            took_ms = watch.times["get_frame, end to end"][-1]
+            watch.times["render, in the node"].append(received["render_s"] * 1e3)
+            watch.times["overhead of get_frame"].append(took_ms - received["render_s"] * 1e3)
+        return {
+            "width": width,
+            "height": height,
+            "ms": watch.summary(),
+            "recaptured": agent.recaptured,
+            "node_rss_mib": resident_mib(agent.simulator_pid),
+            "renderer": simulation.info.renderer,
+        }
+
+
+def filled(frame: Frame) -> dict[str, Image]:
+    """Make the image messages of a frame."""
+    header = header_of_frame(frame)
+    return {view: image_from_view(view, values, header) for view, values in frame.views.items()}
+
+
+def resident_mib(pid: int | None) -> float | None:
+    """Give the resident memory of a process."""
+    if pid is None:
+        return None
+    status = Path(f"/proc/{pid}/status").read_text()
+    line = next(line for line in status.splitlines() if line.startswith("VmRSS"))
+    return int(line.split()[1]) / 1024
+
+
+def show(result: dict[str, Any]) -> None:
+    """Print one size's table."""
+    print(f"\n{result['width']}x{result['height']}  [ms]  {'median':>18} {'p90':>8}")
+    for stage, times in result["ms"].items():
+        print(f"  {stage:<28} {times['median']:8.2f} {times['p90']:8.2f}")
+    print(f"  node RSS {result['node_rss_mib']:.0f} MiB, recaptured {result['recaptured']}")
+
+
+def main() -> None:
+    """Run the benchmark and print its tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--frames", type=int, default=40, help="timed frames of each size")
+    parser.add_argument("--scene", default="optical")
+    parser.add_argument("--size", action="append", help="WIDTHxHEIGHT; may be given repeatedly")
+    parser.add_argument("--json", type=Path, help="write the results here too")
+    options = parser.parse_args()
+    sizes = [tuple(map(int, size.split("x"))) for size in options.size or ()] or SIZES
+    use_shared_memory_profile()
+    topics = Topics()
+    results = []
+    try:
+        for size in sizes:
+            results.append(measure(size, options.frames, options.scene, topics))
+            show(results[-1])
+    finally:
+        topics.close()
+    print(f"\n{results[0]['renderer']}; {platform.processor() or platform.machine()}, ", end="")
+    print(f"{os.cpu_count()} CPUs, Python {platform.python_version()}")
+    if options.json:
+        options.json.write_text(json.dumps(results, indent=1))
+
+
+if __name__ == "__main__":
+    main()
