@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sailenv_ros.errors import AssetError, NameTaken
 from sailenv_ros.labels import Category, CategoryTable
+from sailenv_ros.resources import resource_path
 
 __all__ = ["LAST_FIXED_ID", "load_categories"]
 
@@ -54,11 +55,7 @@ def load_categories(path: Path | None = None) -> CategoryTable:
 
 @lru_cache(maxsize=1)
 def _own_table() -> CategoryTable:
-    return _read(_own_path())
-
-
-def _own_path() -> Path:
-    return Path(__file__).resolve().parents[2] / "config" / "categories.yaml"
+    return _read(resource_path("config", "categories.yaml"))
 
 
 def _read(path: Path) -> CategoryTable:

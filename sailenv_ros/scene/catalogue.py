@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.resources import resource_path
 
 __all__ = ["SceneCatalogue"]
 
@@ -24,7 +25,10 @@ class SceneCatalogue:
     """
 
     def __init__(self, paths: Iterable[Path] = (), *, own: Path | None = None) -> None:
-        self._folders = (*(Path(path) for path in paths), _own_folder() if own is None else own)
+        self._folders = (
+            *(Path(path) for path in paths),
+            resource_path("scenes") if own is None else own,
+        )
 
     @property
     def folders(self) -> tuple[Path, ...]:
@@ -70,7 +74,3 @@ def _is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):  # a name too long, or with a zero byte
         return False
-
-
-def _own_folder() -> Path:
-    return Path(__file__).resolve().parents[2] / "scenes"

@@ -31,7 +31,8 @@ class EnvironmentSpec(SceneModel):
     """What surrounds the objects: ambient light, sky or background colour, exposure."""
 
     ambient: Radiance = Field(
-        default=_STANDARD.ambient, description="light that arrives from everywhere (radiance)"
+        default=_STANDARD.ambient,
+        description="light that arrives from everywhere, besides the sky's (radiance)",
     )
     background: Annotated[Literal["sky", "colour"], Choice(("sky", "colour"))] = Field(
         default=_STANDARD.background, description="what is seen where there is no object"

@@ -146,8 +146,8 @@ class _Composer:
     def _node(self, event: yaml.Event, depth: int) -> Node:
         if isinstance(event, yaml.AliasEvent):
             return self._alias(event)
-        # Every event at this place begins a scalar, a sequence or a mapping.
-        assert isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent)
+        if not isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent):
+            raise self._stop(event, "is no scalar, sequence or mapping")
         if depth > MAX_DEPTH:
             raise self._stop(event, f"is nested deeper than {MAX_DEPTH} levels")
         if event.tag is not None:

@@ -16,15 +16,17 @@ from sailenv_ros.errors import SceneError
 from sailenv_ros.scene import SceneSpec
 from sailenv_ros.scene.dumper import dump_scene
 from tests.unit.scene.reading import read
-from tests.unit.scene.strategies import scenes
+from tests.unit.scene.strategies import scenes, unhurried
 
 
+@unhurried
 @given(scenes)
 def test_a_scene_that_is_dumped_loads_equal(tmp_path_factory: Any, data: dict[str, Any]) -> None:
     spec = SceneSpec.model_validate({**data, "name": "room"})
     assert read(tmp_path_factory.getbasetemp(), dump_scene(spec)) == spec
 
 
+@unhurried
 @given(scenes)
 def test_a_file_and_its_data_give_the_same_scene(
     tmp_path_factory: Any, data: dict[str, Any]
@@ -49,11 +51,13 @@ def _refused_or_read(folder: Path, content: bytes) -> None:
         assert "\n" not in str(fault)
 
 
+@unhurried
 @given(st.binary(max_size=300))
 def test_arbitrary_bytes_give_a_scene_error(tmp_path_factory: Any, content: bytes) -> None:
     _refused_or_read(tmp_path_factory.getbasetemp(), content)
 
 
+@unhurried
 @given(st.text(string.printable, max_size=300))
 def test_arbitrary_text_gives_a_scene_error(tmp_path_factory: Any, content: str) -> None:
     _refused_or_read(tmp_path_factory.getbasetemp(), content.encode())
@@ -79,6 +83,7 @@ _values: st.SearchStrategy[Any] = st.recursive(
 )
 
 
+@unhurried
 @given(st.dictionaries(_words, _values, max_size=8))
 def test_any_structure_of_known_words_gives_a_scene_or_a_scene_error(
     tmp_path_factory: Any, data: dict[str, Any]
@@ -88,6 +93,7 @@ def test_any_structure_of_known_words_gives_a_scene_or_a_scene_error(
     _refused_or_read(tmp_path_factory.getbasetemp(), content)
 
 
+@unhurried
 @given(scenes, st.data())
 def test_one_wrong_value_in_a_good_scene_is_told_where_it_stands(
     tmp_path_factory: Any, data: dict[str, Any], drawn: st.DataObject

@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from sailenv_ros.behaviours import behaviour_kinds
 from sailenv_ros.scene import SceneCatalogue
 from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, scene_schema, schema_text
-from tests.unit.scene.strategies import scenes
+from tests.unit.scene.strategies import scenes, unhurried
 from tests.unit.scene.test_faults import HEAD, VALUES
 
 BEHAVIOURS = {name: kind.parameters for name, kind in behaviour_kinds().items()}
@@ -62,6 +62,7 @@ def test_the_package_s_scenes_fit_it(name: str) -> None:
     _validator(BEHAVIOURS).validate(data)
 
 
+@unhurried
 @given(scenes)
 def test_what_the_loader_accepts_fits_it(data: dict[str, Any]) -> None:
     _validator({"spin": _Spin}).validate(data)

@@ -27,6 +27,7 @@ from sailenv_ros.scene.spec import (
     SpotLightSpec,
     WaypointSpec,
 )
+from tests.unit.scene.strategies import unhurried
 
 
 def test_an_empty_environment_is_the_noun_s_default() -> None:
@@ -75,6 +76,7 @@ def test_hexadecimal_colours_are_srgb(hexadecimal: str, linear: float) -> None:
     assert linear_from_srgb(hexadecimal) == pytest.approx((linear,) * 3, abs=1e-5)
 
 
+@unhurried
 @given(st.integers(0, 254))
 def test_the_srgb_curve_rises(value: int) -> None:
     low, high = (linear_from_srgb(f"#{v:02x}0000")[0] for v in (value, value + 1))
