@@ -1,0 +1,93 @@
+"""What the distribution is and what it installs, for pip and for colcon alike."""
+
+import sys
+from glob import glob
+
+from setuptools import find_packages, setup
+
+PACKAGE = "sailenv_ros"
+
+# No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
+REQUIREMENTS = [
+    "glcontext>=3.0",
+    "moderngl>=5.10",
+    "numba>=0.59",
+    "numpy>=1.26",
+    "opencv-python-headless>=4.8",
+    "pillow>=10.0",
+    # The module pybullet: the original has wheels up to Python 3.11, its fork those from 3.12 on.
+    'pybullet>=3.2.6; python_version < "3.12"',
+    'pybullet-arm64>=3.2.8; python_version >= "3.12"',
+    "pydantic>=2.7",
+    "PyYAML>=6.0",
+    "rich>=13.0",
+    "scipy>=1.11",
+]
+# The names with "jazzy" pin the others; the names without have newer versions of other releases.
+ROS = [
+    "sailenv-msgs",
+    "ros-jazzy-builtin-interfaces",
+    "ros-jazzy-geometry-msgs",
+    "ros-jazzy-rcl-interfaces",
+    "ros-jazzy-rclpy",
+    "ros-jazzy-rmw-fastrtps-cpp",
+    "ros-jazzy-rosgraph-msgs",
+    "ros-jazzy-sensor-msgs",
+    "ros-jazzy-std-msgs",
+    "ros-jazzy-std-srvs",
+]
+DEV = [
+    "colcon-common-extensions",
+    "hypothesis",
+    "import-linter",
+    "jsonschema",
+    "mypy",
+    "pytest>=8.0",
+    "pytest-timeout",
+    "pytest-xdist",
+    "ruff",
+    "types-jsonschema",
+    "types-PyYAML",
+]
+
+
+def data_files() -> list[tuple[str, list[str]]]:
+    """List what lies beside the code, by folder of the prefix."""
+    share = f"share/{PACKAGE}"
+    files = [
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (share, ["package.xml"]),
+        *((f"{share}/{folder}", sorted(glob(f"{folder}/*.*"))) for folder in ("config", "scenes")),
+        (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
+    ]
+    # pip ignores setup.cfg's install_scripts, colcon does not.
+    if {"bdist_wheel", "editable_wheel"} & set(sys.argv):
+        files.append((f"lib/{PACKAGE}", ["resource/sim_node"]))
+    return files
+
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="A virtual visual environment: simulated rooms with exact per-pixel ground truth",
+    license="Apache-2.0",
+    maintainer="sailenv_ros maintainers",
+    maintainer_email="maintainers@users.noreply.github.com",
+    packages=find_packages(include=["sailenv_ros", "sailenv_ros.*", "sailenv_msgs_py"]),
+    package_data={
+        "sailenv_ros": ["py.typed"],
+        "sailenv_ros.render": ["shaders/*"],
+        "sailenv_msgs_py": ["py.typed"],
+    },
+    data_files=data_files(),
+    python_requires=">=3.10",
+    install_requires=REQUIREMENTS,
+    extras_require={"ros": ROS, "dev": DEV},
+    entry_points={
+        "console_scripts": [
+            "sailenv = sailenv_ros.cli.main:main",
+            "sim_node = sailenv_ros.nodes.sim_node:main",
+        ]
+    },
+    zip_safe=False,
+)
