@@ -1,0 +1,73 @@
+"""Keeps topics and services of agents in step with the agents that the simulation has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rclpy.node import Node
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.errors import SailenvError
+from sailenv_ros.nodes.agent_services import AgentServices
+from sailenv_ros.nodes.publishers import AgentPublisher
+from sailenv_ros.nodes.requests import Requests
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation import Simulation
+
+__all__ = ["AgentEndpoints"]
+
+
+@dataclass(slots=True, kw_only=True)
+class _Endpoint:
+    spec: AgentSpec
+    publisher: AgentPublisher
+    services: AgentServices
+
+    def close(self) -> None:
+        # Services first: nobody captures into topics that are about to go.
+        self.services.close()
+        self.publisher.close()
+
+
+class AgentEndpoints:
+    """Topics and services of all agents; used by the executor's thread alone."""
+
+    def __init__(self, node: Node, simulation: Simulation, requests: Requests) -> None:
+        self._node = node
+        self._simulation = simulation
+        self._requests = requests
+        self._endpoints: dict[str, _Endpoint] = {}
+
+    def reconcile(self, info: SceneInfo) -> None:
+        """Make what is missing and remove what belongs to nobody any more."""
+        specs = {spec.name: spec for spec in info.agents}
+        for name, endpoint in list(self._endpoints.items()):
+            spec = specs.get(name)
+            if spec is None or endpoint.publisher.ended or not _same_topics(spec, endpoint.spec):
+                self._endpoints.pop(name).close()
+        for name, spec in specs.items():
+            if name not in self._endpoints:
+                self._add(spec)
+
+    def close(self) -> None:
+        """Remove all of them."""
+        while self._endpoints:
+            self._endpoints.popitem()[1].close()
+
+    def _add(self, spec: AgentSpec) -> None:
+        try:
+            publisher = AgentPublisher(self._node, self._simulation, spec)
+        except SailenvError:
+            return  # deleted meanwhile; the next scene_info says so
+        services = AgentServices(self._node, self._requests, publisher, spec)
+        self._endpoints[spec.name] = _Endpoint(spec=spec, publisher=publisher, services=services)
+
+
+def _same_topics(one: AgentSpec, other: AgentSpec) -> bool:
+    """Say whether two specs differ at most in what their topics do not show."""
+    return (one.intrinsics, one.rate_hz, one.depth_range_m, one.views) == (
+        other.intrinsics,
+        other.rate_hz,
+        other.depth_range_m,
+        other.views,
+    )

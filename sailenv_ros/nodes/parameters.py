@@ -1,0 +1,190 @@
+"""The parameters of sim_node: declared with description, unit and range, read into a dataclass.
+
+They say how to run, never what a scene is. All are read once at the start; a later change is
+refused by ROS with a reason. Knows no simulation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+
+from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
+from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.render.backend import BackendName
+from sailenv_ros.scene_info import TimeMode
+
+__all__ = ["SimParameters", "declare_parameters"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimParameters:
+    """How to run the simulator.
+
+    Attributes
+    ----------
+    scene : str
+    mode : {'realtime', 'lockstep'}
+    real_time_factor : float
+    seed : int
+    paused : bool
+    backend : {'auto', 'gl', 'tiny'}
+    render_device : int or None
+    scene_paths : tuple of Path
+    publish_clock : bool
+    agent : AgentSpec or None
+        The agent that is there from the start.
+    """
+
+    scene: str
+    mode: TimeMode
+    real_time_factor: float
+    seed: int
+    paused: bool
+    backend: BackendName
+    render_device: int | None
+    scene_paths: tuple[Path, ...]
+    publish_clock: bool
+    agent: AgentSpec | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Parameter:
+    default: Any
+    description: str
+    low: float | None = None
+    high: float | None = None
+    choices: tuple[str, ...] = ()
+
+    def descriptor(self) -> ParameterDescriptor:
+        result = ParameterDescriptor(description=self.description, read_only=True)
+        if self.choices:
+            result.additional_constraints = "one of: " + ", ".join(self.choices)
+        if self.low is not None and self.high is not None:
+            if isinstance(self.default, int):
+                span = IntegerRange(from_value=int(self.low), to_value=int(self.high), step=1)
+                result.integer_range = [span]
+            else:
+                bounds = FloatingPointRange(from_value=float(self.low), to_value=float(self.high))
+                result.floating_point_range = [bounds]
+        return result
+
+
+_PARAMETERS: dict[str, _Parameter] = {
+    "scene": _Parameter("optical", "Name of the first scene, or the path of a scene file."),
+    "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
+    "mode": _Parameter(
+        "realtime",
+        "realtime: simulated time follows the wall clock; lockstep: it moves by the step service.",
+        choices=("realtime", "lockstep"),
+    ),
+    "real_time_factor": _Parameter(
+        1.0, "Simulated seconds per wall second, in realtime mode.", 0.1, 10.0
+    ),
+    "seed": _Parameter(0, "Seed of every random number of the scene.", 0, 2**63 - 1),
+    "paused": _Parameter(False, "True: start with simulated time standing still."),
+    "backend": _Parameter(
+        "auto",
+        "Renderer: gl = OpenGL, tiny = slow software fallback, auto = the first that works.",
+        choices=("auto", "gl", "tiny"),
+    ),
+    "render_device": _Parameter(-1, "Number of the EGL device; -1: the first that works.", -1, 63),
+    "publish_clock": _Parameter(True, "True: publish simulated time on /clock."),
+    "agent.name": _Parameter("agent", "Name of the first agent; empty: start without one."),
+    "agent.width": _Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
+    "agent.height": _Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
+    "agent.vertical_fov_deg": _Parameter(60.0, "Full vertical angle of view [deg].", 1.0, 170.0),
+    "agent.near_m": _Parameter(0.05, "Nearest depth that is seen [m].", 1e-3, 1e4),
+    "agent.far_m": _Parameter(100.0, "Farthest depth that is seen [m].", 1e-3, 1e4),
+    "agent.depth_range_m": _Parameter(
+        10.0, "Depth that the 8-bit depth picture shows as black [m].", 1e-3, 1e4
+    ),
+    "agent.rate_hz": _Parameter(
+        30.0, "Frames per simulated second; 0: on request only [Hz].", 0.0, MAX_RATE_HZ
+    ),
+    "agent.views": _Parameter(
+        list(FIVE_VIEWS), "Views of a captured frame unless the request names others.",
+        choices=tuple(VIEWS),
+    ),
+    "agent.following": _Parameter(True, "True: it takes over the pose of its mover."),
+    "agent.mover": _Parameter("", "Name of the mover; empty: the scene's first."),
+}  # fmt: skip
+
+
+def declare_parameters(node: Node) -> SimParameters:
+    """Declare every parameter of the simulator node and read it.
+
+    Raises
+    ------
+    InvalidRequest
+        If a value that was given has the wrong type or is out of range, or a name is unknown.
+    """
+    _refuse_unknown(node)
+    values = {name: _declare(node, name, entry) for name, entry in _PARAMETERS.items()}
+    return SimParameters(
+        scene=values["scene"],
+        mode=cast(TimeMode, values["mode"]),
+        real_time_factor=values["real_time_factor"],
+        seed=values["seed"],
+        paused=values["paused"],
+        backend=cast(BackendName, values["backend"]),
+        render_device=None if values["render_device"] < 0 else values["render_device"],
+        scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
+        publish_clock=values["publish_clock"],
+        agent=_agent(values),
+    )
+
+
+def _declare(node: Node, name: str, entry: _Parameter) -> Any:
+    try:
+        value = node.declare_parameter(name, entry.default, entry.descriptor()).value
+    except InvalidParameterTypeException:
+        wanted = f"of the type of {entry.default!r}"
+        raise InvalidRequest(f"parameter {name}", _given(node, name), wanted) from None
+    except InvalidParameterValueException:
+        unit = entry.description.rstrip(".")
+        wanted = f"from {entry.low:g} to {entry.high:g} ({unit})"
+        raise InvalidRequest(f"parameter {name}", _given(node, name), wanted) from None
+    if entry.choices and isinstance(value, str) and value not in entry.choices:
+        raise UnknownName(f"parameter {name}", value, entry.choices)
+    return value
+
+
+def _given(node: Node, name: str) -> Any:
+    return node._parameter_overrides[name].value  # rclpy tells it nowhere else
+
+
+def _refuse_unknown(node: Node) -> None:
+    """Refuse a misspelt parameter, which ROS would pass over in silence."""
+    for name in node._parameter_overrides:  # rclpy tells it nowhere else
+        ours = name in _PARAMETERS
+        of_ros = name.startswith("qos_overrides.") or node.has_parameter(name)
+        if not ours and not of_ros:
+            raise UnknownName("parameter", name, _PARAMETERS)
+
+
+def _agent(values: dict[str, Any]) -> AgentSpec | None:
+    if not values["agent.name"]:
+        return None
+    return AgentSpec(
+        name=values["agent.name"],
+        intrinsics=CameraIntrinsics(
+            width=values["agent.width"],
+            height=values["agent.height"],
+            vertical_fov_deg=values["agent.vertical_fov_deg"],
+            near_m=values["agent.near_m"],
+            far_m=values["agent.far_m"],
+        ),
+        depth_range_m=values["agent.depth_range_m"],
+        rate_hz=values["agent.rate_hz"],
+        views=tuple(values["agent.views"]),
+        following=values["agent.following"],
+        mover=values["agent.mover"],
+    )

@@ -1,0 +1,204 @@
+"""`Frame` → the topics of one agent; renders nothing that nobody subscribes to.
+
+One thread takes the frames that fall due and publishes them; captured frames are published by
+whoever captured them. Holds no simulation logic.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from copy import copy
+
+from geometry_msgs.msg import PoseStamped
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from sensor_msgs.msg import CameraInfo, Image
+
+from sailenv_msgs.msg import FrameInfo
+from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
+from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.images import image_from_view
+from sailenv_msgs_py.stamps import stamp_from_ns
+from sailenv_msgs_py.transforms import pose_stamped_to_msg
+from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
+from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
+from sailenv_ros.simulation import FrameStream, Simulation
+
+__all__ = ["AgentPublisher"]
+
+_log = logging.getLogger(__name__)
+
+LOOK_INTERVAL_S = 0.05
+"""How often it is looked whether somebody subscribes, while nothing is rendered [s]."""
+
+CHEAPEST_VIEW = "depth"
+"""Rendered when the infos of frames are subscribed to and no image is."""
+
+
+class AgentPublisher:
+    """Publishes one agent's frames, infos and pose.
+
+    Parameters
+    ----------
+    node : Node
+    simulation : Simulation
+    spec : AgentSpec
+        As registered.
+    """
+
+    def __init__(self, node: Node, simulation: Simulation, spec: AgentSpec) -> None:
+        self._node = node
+        self._simulation = simulation
+        self._spec = spec
+        self._images = {view: self._publisher(Image, view) for view in VIEWS}
+        self._camera_info = self._publisher(CameraInfo, "camera_info")
+        self._frame_info = self._publisher(FrameInfo, "frame_info")
+        self._pose = self._publisher(PoseStamped, "pose")
+        self._publishing = threading.Lock()
+        self._closing = threading.Event()
+        self._last_sequence = 0
+        self._last_pose: AgentPose | None = None
+        self._stream: FrameStream | None = None
+        self._thread: threading.Thread | None = None
+        self.overtaken = 0
+        if spec.rate_hz:
+            self._stream = simulation.stream(spec.name, ())
+            self._thread = threading.Thread(
+                target=self._follow, args=(self._stream,), name=f"{spec.name}-frames", daemon=True
+            )
+            self._thread.start()
+
+    @property
+    def ended(self) -> bool:
+        """True once the agent is gone, or this was closed."""
+        return self._closing.is_set() or (self._stream is not None and self._stream.closed)
+
+    def subscribed(self, views: tuple[str, ...]) -> bool:
+        """Say whether somebody subscribes to every one of these views."""
+        return all(_is_subscribed(self._images[view]) for view in views)
+
+    def await_subscribed(self, views: tuple[str, ...], timeout_s: float) -> bool:
+        """Wait a little for subscribers that are just being matched; say whether all are there."""
+        waited_s, interval_s = 0.0, 0.002
+        while not self.subscribed(views):
+            if waited_s >= timeout_s or self._closing.wait(interval_s):
+                return False
+            waited_s += interval_s
+        return True
+
+    def publish(self, frame: Frame) -> tuple[str, ...]:
+        """Publish a frame on those topics of it that somebody subscribes to.
+
+        Returns
+        -------
+        views : tuple of str
+            The views that went out.
+
+        Raises
+        ------
+        SimulationClosed
+            If the agent is gone.
+        """
+        with self._publishing:
+            if self._closing.is_set():
+                raise SimulationClosed(f"agent {self._spec.name!r} was deleted")
+            self._last_sequence = max(self._last_sequence, frame.sequence)
+            return self._publish(frame)
+
+    def close(self) -> None:
+        """End the stream and remove the topics; a second call does nothing."""
+        if self._closing.is_set():
+            return
+        self._closing.set()
+        if self._stream is not None:
+            self._stream.close()
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(1.0)
+        with self._publishing:
+            everything = [*self._images.values(), self._camera_info, self._frame_info, self._pose]
+            for publisher in everything:
+                self._node.destroy_publisher(publisher)
+
+    # -- the thread ------------------------------------------------------------------------
+
+    def _follow(self, stream: FrameStream) -> None:
+        interval_s = min(LOOK_INTERVAL_S, 1.0 / self._spec.rate_hz)
+        while not self._closing.is_set():
+            try:
+                stream.set_views(self._wanted_views())
+                frame = stream.get(interval_s)
+            except DeadlineExceeded:
+                self._pose_alone()
+            except SimulationClosed:
+                return
+            else:
+                self._publish_streamed(frame)
+
+    def _wanted_views(self) -> tuple[str, ...]:
+        wanted = tuple(view for view, topic in self._images.items() if _is_subscribed(topic))
+        infos = _is_subscribed(self._camera_info) or _is_subscribed(self._frame_info)
+        return wanted or ((CHEAPEST_VIEW,) if infos else ())
+
+    def _publish_streamed(self, frame: Frame) -> None:
+        with self._publishing:
+            if self._closing.is_set():
+                return
+            if frame.sequence <= self._last_sequence:
+                # A frame captured on request has overtaken it: stamps never go back on a topic.
+                self.overtaken += 1
+                return
+            self._last_sequence = frame.sequence
+            self._publish(frame)
+
+    def _pose_alone(self) -> None:
+        """Tell where the agent is while no frames are made."""
+        if self._stream is None or self._stream.views or not _is_subscribed(self._pose):
+            return
+        try:
+            pose = self._simulation.get_pose(self._spec.name)
+        except SailenvError:
+            return  # the agent or the simulation is gone, which the stream says next
+        with self._publishing:
+            if pose != self._last_pose and not self._closing.is_set():
+                self._last_pose = pose
+                stamp = stamp_from_ns(pose.sim_time_ns)
+                self._pose.publish(pose_stamped_to_msg(pose.pose, stamp, WORLD_FRAME_ID))
+
+    # -- messages --------------------------------------------------------------------------
+
+    def _publish(self, frame: Frame) -> tuple[str, ...]:
+        header = header_of_frame(frame)
+        sent = []
+        for view, values in frame.views.items():
+            topic = self._images[view]
+            if _is_subscribed(topic):
+                topic.publish(image_from_view(view, values, header))
+                sent.append(view)
+        if _is_subscribed(self._camera_info):
+            self._camera_info.publish(
+                camera_info_from_intrinsics(frame.camera.intrinsics, copy(header))
+            )
+        if _is_subscribed(self._frame_info):
+            self._frame_info.publish(
+                frame_info_to_msg(frame, header, views=sent, depth_range_m=self._spec.depth_range_m)
+            )
+        if _is_subscribed(self._pose):
+            pose = frame.camera.pose
+            self._pose.publish(pose_stamped_to_msg(pose, header.stamp, WORLD_FRAME_ID))
+        return tuple(sent)
+
+    def _publisher(self, kind: type, topic: str) -> Publisher:
+        return self._node.create_publisher(
+            kind,
+            f"{self._spec.name}/{topic}",
+            frame_qos(),
+            event_callbacks=no_events(),
+            qos_overriding_options=overridable(),
+        )
+
+
+def _is_subscribed(topic: Publisher) -> bool:
+    return bool(topic.get_subscription_count())

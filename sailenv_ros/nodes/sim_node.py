@@ -1,0 +1,269 @@
+"""The simulator as a ROS 2 node: `ros2 run sailenv_ros sim_node`.
+
+Parameters in; hosts a `Simulation` and joins it to topics and services, which are other modules.
+Exit status: 0 after SIGINT or SIGTERM, 1 after a fault, 2 where an argument, a parameter or the
+scene is wrong, 3 where another simulator has the namespace already.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+import threading
+from collections.abc import Sequence
+from concurrent.futures import Future
+
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import get_logger
+from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
+
+from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, SimulationClosed
+from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
+from sailenv_ros.nodes.announcements import Announcements
+from sailenv_ros.nodes.executor_thread import ExecutorThread
+from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
+from sailenv_ros.nodes.log_bridge import LogBridge
+from sailenv_ros.nodes.parameters import SimParameters, declare_parameters
+from sailenv_ros.nodes.requests import Requests
+from sailenv_ros.nodes.services import SimulatorServices
+from sailenv_ros.presence import SimulatorLock
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.transport import use_shared_memory_profile
+
+__all__ = ["SimNode", "main"]
+
+NODE_NAME = "sim_node"
+NAMESPACE = "/sailenv"
+
+MAX_DOMAIN_ID = 232
+
+SWITCH_INTERVAL_S = 0.0005
+"""How long one Python thread may keep the others waiting; Python's own 5 ms delays every frame."""
+
+_log = logging.getLogger(f"sailenv_ros.nodes.{NODE_NAME}")  # __name__ may be __main__
+
+
+class SimNode:
+    """A simulation joined to a node's topics and services.
+
+    Parameters
+    ----------
+    node : Node
+    executor : SingleThreadedExecutor
+        Spins the node once `start` was called.
+    simulation : Simulation
+        Owned from now on.
+    parameters : SimParameters
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        executor: SingleThreadedExecutor,
+        simulation: Simulation,
+        parameters: SimParameters,
+    ) -> None:
+        self._node = node
+        self._executor = executor
+        self._simulation = simulation
+        requests = Requests(simulation, executor)
+        self._endpoints = AgentEndpoints(node, simulation, requests)
+        self._announcements = Announcements(
+            node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
+        )
+        self._services = SimulatorServices(node, requests, self._reconcile)
+        self._spinning = ExecutorThread(executor)
+
+    @property
+    def simulation(self) -> Simulation:
+        """The simulation that is hosted."""
+        return self._simulation
+
+    def start(self) -> None:
+        """Begin to publish and to serve."""
+        self._reconcile()
+        self._announcements.begin(self._simulation)
+        self._executor.add_node(self._node)
+        self._spinning.start()
+
+    def close(self, timeout_s: float) -> bool:
+        """End everything but the node; False if the simulation did not end in time."""
+        self._spinning.stop(0.5)
+        self._announcements.end()
+        self._endpoints.close()
+        return finished_within(self._simulation.close, timeout_s)
+
+    def _reconcile(self) -> None:
+        self._endpoints.reconcile(self._simulation.info)
+
+    def _scene_changed(self, info: SceneInfo) -> None:
+        self._executor.create_task(self._reconcile)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the node until it is asked to end; give the exit status."""
+    stop = StopRequest()
+    stop.install()
+    arguments = list(sys.argv if argv is None else argv)
+    logger = get_logger(NODE_NAME)
+    bridge = LogBridge(logger)
+    try:
+        return _run(arguments, stop)
+    except NameTaken as error:
+        logger.fatal(_one_line(error))
+        return 3
+    except SailenvError as error:
+        logger.fatal(str(error))
+        return 2
+    except Exception:
+        _log.exception("the node ends because of a fault")
+        return 1
+    finally:
+        stop.disarm()
+        bridge.close()
+
+
+def _run(arguments: list[str], stop: StopRequest) -> int:
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    transport = use_shared_memory_profile()
+    context = Context()
+    try:
+        try:
+            options = _parsed(remove_ros_args(arguments))
+            context.init(arguments)
+            _check_domain(context.get_domain_id())
+            node = Node(NODE_NAME, namespace=NAMESPACE, context=context)
+        except SailenvError:
+            raise
+        except Exception as problem:
+            accepted = f"what ROS accepts ({_one_line(problem)})"
+            raise InvalidRequest("arguments", " ".join(arguments[1:]), accepted) from None
+        if options.end_with_fd is not None:
+            stop_at_end_of(options.end_with_fd, stop)
+        try:
+            return _run_node(node, context, transport.why, stop)
+        finally:
+            node.destroy_node()
+    finally:
+        context.try_shutdown()
+
+
+def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -> int:
+    parameters = declare_parameters(node)
+    with SimulatorLock(context.get_domain_id(), node.get_namespace()):
+        simulation = _load(parameters, stop)
+        if simulation is None:
+            return 0
+        executor = SingleThreadedExecutor(context=context)
+        sim_node = SimNode(node, executor, simulation, parameters)
+        try:
+            sim_node.start()
+            _greet(node, simulation.info, transport)
+            while not stop.wait(0.25):
+                if simulation.closed:
+                    raise SimulationClosed("of a fault, which the log shows")
+            status = 0
+        finally:
+            ended = sim_node.close(1.0)
+            executor.shutdown(0.0)
+        if not ended:
+            _leave_at_once(node, context, status)
+        return status
+
+
+def _load(parameters: SimParameters, stop: StopRequest) -> Simulation | None:
+    """Start the simulation; None if the end was asked for meanwhile."""
+    loading: Future[Simulation] = Future()
+
+    def load() -> None:
+        try:
+            loading.set_result(_simulation(parameters))
+        except BaseException as error:  # raised again in the main thread
+            loading.set_exception(error)
+
+    thread = threading.Thread(target=load, name="loading", daemon=True)
+    thread.start()
+    while thread.is_alive():
+        thread.join(0.02)
+        if stop.is_set:
+            # What is being loaded goes with the process, if not before.
+            loading.add_done_callback(_close_loaded)
+            thread.join(1.0)
+            return None
+    return loading.result()
+
+
+def _simulation(parameters: SimParameters) -> Simulation:
+    simulation = Simulation(
+        parameters.scene,
+        mode=parameters.mode,
+        real_time_factor=parameters.real_time_factor,
+        seed=parameters.seed,
+        paused=parameters.paused,
+        backend=parameters.backend,
+        render_device=parameters.render_device,
+        scene_paths=parameters.scene_paths,
+    )
+    try:
+        agent = parameters.agent
+        if agent is not None and agent.name not in {spec.name for spec in simulation.info.agents}:
+            simulation.register_agent(agent)
+    except BaseException:
+        simulation.close()
+        raise
+    return simulation
+
+
+def _close_loaded(loading: Future[Simulation]) -> None:
+    if loading.exception() is None:
+        loading.result().close()
+
+
+def _greet(node: Node, info: SceneInfo, transport: str) -> None:
+    namespace = node.get_namespace().rstrip("/")
+    agents = [spec.name for spec in info.agents]
+    see = f"ros2 run rqt_image_view rqt_image_view {namespace}/{agents[0]}/rgb" if agents else "-"
+    node.get_logger().info(
+        f"scene {info.scene!r} in {namespace or '/'}; renderer: {info.renderer}; {transport}; "
+        f"agents: {', '.join(agents) or 'none'}; to see: {see}"
+    )
+
+
+def _parsed(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog=NODE_NAME, description="The simulator.", epilog="Then: --ros-args -p scene:=optical …"
+    )
+    parser.add_argument(
+        "--end-with-fd",
+        type=int,
+        metavar="N",
+        help="end when the other end of this pipe is closed, so that no parent is outlived",
+    )
+    return parser.parse_args(list(arguments)[1:])
+
+
+def _leave_at_once(node: Node, context: Context, status: int) -> None:
+    """End although a request is still being worked on: the process takes it along."""
+    node.destroy_node()
+    context.try_shutdown()
+    logging.shutdown()
+    os._exit(status)
+
+
+def _check_domain(domain_id: int) -> None:
+    if not 0 <= domain_id <= MAX_DOMAIN_ID:
+        # Fast DDS would end the process on the spot.
+        raise InvalidRequest("ROS_DOMAIN_ID", domain_id, f"from 0 to {MAX_DOMAIN_ID}")
+
+
+def _one_line(error: Exception) -> str:
+    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
