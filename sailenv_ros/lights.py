@@ -83,7 +83,7 @@ class Environment:
     Attributes
     ----------
     ambient : (3,) tuple of float
-        Linear radiance that arrives from everywhere.
+        Linear radiance that arrives from everywhere, besides the sky's.
     background : {'sky', 'colour'}
         What pixels show where nothing was hit.
     background_colour : (3,) tuple of float
@@ -96,7 +96,7 @@ class Environment:
         Stops that the picture is brightened by (factor 2**exposure).
     """
 
-    ambient: tuple[float, float, float] = (0.25, 0.25, 0.25)
+    ambient: tuple[float, float, float] = (0.0, 0.0, 0.0)
     background: Literal["sky", "colour"] = "sky"
     background_colour: tuple[float, float, float] = (0.2, 0.2, 0.2)
     sky_zenith: tuple[float, float, float] = (0.22, 0.38, 0.72)

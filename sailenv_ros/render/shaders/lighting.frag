@@ -122,7 +122,13 @@ void main() {
     vec3 mirrored = world_from_optical * reflect(-view, normal);
     vec3 reflected = ambient + mix(sky(mirrored), sky_light(mirrored), min(1.0, roughness * 1.4));
     vec2 term = environment_term(min(nv, 1.0), roughness);
-    vec3 radiance = diffuse * around + (f0 * term.x + term.y) * reflected;
+    // What single bounces in the microfacets lose comes back from further ones, so that a white
+    // surface in uniform light vanishes (Fdez-Aguera 2019, "A multiple-scattering microfacet model").
+    vec3 once = f0 * term.x + term.y;
+    float lost = 1.0 - (term.x + term.y);
+    vec3 mean = f0 + (1.0 - f0) / 21.0;
+    vec3 again = lost * once * mean / (1.0 - mean * lost);
+    vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
     radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     float facing = dot(normal, main_towards);
