@@ -64,7 +64,9 @@ class AgentSpec:
             )
         object.__setattr__(self, "views", checked_views(self.views))
         if not 0.0 <= self.rate_hz <= MAX_RATE_HZ:
-            raise InvalidRequest("rate_hz", self.rate_hz, f"a number from 0 to {MAX_RATE_HZ:g} [Hz]")
+            raise InvalidRequest(
+                "rate_hz", self.rate_hz, f"a number from 0 to {MAX_RATE_HZ:g} [Hz]"
+            )
         near = self.intrinsics.near_m
         if not (math.isfinite(self.depth_range_m) and self.depth_range_m > near):
             raise InvalidRequest(

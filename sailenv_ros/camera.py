@@ -53,9 +53,13 @@ class CameraIntrinsics:
             size = getattr(self, name)
             # Integers of NumPy count as integers; booleans do not.
             if isinstance(size, bool) or not isinstance(size, int | np.integer):
-                raise InvalidRequest(name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]")
+                raise InvalidRequest(
+                    name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]"
+                )
             if not MIN_SIZE_PX <= size <= MAX_SIZE_PX:
-                raise InvalidRequest(name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]")
+                raise InvalidRequest(
+                    name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]"
+                )
             object.__setattr__(self, name, int(size))
         _check_range("vertical_fov_deg", self.vertical_fov_deg, 1.0, 170.0, "deg")
         _check_range("near_m", self.near_m, 1e-3, 1e4, "m")

@@ -51,7 +51,9 @@ class ViewSpec:
         return (height, width) if self.channels == 1 else (height, width, self.channels)
 
 
-def _spec(name: str, dtype: type, channels: int, encoding: str, meaning: str, *, past: bool = False) -> ViewSpec:
+def _spec(
+    name: str, dtype: type, channels: int, encoding: str, meaning: str, *, past: bool = False
+) -> ViewSpec:
     return ViewSpec(
         name=name,
         dtype=np.dtype(dtype),
@@ -72,7 +74,7 @@ VIEWS: Mapping[str, ViewSpec] = MappingProxyType(
                 np.float32,
                 1,
                 "32FC1",
-                "depth along the optical axis [m]; +inf nothing hit, NaN nearer than the near plane",
+                "depth along the optical axis [m]; +inf nothing hit, NaN nearer than near_m",
             ),
             _spec("category", np.uint8, 1, "8UC1", "category id; 0 background, 255 unlabelled"),
             _spec("instance", np.uint16, 1, "16UC1", "instance id; 0 background"),
@@ -100,7 +102,13 @@ VIEWS: Mapping[str, ViewSpec] = MappingProxyType(
                 "True where the surface point was not visible in the previous frame",
                 past=True,
             ),
-            _spec("normals", np.float32, 3, "32FC3", "unit surface normal in the optical frame; 0 nothing hit"),
+            _spec(
+                "normals",
+                np.float32,
+                3,
+                "32FC3",
+                "unit surface normal in the optical frame; 0 nothing hit",
+            ),
         )
     }
 )

@@ -55,7 +55,9 @@ class Category:
 
     def __post_init__(self) -> None:
         if not 0 <= self.id <= 255:
-            raise InvalidRequest(f"id of category {self.name!r}", self.id, "an integer from 0 to 255")
+            raise InvalidRequest(
+                f"id of category {self.name!r}", self.id, "an integer from 0 to 255"
+            )
 
 
 class CategoryTable(Mapping[int, Category]):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,9 +75,9 @@ class Action:
     angular_velocity: Vector3 | None = None
 
 
-BehaviourFunction = Callable[
-    [Any, float, BodyState, dict[str, Any], np.random.Generator], Action
-]
+ParametersType: TypeAlias = type[BehaviourParameters]
+
+BehaviourFunction = Callable[[Any, float, BodyState, dict[str, Any], np.random.Generator], Action]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +96,7 @@ class BehaviourKind:
     """
 
     type: str
-    parameters: type[BehaviourParameters]
+    parameters: ParametersType
     function: BehaviourFunction
 
     @property

@@ -59,7 +59,8 @@ def motion_table(
         return row_of_instance, np.zeros((1, 3, 4))
     past = previous.snapshot
     known = {id_: row for row, id_ in enumerate(past.contents.instance_ids.tolist())}
-    now_rows, past_rows = [], []
+    now_rows: list[int] = []
+    past_rows: list[int] = []
     for row, id_ in enumerate(snapshot.contents.instance_ids.tolist()):
         past_row = known.get(id_)
         if past_row is not None and past.histories[past_row] == snapshot.histories[row]:
@@ -170,7 +171,7 @@ def _lens(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:
     )
 
 
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]  # numba is untyped
+@numba.njit(cache=True, nogil=True)
 def _walk(  # type: ignore[no-untyped-def]  # compiled; the caller above says what each is
     surface,
     category_of_instance,
@@ -194,11 +195,10 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled; the caller above says wh
     for v in range(surface.shape[0]):
         y = (v - cy) / focal
         for u in range(surface.shape[1]):
-            z = np.float64(surface[v, u, 0])
-            id_ = np.int64(surface[v, u, 1])
-            if z > far:
-                z = np.inf
-                id_ = 0
+            z_seen = np.float64(surface[v, u, 0])
+            beyond = z_seen > far
+            z = np.inf if beyond else z_seen
+            id_ = 0 if beyond else int(surface[v, u, 1])
             too_near = z < near
             depth[v, u] = np.nan if too_near else z
             if with_category:
@@ -237,7 +237,7 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled; the caller above says wh
                 occlusion[v, u] = hidden
 
 
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]  # numba is untyped
+@numba.njit(cache=True, nogil=True)
 def _hidden(past_depth, u, v, z):  # type: ignore[no-untyped-def]  # compiled
     """Tell whether a point at (u, v), depth z of the previous frame was not visible there."""
     rows, columns = past_depth.shape

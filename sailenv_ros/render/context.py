@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 
@@ -110,16 +111,17 @@ def create_context(device: int | None = None) -> tuple[moderngl.Context, DeviceR
         if report.refused:
             _log.info("not used: %s", report)
     if best.software:
-        _log.warning("rendering in SOFTWARE on the CPU (%s): no graphics hardware found", best.renderer)
+        _log.warning(
+            "rendering in SOFTWARE on the CPU (%s): no graphics hardware found", best.renderer
+        )
     return _open(best.index), best
 
 
 def _open(index: int) -> moderngl.Context:
     try:
-        return moderngl.create_context(
-            standalone=True, backend="egl", device_index=index, require=REQUIRED_GL
-        )
-    except Exception as problem:  # noqa: BLE001 - glcontext raises bare Exception
+        settings: dict[str, Any] = {"backend": "egl", "device_index": index}
+        return moderngl.create_context(REQUIRED_GL, True, **settings)
+    except Exception as problem:
         raise ContextError([str(problem) or type(problem).__name__]) from None
 
 

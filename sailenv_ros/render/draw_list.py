@@ -122,7 +122,10 @@ class DrawList:
         self.batches = tuple(_batches(context, [kind for kind, *_ in parts], commands))
 
     def place(
-        self, snapshot: WorldSnapshot, clip_from_eye: NDArray[np.float64], eye_from_world: NDArray[np.float64]
+        self,
+        snapshot: WorldSnapshot,
+        clip_from_eye: NDArray[np.float64],
+        eye_from_world: NDArray[np.float64],
     ) -> None:
         """Write the matrices of one eye (a camera or a light) into the rows.
 

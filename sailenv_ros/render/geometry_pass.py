@@ -58,9 +58,9 @@ class Targets:
             texture = self.picture.color_attachments[0]
             self.picture.release()
             texture.release()
-        for texture in (self.surface, self.shape, self.albedo, self.normals, self.depth):
-            if texture is not None:
-                texture.release()
+        for attached in (self.surface, self.shape, self.albedo, self.normals, self.depth):
+            if attached is not None:
+                attached.release()
 
 
 class GeometryPass:
@@ -83,7 +83,9 @@ class GeometryPass:
         depth = self._context.depth_renderbuffer(size)
         attached = [texture for texture in (surface, shape, albedo, normal) if texture is not None]
         framebuffer = self._context.framebuffer(attached, depth)
-        picture = self._context.framebuffer([self._context.texture(size, 4)], depth) if shaded else None
+        picture = (
+            self._context.framebuffer([self._context.texture(size, 4)], depth) if shaded else None
+        )
         return Targets(surface, shape, albedo, normal, depth, framebuffer, picture)
 
     def draw(

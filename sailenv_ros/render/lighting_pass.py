@@ -63,7 +63,7 @@ class LightingPass:
         shadow: ShadowPass,
     ) -> None:
         """Light the surfaces of `targets` into its picture."""
-        assert targets.picture is not None  # noqa: S101 - targets of a picture have one
+        assert targets.picture is not None
         targets.picture.use()
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST)
@@ -95,12 +95,12 @@ class LightingPass:
         self._lights.write(_light_rows(lamps, camera).tobytes())
         self._lights.bind_to_uniform_block(0)
         set_uniform(program, "light_count", min(len(lamps), MAX_LIGHTS))
-        colour, towards = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+        colour, towards = np.zeros(3), np.array([0.0, 0.0, 1.0])
         if sun is not None:
-            colour = tuple(c * sun.intensity for c in sun.colour)
-            towards = tuple(-camera.camera_from_world[:3, :3] @ np.asarray(sun.direction))
-        set_uniform(program, "main_colour", colour)
-        set_uniform(program, "main_towards", towards)
+            colour = np.asarray(sun.colour) * sun.intensity
+            towards = -camera.camera_from_world[:3, :3] @ np.asarray(sun.direction)
+        set_uniform(program, "main_colour", tuple(colour))
+        set_uniform(program, "main_towards", tuple(towards))
         matrix = shadow.map_from_world @ camera.world_from_camera
         set_uniform(program, "shadow_from_optical", _columns(matrix))
         set_uniform(program, "shadow_texel", (shadow.texel_m, 1.0 / SIZE_PX, PENUMBRA_TEXELS))
@@ -112,6 +112,7 @@ class LightingPass:
                 ("shadow_map", shadow.texture),
             )
         ):
+            assert texture is not None
             texture.use(unit)
             set_uniform(program, name, unit)
 
@@ -152,5 +153,3 @@ def _light_rows(lamps: Sequence[Light], camera: Camera) -> NDArray[np.void]:
 def _columns(matrix: NDArray[np.float64]) -> tuple[float, ...]:
     """Give a matrix in GLSL's order of numbers."""
     return tuple(float(number) for number in matrix.T.reshape(-1))
-
-

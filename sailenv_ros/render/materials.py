@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.model import Material, Texture
+from sailenv_ros.render.programs import set_uniform
 
 __all__ = ["MaterialBuffers"]
 
@@ -79,18 +80,18 @@ class MaterialBuffers:
         if self._buffer is not None:
             self._buffer.bind_to_storage_buffer(1)
         for number, array in enumerate(self._arrays):
-            name = f"textures_{number}"
-            if name in program:
-                array.use(_FIRST_TEXTURE_UNIT + number)
-                program[name].value = _FIRST_TEXTURE_UNIT + number
+            array.use(_FIRST_TEXTURE_UNIT + number)
+            set_uniform(program, f"textures_{number}", _FIRST_TEXTURE_UNIT + number)
 
     def close(self) -> None:
         """Free everything on the GPU."""
-        for resource in [*self._arrays, *([self._buffer] if self._buffer else [])]:
-            resource.release()
+        for array in self._arrays:
+            array.release()
+        if self._buffer is not None:
+            self._buffer.release()
         self._arrays, self._buffer = [], None
 
-    def _fill(self, row: NDArray[np.void], material: Material) -> None:
+    def _fill(self, row: np.void, material: Material) -> None:
         base = np.asarray(material.base_colour, dtype=np.float64)
         glow = float(max(material.emission))
         if glow > 0.0:

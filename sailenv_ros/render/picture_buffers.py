@@ -44,7 +44,7 @@ class PictureBuffers:
 
     def read_picture(self, targets: Targets) -> NDArray[np.uint8]:
         """Read the picture with its edges smoothed; a fresh (H, W, 3) array."""
-        assert targets.picture is not None  # noqa: S101 - asked for only where it was drawn
+        assert targets.picture is not None
         four = np.empty((targets.picture.height, targets.picture.width, 4), np.uint8)
         # Reading three components would make the driver convert them, ten times slower.
         targets.picture.read_into(four, components=4)
@@ -56,7 +56,7 @@ class PictureBuffers:
 
     def read_normals(self, targets: Targets) -> NDArray[Any]:
         """Read unit normals, 0 where nothing was hit; a fresh (H, W, 3) array."""
-        assert targets.normals is not None  # noqa: S101 - asked for only where they were drawn
+        assert targets.normals is not None
         four = _read_float(targets.normals, 4)
         # The clear colour's fourth component is 0, a surface's is 1.
         return np.where(four[..., 3:] > 0.0, four[..., :3], np.float32(0.0))
@@ -72,4 +72,3 @@ def _read_float(texture: moderngl.Texture, components: int) -> NDArray[np.float3
     array = np.empty((texture.height, texture.width, components), np.float32)
     texture.read_into(array)
     return array
-

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import cache
 from importlib import resources
 from typing import Any
 
@@ -16,7 +16,7 @@ __all__ = ["ProgramCache", "shader_source"]
 _INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _read(name: str) -> str:
     text = (resources.files("sailenv_ros.render") / "shaders" / name).read_text(encoding="utf-8")
     return _INCLUDE.sub(lambda match: _read(match[1]), text)
@@ -52,7 +52,9 @@ class ProgramCache:
                     fragment_shader=shader_source(fragment, ordered),
                 )
             except moderngl.Error as problem:
-                raise RenderError(f"the shaders {vertex} and {fragment} do not compile: {problem}") from None
+                raise RenderError(
+                    f"the shaders {vertex} and {fragment} do not compile: {problem}"
+                ) from None
         return self._programs[key]
 
     def close(self) -> None:
@@ -65,5 +67,5 @@ class ProgramCache:
 def set_uniform(program: moderngl.Program, name: str, value: Any) -> None:
     """Set a uniform if the compiler kept it: unused ones vanish from a program."""
     member = program.get(name, None)
-    if member is not None:
+    if isinstance(member, moderngl.Uniform):
         member.value = value

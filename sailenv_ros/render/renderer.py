@@ -6,6 +6,7 @@ do not run.
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Iterable
 from typing import Any
@@ -105,7 +106,11 @@ class Renderer:
         return RenderedViews(
             views={name: arrays[name] for name in wanted},
             # A caller may write into its own views; the past must stay what it was.
-            depth=depth if "depth" not in wanted else depth.copy() if "occlusion" in wanted else None,
+            depth=depth
+            if "depth" not in wanted
+            else depth.copy()
+            if "occlusion" in wanted
+            else None,
             timings_s=timings,
         )
 
@@ -152,7 +157,9 @@ class Renderer:
             self._shadow_pass.draw(sun, snapshot, draws, self._geometry)
             mark("shadow")
         intrinsics = camera.intrinsics
-        draws.place(snapshot, _UPSIDE_DOWN @ intrinsics.clip_from_optical(), camera.camera_from_world)
+        draws.place(
+            snapshot, _UPSIDE_DOWN @ intrinsics.clip_from_optical(), camera.camera_from_world
+        )
         targets = self._pictures.targets(
             intrinsics, shaded="rgb" in wanted, normals="normals" in wanted
         )
@@ -170,7 +177,7 @@ class Renderer:
         if targets.normals is not None:
             arrays["normals"] = self._pictures.read_normals(targets)
         mark("readback")
-        for (_, start), (stage, end) in zip(marks, marks[1:], strict=False):
+        for (_, start), (stage, end) in itertools.pairwise(marks):
             timings[stage] = end - start
         return arrays
 
@@ -188,10 +195,9 @@ class Renderer:
         return self._draws
 
     def _with_depth(self, previous: Observation) -> Observation:
-        """Render the depth that an earlier frame was not asked for: it is a function of its pose."""
+        """Render the depth that an earlier frame was not asked for; its poses say it."""
         arrays = self._draw(previous.snapshot, previous.camera, frozenset({"depth"}), {})
-        truth = ground_truth.annotate(arrays["surface"], previous.snapshot, None, previous.camera, frozenset())
-        return Observation(
-            snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"]
+        truth = ground_truth.annotate(
+            arrays["surface"], previous.snapshot, None, previous.camera, frozenset()
         )
-
+        return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])

@@ -47,7 +47,7 @@ def warm_up() -> None:
     smooth_edges(np.zeros((4, 4, 4), np.uint8))
 
 
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]  # numba is untyped
+@numba.njit(cache=True, nogil=True)
 def _walk(picture, rgb):  # type: ignore[no-untyped-def]  # compiled
     rows, columns = picture.shape[:2]
     for v in range(rows):
@@ -80,7 +80,7 @@ def _walk(picture, rgb):  # type: ignore[no-untyped-def]  # compiled
                 rgb[v, u, c] = np.uint8(own + (across - own) * share + np.float32(0.5))
 
 
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]  # numba is untyped
+@numba.njit(cache=True, nogil=True)
 def _share(picture, v, u, dv, du, contrast):  # type: ignore[no-untyped-def]  # compiled
     """Share of the pixel that lies across the edge towards (dv, du), 0 to 0.5."""
     rows, columns = picture.shape[:2]

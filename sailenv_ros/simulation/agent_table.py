@@ -86,7 +86,8 @@ class AgentRecord:
     def skip_to(self, step: int) -> int:
         """Make the first frame due at or after that step the next one; say how many were passed."""
         before = self.due_count
-        count = math.ceil(step * self.spec.rate_hz / STEPS_PER_SECOND - 1e-9)
+        # The first whose exact time lies after the step before.
+        count = math.floor((step - 1) * self.spec.rate_hz / STEPS_PER_SECOND + 1e-9) + 1
         self.due_count = max(before, count)
         return self.due_count - before
 
@@ -125,7 +126,9 @@ class AgentTable:
             raise NameTaken("agent", spec.name)
         if len(self._records) >= MAX_AGENTS:
             raise InvalidRequest(
-                "number of agents", len(self._records) + 1, f"at most {MAX_AGENTS}; delete one first"
+                "number of agents",
+                len(self._records) + 1,
+                f"at most {MAX_AGENTS}; delete one first",
             )
         mover = world.mover(spec.mover)
         pose = spec.pose or mover.pose_at(world.sim_time_ns)

@@ -215,37 +215,29 @@ class SimulationCore:
             and counts the others as skipped: the wall clock is ahead.
         """
         world = self._world
+
+        def due() -> dict[str, int]:
+            return {
+                record.spec.name: record.due_step() if every_frame else record.last_due_step(step)
+                for record in self._streamed()
+            }
+
         while world.step_count < step and not self._should_end():
-            due = [self._next_due(record, step, every_frame) for record in self._agents]
-            ahead = [s for s in due if s > world.step_count]
-            goal = min([step, world.step_count + SLICE_STEPS, *ahead])
+            self._render_streams(name for name, at in due().items() if 0 <= at <= world.step_count)
+            ahead = {name: at for name, at in due().items() if at > world.step_count}
+            goal = min([step, world.step_count + SLICE_STEPS, *ahead.values()])
             world.step(goal - world.step_count)
             self.on_step(world.sim_time_ns)
-            self.render_due()
-        self.render_due()
+            self._render_streams(name for name, at in ahead.items() if at == goal)
 
     def render_due(self) -> None:
         """Render each agent's streamed frame if its time has come; once each."""
         now = self._world.step_count
-        for record in self._agents:
-            record.streams[:] = [stream for stream in record.streams if not stream.closed]
-            if not record.spec.rate_hz:
-                continue
-            if not record.wanted_views:
-                record.skip_to(now)
-                continue
-            if record.due_step() <= now:
-                frame = self._render(record, record.wanted_views)
-                # One of those that are passed over is the frame just made.
-                self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
-                for stream in record.streams:
-                    if stream.views:
-                        stream.put(frame)
+        self._render_streams(r.spec.name for r in self._streamed() if r.due_step() <= now)
 
     def next_due_step(self) -> int | None:
         """Give the step of the earliest streamed frame to come; None if nobody wants any."""
-        due = [r.due_step() for r in self._agents if r.wanted_views and r.spec.rate_hz]
-        return min(due, default=None)
+        return min((record.due_step() for record in self._streamed()), default=None)
 
     # -- frames ----------------------------------------------------------------------------
 
@@ -298,10 +290,33 @@ class SimulationCore:
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
         )
 
-    def _next_due(self, record: AgentRecord, step: int, every_frame: bool) -> int:
-        if not record.wanted_views or not record.spec.rate_hz:
-            return -1
-        return record.due_step() if every_frame else record.last_due_step(step)
+    def _streamed(self) -> list[AgentRecord]:
+        """Give the agents whose frames somebody wants now; forgets streams that were closed."""
+        wanted = []
+        for record in self._agents:
+            record.streams[:] = [stream for stream in record.streams if not stream.closed]
+            if not record.spec.rate_hz:
+                continue
+            if record.wanted_views:
+                wanted.append(record)
+            else:
+                record.skip_to(self._world.step_count)
+        return wanted
+
+    def _render_streams(self, agents: Iterable[str]) -> None:
+        """Render a frame of each agent for its streams, and count those it is too late for."""
+        now = self._world.step_count
+        for name in agents:
+            record = self._agents[name]
+            # Another frame of this walk may have taken so long that this stream was closed.
+            if record.due_step() > now or not record.wanted_views:
+                continue
+            frame = self._render(record, record.wanted_views)
+            # One of those that are passed over is the frame just made.
+            self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
+            for stream in record.streams:
+                if stream.views:
+                    stream.put(frame)
 
     def _begin(self, scene: str, seed: int, *, as_registered: bool) -> None:
         world = self._library.build(scene, seed, self._epoch + 1, self._next_revision)

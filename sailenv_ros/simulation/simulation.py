@@ -151,7 +151,7 @@ class Simulation:
     @property
     def info(self) -> SceneInfo:
         """The scene as it was announced last; never blocks."""
-        assert self._info is not None  # noqa: S101 - set before the constructor returns
+        assert self._info is not None
         return self._info
 
     @property
@@ -182,7 +182,8 @@ class Simulation:
 
     def register_agent(self, spec: AgentSpec, *, timeout_s: float = 30.0) -> AgentSpec:
         """Add an agent; give its spec as accepted."""
-        return self._ask("register_agent", timeout_s, spec)
+        result: AgentSpec = self._ask("register_agent", timeout_s, spec)
+        return result
 
     def delete_agent(self, name: str, *, timeout_s: float = 30.0) -> None:
         """Remove an agent and end its streams."""
@@ -190,7 +191,8 @@ class Simulation:
 
     def get_pose(self, agent: str, *, timeout_s: float = 30.0) -> AgentPose:
         """Say where an agent is."""
-        return self._ask("get_pose", timeout_s, agent)
+        result: AgentPose = self._ask("get_pose", timeout_s, agent)
+        return result
 
     def set_pose(
         self, agent: str, pose: Pose, *, teleport: bool = False, timeout_s: float = 30.0
@@ -215,11 +217,13 @@ class Simulation:
 
     def set_follow(self, agent: str, following: bool, *, timeout_s: float = 30.0) -> bool:
         """Follow the mover or stop; give the new state."""
-        return self._ask("set_follow", timeout_s, agent, following)
+        result: bool = self._ask("set_follow", timeout_s, agent, following)
+        return result
 
     def toggle_follow(self, agent: str, *, timeout_s: float = 30.0) -> bool:
         """Change between following and not; give the new state."""
-        return self._ask("toggle_follow", timeout_s, agent)
+        result: bool = self._ask("toggle_follow", timeout_s, agent)
+        return result
 
     def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
         """Leave the present world for another scene, at simulated time 0."""
@@ -227,7 +231,8 @@ class Simulation:
 
     def reset(self, seed: int | None = None, *, timeout_s: float = 120.0) -> int:
         """Begin the present scene anew, with another seed if one is given; give the epoch."""
-        return self._ask("reset", timeout_s, seed)
+        result: int = self._ask("reset", timeout_s, seed)
+        return result
 
     def pause(self, *, timeout_s: float = 30.0) -> None:
         """Hold simulated time."""
@@ -239,14 +244,16 @@ class Simulation:
 
     def step(self, count: int = 1, *, timeout_s: float = 600.0) -> int:
         """Advance by physics steps of 1/240 s; give the simulated time afterwards [ns]."""
-        return self._ask("step", timeout_s, count)
+        result: int = self._ask("step", timeout_s, count)
+        return result
 
     def capture(
         self, agent: str, views: Iterable[str] | None = None, *, timeout_s: float = 30.0
     ) -> Frame:
         """Render exactly one frame of an agent, after everything asked before."""
         wanted = None if views is None else tuple(views)
-        return self._ask("capture", timeout_s, agent, wanted)
+        result: Frame = self._ask("capture", timeout_s, agent, wanted)
+        return result
 
     # -- streams and listeners -------------------------------------------------------------
 
@@ -295,7 +302,7 @@ class Simulation:
     def _run(self, make_core: Callable[[], SimulationCore], started: Future[None]) -> None:
         try:
             core = make_core()
-        except BaseException as error:  # noqa: BLE001 - handed on to the constructor's caller
+        except BaseException as error:
             self._closing = True
             self._ended = str(error)
             started.set_exception(error)
@@ -325,7 +332,7 @@ class Simulation:
             world, ran = core.world, core.runs_by_itself
             try:
                 result = call(core)
-            except Exception as error:  # noqa: BLE001 - the asker gets it
+            except Exception as error:
                 future.set_exception(error)
             else:
                 future.set_result(result)
@@ -387,6 +394,7 @@ class Simulation:
             self._wake.notify_all()
 
     def _ask(self, name: str, timeout_s: float, *args: Any, **kwargs: Any) -> Any:
+        """Queue a request and wait; its result has the type of the core's method."""
         return _await(self.request(name, *args, **kwargs), f"the request {name!r}", timeout_s)
 
 

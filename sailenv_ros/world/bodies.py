@@ -198,7 +198,9 @@ class Body:
             self._client.resetBaseVelocity(
                 self._id,
                 action.linear_velocity if action.linear_velocity is not None else linear.tolist(),
-                action.angular_velocity if action.angular_velocity is not None else angular.tolist(),
+                action.angular_velocity
+                if action.angular_velocity is not None
+                else angular.tolist(),
             )
         if action.force_n is not None:
             self._push(action.force_n)

@@ -48,7 +48,9 @@ class BulletClient:
         self._pybullet = load_pybullet()
         self._id: int = self._pybullet.connect(self._pybullet.DIRECT)
         if self._id < 0:
-            raise PhysicsError("PyBullet gave no physics server (too many are open in this process)")
+            raise PhysicsError(
+                "PyBullet gave no physics server (too many are open in this process)"
+            )
         self._bound: dict[str, Callable[..., Any]] = {}
 
     @property

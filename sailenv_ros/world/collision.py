@@ -68,9 +68,7 @@ def build_collision(
     return int(client.createCollisionShapeArray(**_as_arrays(parts)))
 
 
-def _part(
-    client: BulletClient, shape: CollisionShape, scale: Vector3, name: str
-) -> dict[str, Any]:
+def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str) -> dict[str, Any]:
     constants = client.constants
     sx, sy, sz = scale
     if isinstance(shape, BoxShape):

@@ -36,7 +36,7 @@ class WaypointTrack:
     loop: bool = True
 
     def pose_at(self, time_s: float) -> Pose:
-        """Interpolate: position linearly, orientation along the shorter arc, time in equal parts."""
+        """Interpolate: lines between positions, shorter arcs between orientations, equal times."""
         count = len(self.waypoints)
         legs = count if self.loop else count - 1
         if legs < 1 or count == 1:

@@ -256,6 +256,4 @@ class World:
             category=self.categories[placement.category_id].name,
             static=placement.static,
         )
-        return DrawnInstance(
-            instance=instance, model=placement.asset.model, scale=placement.scale
-        )
+        return DrawnInstance(instance=instance, model=placement.asset.model, scale=placement.scale)

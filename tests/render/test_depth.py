@@ -23,7 +23,9 @@ CLIPS = [(0.05, 100.0), (0.5, 20.0)]
 
 @pytest.mark.parametrize("distance", [0.75, 3.0, 17.5])
 @pytest.mark.parametrize(("near", "far"), CLIPS)
-def test_a_wall_ahead_has_one_depth(render: Render, distance: float, near: float, far: float) -> None:
+def test_a_wall_ahead_has_one_depth(
+    render: Render, distance: float, near: float, far: float
+) -> None:
     """A plane at right angles to the axis has the same depth everywhere (not the same distance)."""
     scene = snapshot_of([Thing(WALL, Pose((distance, 0.0, 0.0)))])
     depth = render(scene, camera_at(near_m=near, far_m=far), "depth")["depth"]
@@ -54,7 +56,9 @@ def test_a_floor_seen_at_a_grazing_angle(render: Render) -> None:
     expected = camera.intrinsics.fy * 1.5 / rows[rows > 0]
     near_rows = expected < 40.0
     below = depth[rows > 0][near_rows]
-    np.testing.assert_allclose(below, np.broadcast_to(expected[near_rows, None], below.shape), rtol=1e-5)
+    np.testing.assert_allclose(
+        below, np.broadcast_to(expected[near_rows, None], below.shape), rtol=1e-5
+    )
     assert np.isinf(depth[rows < 0]).all()
 
 

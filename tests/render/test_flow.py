@@ -44,7 +44,9 @@ def pair(things: list[Thing], poses: list[Pose], **kwargs: int) -> tuple:  # typ
     return before, after
 
 
-def check(render: Render, things: list[Thing], poses: list[Pose], now: Camera, then: Camera) -> None:
+def check(
+    render: Render, things: list[Thing], poses: list[Pose], now: Camera, then: Camera
+) -> None:
     """Compare the flow view with arithmetic at every pixel away from edges."""
     before, after = pair(things, poses)
     views = render(after, now, "flow", "flow_valid", "instance", past=(before, then))
@@ -80,7 +82,9 @@ def test_a_still_body_does_not_move_because_another_does(render: Render) -> None
 
 
 @pytest.mark.parametrize("step", [(0.0, 0.03, 0.0), (0.0, 0.0, -0.02), (0.0, -0.4, 0.3)])
-def test_a_sideways_camera_gives_the_pin_hole_formula(render: Render, step: tuple[float, float, float]) -> None:
+def test_a_sideways_camera_gives_the_pin_hole_formula(
+    render: Render, step: tuple[float, float, float]
+) -> None:
     """v = f ΔX / (Z Δt): moving left (world +y) shifts a wall to the right (+u)."""
     distance = 2.5
     now = camera_at(Pose(step))
@@ -93,7 +97,9 @@ def test_a_sideways_camera_gives_the_pin_hole_formula(render: Render, step: tupl
 
 
 @pytest.mark.parametrize("turn", [(0, 0, 2.0), (0, -3.0, 0), (5.0, 0, 0), (2.0, 3.0, -4.0)])
-def test_a_turning_camera_gives_the_homography_for_all_depths(render: Render, turn: tuple[float, float, float]) -> None:
+def test_a_turning_camera_gives_the_homography_for_all_depths(
+    render: Render, turn: tuple[float, float, float]
+) -> None:
     """Pure rotation: sky and body move by K R K⁻¹, whatever their depth."""
     things = [Thing(BOX, Pose((3.0, 0.5, 0.0)))]
     now, then = camera_at(Pose.from_rpy_deg((0, 0, 0), turn)), camera_at()
@@ -135,7 +141,9 @@ OFFSETS = st.tuples(*[st.floats(-0.2, 0.2)] * 3)
 TURNS = st.tuples(*[st.floats(-12.0, 12.0)] * 3)
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(OFFSETS, TURNS, OFFSETS, TURNS)
 def test_any_motion_of_camera_and_body(render: Render, shift, turn, body_shift, body_turn) -> None:  # type: ignore[no-untyped-def]  # four drawn tuples
     """Whatever moves and turns, the flow is the arithmetic's."""
@@ -159,7 +167,12 @@ def test_flow_is_not_quantised(render: Render) -> None:
     """A zooming wall gives nearly as many values as pixels, in each component."""
     things = [Thing(WALL, Pose.from_rpy_deg((3.0, 0, 0), (0, 20, 30)))]
     before, after = pair(things, [Pose.from_rpy_deg((2.9, 0, 0), (0, 20, 30))])
-    flow = render(after, camera_at(width=160, height=120), "flow", past=(before, camera_at(width=160, height=120)))["flow"]
+    flow = render(
+        after,
+        camera_at(width=160, height=120),
+        "flow",
+        past=(before, camera_at(width=160, height=120)),
+    )["flow"]
     for component in (0, 1):
         assert len(np.unique(flow[..., component])) > 0.9 * flow[..., 0].size
 
@@ -176,7 +189,10 @@ def test_the_previous_picture_warped_along_the_flow_is_the_present_one(render: R
     before = snapshot_of(things, contents=contents)
     after = snapshot_of(moved(things, *poses), contents=contents, time_ns=FRAME_NS)
     size = {"width": 320, "height": 240}
-    then, now = camera_at(**size), camera_at(Pose.from_rpy_deg((0.03, 0.04, 0.0), (1, 0, 1)), **size)
+    then, now = (
+        camera_at(**size),
+        camera_at(Pose.from_rpy_deg((0.03, 0.04, 0.0), (1, 0, 1)), **size),
+    )
     earlier = render(before, then, "rgb")["rgb"].astype(np.float32)
     views = render(after, now, "rgb", "flow", "occlusion", "instance", past=(before, then))
     v, u = np.mgrid[0:240, 0:320].astype(np.float32)
@@ -196,7 +212,9 @@ def test_the_previous_picture_warped_along_the_flow_is_the_present_one(render: R
 
 def test_a_first_frame_has_no_flow(render: Render) -> None:
     """Without a past nothing is valid; the flow is NaN and never a number."""
-    views = render(snapshot_of([Thing(BOX, Pose((3.0, 0, 0)))]), camera_at(), "flow", "flow_valid", "occlusion")
+    views = render(
+        snapshot_of([Thing(BOX, Pose((3.0, 0, 0)))]), camera_at(), "flow", "flow_valid", "occlusion"
+    )
     assert np.isnan(views["flow"]).all()
     assert not views["flow_valid"].any()
     assert views["occlusion"].all()
@@ -251,9 +269,14 @@ def test_what_the_foreground_uncovers_was_hidden(render: Render) -> None:
 
 def test_a_still_picture_hides_nothing(render: Render) -> None:
     """Without motion no pixel is occluded, whatever the slant of its surface."""
-    things = [Thing(BOX, Pose.from_rpy_deg((3.0, 0.3, 0), (10, 20, 30))), Thing(WALL, Pose.from_rpy_deg((6, 0, 0), (0, 85, 0)))]
+    things = [
+        Thing(BOX, Pose.from_rpy_deg((3.0, 0.3, 0), (10, 20, 30))),
+        Thing(WALL, Pose.from_rpy_deg((6, 0, 0), (0, 85, 0))),
+    ]
     before, after = pair(things, [thing.pose for thing in things])
-    assert not render(after, camera_at(), "occlusion", past=(before, camera_at()))["occlusion"].any()
+    assert not render(after, camera_at(), "occlusion", past=(before, camera_at()))[
+        "occlusion"
+    ].any()
 
 
 def test_occlusion_does_not_depend_on_what_was_asked_before(renderer, render: Render) -> None:  # type: ignore[no-untyped-def]  # fixture

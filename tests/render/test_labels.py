@@ -64,7 +64,9 @@ def test_the_category_of_a_pixel_is_that_of_its_instance(render: Render) -> None
 
 
 @pytest.mark.parametrize("place", [(3.0, 0.0, 0.0), (4.0, 1.1, -0.6), (2.5, -0.7, 0.4)])
-def test_a_body_s_centre_projects_onto_its_id(render: Render, place: tuple[float, float, float]) -> None:
+def test_a_body_s_centre_projects_onto_its_id(
+    render: Render, place: tuple[float, float, float]
+) -> None:
     """A disc's pixels carry its id at the projected centre, and their centroid is it to 0.05 px."""
     camera = camera_at(width=640, height=480)
     views = render(snapshot_of([Thing(model_of(disc_mesh(0.4)), Pose(place))]), camera, "instance")
@@ -98,7 +100,9 @@ def test_backs_of_one_sided_triangles_are_not_there(render: Render) -> None:
 
 
 @pytest.mark.parametrize("views", [("instance", "depth"), ("instance", "depth", "rgb")])
-def test_holes_of_a_masked_material_show_what_is_behind(render: Render, views: tuple[str, ...]) -> None:
+def test_holes_of_a_masked_material_show_what_is_behind(
+    render: Render, views: tuple[str, ...]
+) -> None:
     """Left half transparent: its pixels carry the wall behind, with and without a picture."""
     texture = np.full((64, 64, 4), 255, np.uint8)
     texture[:, :32, 3] = 0
@@ -122,7 +126,10 @@ def test_a_pane_of_glass_is_not_labelled(render: Render) -> None:
 def test_all_parts_of_a_model_carry_one_id(render: Render) -> None:
     """Two parts with two materials are one instance."""
     left = mesh_of(
-        wall_mesh().positions + [0, 0.5, 0], wall_mesh().normals, wall_mesh().uvs, wall_mesh().triangles
+        wall_mesh().positions + np.array([0, 0.5, 0]),
+        wall_mesh().normals,
+        wall_mesh().uvs,
+        wall_mesh().triangles,
     )
     model = Model(
         name="pair",
@@ -146,7 +153,9 @@ def test_a_scene_that_changes_is_drawn_as_it_is_now(render: Render) -> None:
 
 def test_an_empty_scene_is_all_background(render: Render) -> None:
     """Nothing to draw gives id 0, depth inf, and a sky."""
-    views = render(snapshot_of([]), camera_at(), "instance", "category", "depth", "rgb", "flow_valid")
+    views = render(
+        snapshot_of([]), camera_at(), "instance", "category", "depth", "rgb", "flow_valid"
+    )
     assert not views["instance"].any()
     assert np.isinf(views["depth"]).all()
     assert views["rgb"].min() > 0
@@ -160,6 +169,8 @@ def test_normals_follow_unequal_scale(render: Render) -> None:
     views = render(scene, camera, "normals", "instance")
     hits = cast(scene, camera)
     sure = hits.away_from_edges() & (views["instance"] == 1)
-    expected = -np.sign((hits.normal * camera.intrinsics.rays()).sum(-1, keepdims=True)) * hits.normal
+    expected = (
+        -np.sign((hits.normal * camera.intrinsics.rays()).sum(-1, keepdims=True)) * hits.normal
+    )
     np.testing.assert_allclose(views["normals"][sure], expected[sure], atol=1e-6)
     assert not views["normals"][views["instance"] == 0].any()

@@ -28,7 +28,9 @@ from tests.support.tiny_scenes import (
 GOLDENS = Path(__file__).parent / "goldens"
 WALL = wall_mesh(60.0, 60.0)
 GREY = (0.5, 0.5, 0.5)
-DIM = Environment(sky_zenith=(0.1, 0.2, 0.4), sky_horizon=(0.3, 0.35, 0.4), sky_ground=(0.1, 0.1, 0.1))
+DIM = Environment(
+    sky_zenith=(0.1, 0.2, 0.4), sky_horizon=(0.3, 0.35, 0.4), sky_ground=(0.1, 0.1, 0.1)
+)
 UNIFORM = Environment(ambient=(0.0, 0.0, 0.0), sky_zenith=GREY, sky_horizon=GREY, sky_ground=GREY)
 
 
@@ -56,7 +58,9 @@ def test_a_lambertian_wall_under_a_lamp(render: Render) -> None:
     """Head-on at 2 m from a lamp of 8 W/sr: radiance albedo/pi · 8/4, less what is reflected."""
     lamp = Light(name="lamp", type="point", intensity=8.0, position_m=(1.0, 0, 0), range_m=1000.0)
     grey = model_of(WALL, base_colour=(0.5, 0.5, 0.5, 1), roughness=1.0)
-    dark = Environment(ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0))
+    dark = Environment(
+        ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0)
+    )
     scene = snapshot_of([Thing(grey, Pose((3.0, 0, 0)))], lights=(lamp,), environment=dark)
     rgb = render(scene, camera_at(width=97, height=73), "rgb")["rgb"]
     assert linear(rgb[36, 48]).mean() == pytest.approx(0.5 / np.pi * 2.0, rel=0.06)
@@ -65,7 +69,9 @@ def test_a_lambertian_wall_under_a_lamp(render: Render) -> None:
 def test_light_is_linear_in_intensity(render: Render) -> None:
     """Half the lamp gives half the radiance, to the picture's 8 bits."""
     grey = model_of(WALL, base_colour=(0.5, 0.5, 0.5, 1), roughness=1.0)
-    dark = Environment(ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0))
+    dark = Environment(
+        ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0)
+    )
     seen = []
     for intensity in (1.0, 0.5):
         sun = Light(name="sun", type="directional", direction=(1, 0, 0), intensity=intensity)
@@ -89,7 +95,10 @@ def test_a_body_casts_a_shadow_where_the_sun_is_hidden(render: Render) -> None:
     # Up the ray to the sun to the height of the box's middle.
     at_box = world + (0.4 - world[..., 2:]) / 1.0 * np.array([0.0, -0.5, 1.0])
     aside = np.maximum(np.abs(at_box[..., 0] - 4.0), np.abs(at_box[..., 1]))
-    deep, clear = on_floor & (aside < 0.3), on_floor & (aside > 0.8) & (np.abs(world[..., 0] - 4) < 2)
+    deep, clear = (
+        on_floor & (aside < 0.3),
+        on_floor & (aside > 0.8) & (np.abs(world[..., 0] - 4) < 2),
+    )
     brightness = views["rgb"].astype(float).mean(axis=-1)
     assert deep.sum() > 100
     assert brightness[deep].max() < 0.8 * brightness[clear].min()
@@ -102,7 +111,9 @@ def test_a_texture_is_neither_mirrored_nor_upside_down(render: Render) -> None:
     texture[:32, :32], texture[:32, 32:] = (255, 0, 0, 255), (0, 255, 0, 255)
     texture[32:, :32], texture[32:, 32:] = (0, 0, 255, 255), (255, 255, 255, 255)
     wall = model_of(wall_mesh(2.0, 2.0), base_colour_texture=texture, roughness=1.0)
-    rgb = render(snapshot_of([Thing(wall, Pose((2.0, 0, 0)))], lights=()), camera_at(), "rgb")["rgb"]
+    rgb = render(snapshot_of([Thing(wall, Pose((2.0, 0, 0)))], lights=()), camera_at(), "rgb")[
+        "rgb"
+    ]
     assert rgb[20, 30].argmax() == 0
     assert rgb[20, 66].argmax() == 1
     assert rgb[52, 30].argmax() == 2
@@ -127,7 +138,9 @@ def test_a_normal_map_turns_the_surface_as_it_says(render: Render) -> None:
 
 def test_what_shines_is_bright_in_the_dark(render: Render) -> None:
     """An emitting wall shows its own radiance without any light."""
-    dark = Environment(ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0))
+    dark = Environment(
+        ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0)
+    )
     wall = model_of(WALL, emission=(1.0, 0.5, 0.25))
     scene = snapshot_of([Thing(wall, Pose((3.0, 0, 0)))], lights=(), environment=dark)
     radiance = linear(render(scene, camera_at(), "rgb")["rgb"]).mean(axis=(0, 1))
@@ -146,7 +159,9 @@ def test_edges_are_smooth_and_the_inside_is_untouched(render: Render) -> None:
     """Along a slanted bright edge there are pixels in between; labels have none."""
     white = model_of(box_mesh(1.0), base_colour=(1, 1, 1, 1))
     black = Environment(background="colour", background_colour=(0, 0, 0))
-    scene = snapshot_of([Thing(white, Pose.from_rpy_deg((2.0, 0, 0), (8, 0, 0)))], environment=black)
+    scene = snapshot_of(
+        [Thing(white, Pose.from_rpy_deg((2.0, 0, 0), (8, 0, 0)))], environment=black
+    )
     views = render(scene, camera_at(width=200, height=150), "rgb", "instance")
     grey = views["rgb"].mean(axis=-1)
     inside = np.median(grey[views["instance"] == 1])
@@ -157,7 +172,12 @@ def test_edges_are_smooth_and_the_inside_is_untouched(render: Render) -> None:
 
 def test_a_picture_does_not_touch_ground_truth(render: Render) -> None:
     """Labels, depth and flow are the same bytes with and without rgb."""
-    things = [Thing(model_of(box_mesh(1.0), base_colour_texture=checker()), Pose.from_rpy_deg((3, 0, 0), (10, 20, 30)))]
+    things = [
+        Thing(
+            model_of(box_mesh(1.0), base_colour_texture=checker()),
+            Pose.from_rpy_deg((3, 0, 0), (10, 20, 30)),
+        )
+    ]
     before, after = snapshot_of(things), snapshot_of(things, time_ns=50_000_000)
     now = camera_at(Pose.from_rpy_deg((0, 0.1, 0), (0, 0, 1)))
     truth = ("depth", "category", "instance", "flow", "normals")
@@ -203,17 +223,37 @@ def gallery():  # type: ignore[no-untyped-def]  # a snapshot
     cube, floor = box_mesh(0.8), wall_mesh(9, 9)
     lights = (
         SUN,
-        Light(name="lamp", type="point", colour=(1.0, 0.6, 0.3), intensity=3.0, position_m=(3, 1, 0.6)),
         Light(
-            name="spot", type="spot", intensity=14.0, position_m=(2, -1.5, 2), direction=(0.6, 0.3, -1)
+            name="lamp", type="point", colour=(1.0, 0.6, 0.3), intensity=3.0, position_m=(3, 1, 0.6)
         ),
-        Light(name="panel", type="area", intensity=4.0, position_m=(4, 0, 2.5), direction=(0, 0, -1)),
+        Light(
+            name="spot",
+            type="spot",
+            intensity=14.0,
+            position_m=(2, -1.5, 2),
+            direction=(0.6, 0.3, -1),
+        ),
+        Light(
+            name="panel", type="area", intensity=4.0, position_m=(4, 0, 2.5), direction=(0, 0, -1)
+        ),
     )
     things = [
-        Thing(model_of(floor, base_colour_texture=checker(4), roughness=0.6), Pose.from_rpy_deg((4, 0, -0.8), (0, 90, 0))),
-        Thing(model_of(cube, base_colour=(0.7, 0.1, 0.1, 1)), Pose.from_rpy_deg((3.4, 0.9, -0.4), (0, 0, 30))),
-        Thing(model_of(cube, base_colour=(0.95, 0.8, 0.4, 1), metallic=1.0, roughness=0.25), Pose.from_rpy_deg((3.2, -0.2, -0.3), (0, 20, 60))),
-        Thing(model_of(cube, base_colour_texture=checker(2)), Pose.from_rpy_deg((4.2, -1.3, -0.1), (20, 20, 10))),
+        Thing(
+            model_of(floor, base_colour_texture=checker(4), roughness=0.6),
+            Pose.from_rpy_deg((4, 0, -0.8), (0, 90, 0)),
+        ),
+        Thing(
+            model_of(cube, base_colour=(0.7, 0.1, 0.1, 1)),
+            Pose.from_rpy_deg((3.4, 0.9, -0.4), (0, 0, 30)),
+        ),
+        Thing(
+            model_of(cube, base_colour=(0.95, 0.8, 0.4, 1), metallic=1.0, roughness=0.25),
+            Pose.from_rpy_deg((3.2, -0.2, -0.3), (0, 20, 60)),
+        ),
+        Thing(
+            model_of(cube, base_colour_texture=checker(2)),
+            Pose.from_rpy_deg((4.2, -1.3, -0.1), (20, 20, 10)),
+        ),
         Thing(model_of(cube, emission=(0.2, 0.5, 1.0)), Pose((5.5, 0.6, -0.2)), (0.5, 0.5, 0.5)),
     ]
     return snapshot_of(things, contents=contents_of(things, lights=lights, environment=DIM))

@@ -70,7 +70,9 @@ def cast(snapshot: WorldSnapshot, camera: Camera) -> Hits:
                 normals[nearer] = normal / np.linalg.norm(normal)
                 count += 1
     shape = (camera.intrinsics.height, camera.intrinsics.width)
-    return Hits(best.reshape(shape), row.reshape(shape), number.reshape(shape), normals.reshape(*shape, 3))
+    return Hits(
+        best.reshape(shape), row.reshape(shape), number.reshape(shape), normals.reshape(*shape, 3)
+    )
 
 
 def _meet(rays: NDArray[np.float64], a: Any, b: Any, c: Any) -> NDArray[np.float64]:

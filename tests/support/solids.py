@@ -38,7 +38,9 @@ UNIT_BOX = solid(BoxShape(half_extents_m=(0.5, 0.5, 0.5)))
 UNIT_BALL = solid(SphereShape(radius_m=0.5))
 
 
-def placed(name: str, position: tuple[float, float, float] = (0.0, 0.0, 0.0), **kwargs: Any) -> Placement:
+def placed(
+    name: str, position: tuple[float, float, float] = (0.0, 0.0, 0.0), **kwargs: Any
+) -> Placement:
     """Place a unit box (or `asset`) without turning it."""
     kwargs.setdefault("asset", UNIT_BOX)
     kwargs.setdefault("pose", Pose(position))

@@ -17,7 +17,10 @@ from sailenv_ros.model import Material, Mesh, Model, ModelPart
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 CATEGORIES = CategoryTable(
-    [Category(id=number, name=f"kind {number}", colour=(number, 2 * number, 255 - number)) for number in range(1, 60)]
+    [
+        Category(id=number, name=f"kind {number}", colour=(number, 2 * number, 255 - number))
+        for number in range(1, 60)
+    ]
 )
 
 FORWARD = Pose()
@@ -49,7 +52,9 @@ def wall_mesh(width: float = 1.0, height: float = 1.0) -> Mesh:
     """
     y, z = 0.5 * width, 0.5 * height
     corners = [(0, y, -z), (0, -y, -z), (0, -y, z), (0, y, z)]
-    return mesh_of(corners, [(-1, 0, 0)] * 4, [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)])
+    return mesh_of(
+        corners, [(-1, 0, 0)] * 4, [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)]
+    )
 
 
 def box_mesh(size: float | Sequence[float] = 1.0) -> Mesh:
@@ -77,7 +82,9 @@ def disc_mesh(radius: float, segments: int = 256) -> Mesh:
     rim = np.stack([0 * angles, -radius * np.cos(angles), radius * np.sin(angles)], axis=1)
     positions = np.concatenate([[[0.0, 0.0, 0.0]], rim])
     triangles = [(0, 1 + i, 1 + (i + 1) % segments) for i in range(segments)]
-    return mesh_of(positions, [(-1, 0, 0)] * len(positions), np.zeros((len(positions), 2)), triangles)
+    return mesh_of(
+        positions, [(-1, 0, 0)] * len(positions), np.zeros((len(positions), 2)), triangles
+    )
 
 
 def checker(cells: int = 8, size: int = 256) -> np.ndarray[Any, np.dtype[np.uint8]]:
@@ -103,7 +110,9 @@ class Thing:
 SUN = Light(name="sun", type="directional", direction=(0.6, -0.3, -0.75), intensity=2.5)
 
 
-def contents_of(things: Sequence[Thing], *, epoch: int = 1, first_id: int = 1, **kwargs: Any) -> SceneContents:
+def contents_of(
+    things: Sequence[Thing], *, epoch: int = 1, first_id: int = 1, **kwargs: Any
+) -> SceneContents:
     """Contents with instance ids from `first_id` on, in order."""
     drawn = tuple(
         DrawnInstance(

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sailenv_ros.agents import AgentSpec
@@ -52,6 +52,7 @@ def test_streamed_frames_fall_on_the_rate_s_grid() -> None:
     assert stream.get(0.0).sequence == 31
 
 
+@settings(max_examples=12, deadline=None)
 @given(rate=st.floats(0.5, 240.0))
 def test_any_rate_gives_its_number_of_frames(rate: float) -> None:
     """Over two seconds an agent gets rate x 2 frames and the first, to one frame; none twice."""
@@ -211,7 +212,11 @@ BAD_REQUESTS = [
     (lambda c: c.get_pose("nobody"), UnknownName, "agent must be one of: eye"),
     (lambda c: c.delete_agent("nobody"), UnknownName, "agent must be one of: eye"),
     (lambda c: c.register_agent(spec()), NameTaken, "agent name must be a name that is not in use"),
-    (lambda c: c.register_agent(spec("b", mover="bus")), UnknownName, "mover must be one of: mover"),
+    (
+        lambda c: c.register_agent(spec("b", mover="bus")),
+        UnknownName,
+        "mover must be one of: mover",
+    ),
     (lambda c: c.step(-1), InvalidRequest, "steps must be an integer from 1 to 1000000, got -1"),
     (lambda c: c.step(0), InvalidRequest, "steps must be an integer from 1"),
     (lambda c: c.step(1.5), InvalidRequest, "steps must be an integer from 1"),
@@ -235,7 +240,9 @@ def test_a_refused_request_changes_nothing(core: SimulationCore, call, error, se
     assert core.info.agents == info.agents
 
 
-def test_a_scene_file_with_faults_leaves_the_present_one(core: SimulationCore, tmp_path: Path) -> None:
+def test_a_scene_file_with_faults_leaves_the_present_one(
+    core: SimulationCore, tmp_path: Path
+) -> None:
     """Changing to a broken file raises all its faults and the old world goes on."""
     broken = tmp_path / "broken.yaml"
     broken.write_text("version: 1\nobjects:\n  - {name: a, asset: cubee, colr: red}\n")

@@ -21,7 +21,9 @@ TRACK = WaypointTrack(waypoints=SQUARE, total_time_s=8.0)
 def test_each_leg_takes_the_same_time() -> None:
     """Four legs of a closed track in 8 s: a waypoint every 2 s."""
     for number, waypoint in enumerate(SQUARE):
-        assert TRACK.pose_at(2.0 * number).position_m == pytest.approx(waypoint.position_m, abs=1e-12)
+        assert TRACK.pose_at(2.0 * number).position_m == pytest.approx(
+            waypoint.position_m, abs=1e-12
+        )
 
 
 def test_halfway_is_the_middle_of_position_and_of_angle() -> None:

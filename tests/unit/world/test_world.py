@@ -109,7 +109,9 @@ def test_a_refused_spawn_changes_nothing() -> None:
     """A second object of one name is refused and the world is as before."""
     world = make_world(placed("a"))
     contents, snapshot = world.contents, world.snapshot()
-    with pytest.raises(NameTaken, match="object name must be a name that is not in use yet, got 'a'"):
+    with pytest.raises(
+        NameTaken, match="object name must be a name that is not in use yet, got 'a'"
+    ):
         world.spawn(placed("a"))
     assert world.contents is contents
     assert world.snapshot() is snapshot
