@@ -99,7 +99,7 @@ def _image(values: NDArray[Any], encoding: str, header: Header) -> Image:
     contiguous = np.ascontiguousarray(values)
     data = array.array("B")
     # The fastest way into a message: one copy, and no check of each byte (bytes would have both).
-    data.frombytes(memoryview(contiguous).cast("B") if contiguous.size else b"")
+    data.frombytes(contiguous.data.cast("B") if contiguous.size else b"")
     return Image(
         header=header,
         height=height,

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, SimulationClosed
+from sailenv_ros.transport import remove_abandoned_segments
 
 __all__ = ["SimulatorProcess"]
 
@@ -36,11 +37,13 @@ class SimulatorProcess:
     """
 
     def __init__(self, domain_id: int, namespace: str, parameters: Mapping[str, object]) -> None:
+        settings = [f"{name}:={_yaml(name, value)}" for name, value in parameters.items()]
+        ros_arguments = ["--ros-args", "-r", f"__ns:={namespace}"]
+        for setting in settings:
+            ros_arguments += ["-p", setting]
         read_end, self._write_end = os.pipe()
         self._log = tempfile.TemporaryFile(prefix="sailenv_sim_node_")  # noqa: SIM115 - kept open
-        arguments = ["--end-with-fd", str(read_end), "--ros-args", "-r", f"__ns:={namespace}"]
-        for name, value in parameters.items():
-            arguments += ["-p", f"{name}:={_yaml(name, value)}"]
+        arguments = ["--end-with-fd", str(read_end), *ros_arguments]
         try:
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "sailenv_ros.nodes.sim_node", *arguments],
@@ -54,6 +57,7 @@ class SimulatorProcess:
             )
         except OSError:
             os.close(self._write_end)
+            self._log.close()
             raise
         finally:
             os.close(read_end)
@@ -91,6 +95,8 @@ class SimulatorProcess:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait(END_TIMEOUT_S)
+        if self._process.returncode < 0:
+            remove_abandoned_segments()  # a killed process could not do it
         self._log.close()
 
 

@@ -98,7 +98,7 @@ class AgentTopics:
             self._connection.node.destroy_subscription(subscription)
         self._subscriptions.clear()
 
-    def _subscribe(self, topic: str, kind: type, callback: Callable[[Any, Any], None]) -> None:
+    def _subscribe(self, topic: str, kind: type, callback: Any) -> None:
         self._subscriptions[topic] = self._connection.node.create_subscription(
             kind, f"{self._agent}/{topic}", callback, _QOS
         )

@@ -152,7 +152,8 @@ def _cubehelix() -> Rgb:
     mix = np.array([[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]])
     turn = np.stack([np.cos(angle), np.sin(angle)])
     rgb = brightness[:, None] + amplitude[:, None] * (mix @ turn).T
-    return (np.clip(rgb, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+    ramp: Rgb = (np.clip(rgb, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+    return ramp
 
 
 _RAMP = _cubehelix()

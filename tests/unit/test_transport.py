@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,7 +10,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from sailenv_ros.transport import NEEDED_BYTES, PROFILE_VARIABLE, use_shared_memory_profile
+from sailenv_ros.transport import (
+    NEEDED_BYTES,
+    PROFILE_VARIABLE,
+    remove_abandoned_segments,
+    use_shared_memory_profile,
+)
 
 PROFILE = Path(__file__).parents[2] / "config" / "fastdds.xml"
 
@@ -75,11 +81,29 @@ def test_no_shared_memory_is_a_reason(tmp_path: Path) -> None:
     assert str(gone) in choice.why
 
 
+def test_segments_of_the_dead_are_removed_and_of_the_living_kept(tmp_path: Path) -> None:
+    """What nobody has locked goes, what is locked or not a segment stays."""
+    for name in ("fastrtps_0123456789abcdef", "fastrtps_fedcba9876543210", "fastrtps_port7000"):
+        (tmp_path / name).write_bytes(bytes(1000))
+        (tmp_path / f"{name}_el").touch()
+    (tmp_path / "of_another").write_bytes(bytes(1000))
+    with (tmp_path / "fastrtps_fedcba9876543210_el").open() as living:
+        fcntl.flock(living, fcntl.LOCK_EX)
+        assert remove_abandoned_segments(tmp_path) == 1000
+        assert remove_abandoned_segments(tmp_path) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "fastrtps_fedcba9876543210",
+        "fastrtps_fedcba9876543210_el",
+        "fastrtps_port7000",
+        "fastrtps_port7000_el",
+        "of_another",
+    ]
+
+
 def test_our_profile_has_the_segment_that_it_promises() -> None:
     """64 MiB of shared memory, and UDP for other hosts, in the default profile."""
-    space = {"d": "http://www.eprosima.com"}
     root = ElementTree.parse(PROFILE).getroot()
-    assert [e.text for e in root.iterfind(".//d:segment_size", space)] == [str(64 * 2**20)]
-    assert [e.text for e in root.iterfind(".//d:type", space)] == ["SHM", "UDPv4"]
-    (participant,) = root.iterfind(".//d:participant", space)
+    assert [e.text for e in root.iterfind(".//{*}segment_size")] == [str(64 * 2**20)]
+    assert [e.text for e in root.iterfind(".//{*}type")] == ["SHM", "UDPv4"]
+    (participant,) = root.iterfind(".//{*}participant")
     assert participant.get("is_default_profile") == "true"
