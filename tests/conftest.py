@@ -1,0 +1,52 @@
+"""Settings of the whole test run; nothing here is imported by tests.
+
+ROS reads its environment when it is first imported, so that is settled before anything else.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+BASE_DOMAIN_ID = 100
+"""The workers take this one and those after it; 232 is the highest that there is."""
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def _isolate_ros() -> None:
+    """Give each worker a domain of its own, on this machine alone."""
+    worker = re.sub(r"\D", "", os.environ.get("PYTEST_XDIST_WORKER", "")) or "0"
+    base = int(os.environ.get("SAILENV_TEST_DOMAIN_ID", BASE_DOMAIN_ID))
+    os.environ["ROS_DOMAIN_ID"] = str(base + int(worker))
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ.pop("ROS_LOCALHOST_ONLY", None)  # where it is set, it wins over the line above
+
+
+_isolate_ros()
+
+settings.register_profile("dev", deadline=None)
+# The same examples each time, many of them; a shared machine makes no promise about time.
+settings.register_profile(
+    "ci",
+    deadline=None,
+    derandomize=True,
+    max_examples=200,
+    print_blob=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark by folder what needs OpenGL or ROS, so that no test can forget it."""
+    for item in items:
+        folders = item.path.relative_to(ROOT / "tests").parts
+        if folders[0] == "ros":
+            item.add_marker(pytest.mark.ros)
+        elif folders[0] == "render":
+            item.add_marker(pytest.mark.gl)
