@@ -24,7 +24,7 @@ __all__ = ["image_from_view", "picture_to_image", "view_from_image"]
 _TRUE = 255
 
 
-def image_from_view(view: str, values: NDArray[Any], header: Header) -> Image:
+def image_from_view(view: str, values: NDArray[Any], header: Header, *, copy: bool = True) -> Image:
     """Make the message of one view.
 
     Parameters
@@ -35,11 +35,14 @@ def image_from_view(view: str, values: NDArray[Any], header: Header) -> Image:
         Of the view's own dtype and channels.
     header : Header
         Shared with the other views of the frame; kept, not copied.
+    copy : bool
+        False has the message look at the array's own memory where it can: for one that is
+        published and let go, of an array that is not written again.
 
     Returns
     -------
     image : Image
-        Row-major, top row first, little-endian; owns its bytes.
+        Row-major, top row first, little-endian.
 
     Raises
     ------
@@ -53,14 +56,14 @@ def image_from_view(view: str, values: NDArray[Any], header: Header) -> Image:
         raise InvalidRequest(f"view {view}", f"{values.shape} of {values.dtype}", wanted)
     if spec.dtype == np.bool_:
         values = values.view(np.uint8) * np.uint8(_TRUE)
-    return _image(values, spec.encoding, header)
+    return _image(values, spec.encoding, header, copy=copy)
 
 
 def picture_to_image(rgb: NDArray[np.uint8], header: Header) -> Image:
     """Make the message of an (H, W, 3) uint8 RGB picture."""
     if rgb.dtype != np.uint8 or rgb.ndim != 3 or rgb.shape[2] != 3:
         raise InvalidRequest("picture", f"{rgb.shape} of {rgb.dtype}", "(H, W, 3) of uint8")
-    return _image(rgb, "rgb8", header)
+    return _image(rgb, "rgb8", header, copy=True)
 
 
 def view_from_image(view: str, image: Image) -> NDArray[Any]:
@@ -94,21 +97,26 @@ def view_from_image(view: str, image: Image) -> NDArray[Any]:
     return values != 0 if spec.dtype == np.bool_ else values
 
 
-def _image(values: NDArray[Any], encoding: str, header: Header) -> Image:
+def _image(values: NDArray[Any], encoding: str, header: Header, *, copy: bool) -> Image:
     height, width = values.shape[:2]
     contiguous = np.ascontiguousarray(values)
-    data = array.array("B")
-    # The fastest way into a message: one copy, and no check of each byte (bytes would have both).
-    data.frombytes(contiguous.data.cast("B") if contiguous.size else b"")
-    return Image(
+    image = Image(
         header=header,
         height=height,
         width=width,
         encoding=encoding,
         is_bigendian=int(sys.byteorder == "big"),
         step=contiguous.nbytes // height if height else 0,
-        data=data,
     )
+    own_bytes = contiguous.data.cast("B") if contiguous.size else memoryview(b"")
+    if copy:
+        # The fastest way by the front door: one copy, and no look at each byte as with `bytes`.
+        image.data = array.array("B")
+        image.data.frombytes(own_bytes)
+    else:
+        # Publishing reads any buffer; only the attribute's setter would turn it into an array.
+        image._data = own_bytes
+    return image
 
 
 def _require(view: str, what: str, got: object, wanted: object) -> None:

@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from sailenv_msgs_py.images import image_from_view, picture_to_image, view_from_image
@@ -45,6 +47,16 @@ def test_arrays_that_are_not_contiguous_are_sent_as_they_look(view: tuple[str, n
     mirrored = values[:, ::-1]
     received = view_from_image(name, image_from_view(name, mirrored, Header()))
     assert received.tobytes() == np.ascontiguousarray(mirrored).tobytes()
+
+
+@given(views())
+def test_what_is_sent_without_a_copy_is_the_same_on_the_wire(view: tuple[str, np.ndarray]) -> None:
+    """A message that looks at the array's own memory arrives just the same."""
+    name, values = view
+    sent = [image_from_view(name, values, Header(), copy=copy) for copy in (True, False)]
+    copied, looked_at = (deserialize_message(serialize_message(msg), Image) for msg in sent)
+    assert copied == looked_at
+    assert view_from_image(name, looked_at).tobytes() == values.tobytes()
 
 
 def test_truth_values_travel_as_0_and_255() -> None:
