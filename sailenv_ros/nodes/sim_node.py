@@ -22,6 +22,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, SimulationClosed
+from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.executor_thread import ExecutorThread
@@ -130,6 +131,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(arguments: list[str], stop: StopRequest) -> int:
     sys.setswitchinterval(SWITCH_INTERVAL_S)
+    keep_freed_memory()
     transport = use_shared_memory_profile()
     context = Context()
     try:
