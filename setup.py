@@ -14,7 +14,7 @@ REQUIREMENTS = [
     "numba>=0.59",
     "numpy>=1.26",
     "opencv-python-headless>=4.8",
-    "pillow>=10.0",
+    "pillow>=10.1",
     # The module pybullet: the original has wheels up to Python 3.11, its fork those from 3.12 on.
     'pybullet>=3.2.6; python_version < "3.12"',
     'pybullet-arm64>=3.2.8; python_version >= "3.12"',
@@ -57,11 +57,12 @@ def data_files() -> list[tuple[str, list[str]]]:
     files = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
-        *((f"{share}/{folder}", sorted(glob(f"{folder}/*.*"))) for folder in ("config", "scenes")),
+        (f"{share}/config", sorted(glob("config/*.yaml") + glob("config/*.xml"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
+        (f"{share}/scenes", sorted(glob("scenes/*.yaml") + glob("scenes/*.json"))),
     ]
     # pip ignores setup.cfg's install_scripts, colcon does not.
-    if {"bdist_wheel", "editable_wheel"} & set(sys.argv):
+    if "bdist_wheel" in sys.argv:
         files.append((f"lib/{PACKAGE}", ["resource/sim_node"]))
     return files
 
