@@ -39,6 +39,8 @@ def frame_pictures(
     pictures = {}
     for key, values in frame.items():
         view = _KEYS.get(key, key)
+        if key == "flow_valid" and np.all(values):
+            continue  # nothing to see: every pixel has a flow
         if view in VIEWS and key not in ("depth", "rgb"):
             shown = values[..., ::-1] if key == "main" else values
             label = {"depth_m": "depth", "instance": "object"}.get(key, key)
