@@ -24,7 +24,8 @@ refuse_other_ros() {
 
 enter_environment() {
   export VIRTUAL_ENV=$venv PATH=$venv/bin:$PATH
-  if ros_is_sourced && [[ -e $messages_prefix ]]; then
+  if ros_is_sourced; then
+    export AMENT_PREFIX_PATH=$venv:$AMENT_PREFIX_PATH
     set +u # ROS 2's own scripts read variables that are not set
     # shellcheck source=/dev/null
     source "$messages_prefix/share/sailenv_msgs/local_setup.bash"
