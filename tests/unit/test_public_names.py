@@ -1,0 +1,57 @@
+"""What `import sailenv_ros` gives, and what it costs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import sailenv_ros
+
+
+def run(code: str) -> str:
+    """Run a program of its own; give what it prints."""
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    return result.stdout.strip()
+
+
+def test_the_public_names_are_these() -> None:
+    """A name that users may rely on comes and goes on purpose only."""
+    assert sailenv_ros.__all__ == ["Agent", "Simulation", "__version__", "load_scene"]
+    assert set(sailenv_ros.__all__) <= set(dir(sailenv_ros))
+
+
+def test_importing_the_package_imports_nothing_heavy() -> None:
+    """ROS, OpenGL, physics and NumPy are imported when they are needed."""
+    code = "import sys, sailenv_ros; print([m for m in {!r} if m in sys.modules])"
+    assert run(code.format(("rclpy", "moderngl", "pybullet", "numpy"))) == "[]"
+
+
+def test_the_simulation_needs_no_ros() -> None:
+    """Simulator and scene loader can be had where there is no ROS."""
+    code = "import sys, sailenv_ros; sailenv_ros.Simulation; sailenv_ros.load_scene; "
+    assert run(code + "print('rclpy' in sys.modules)") == "False"
+
+
+def test_without_ros_the_agent_says_what_is_missing() -> None:
+    """The error names what is missing and how to get it."""
+    code = """
+import sys
+sys.modules["rclpy"] = None
+import sailenv_ros
+try:
+    sailenv_ros.Agent
+except ImportError as error:
+    print(error)
+"""
+    assert "needs ROS 2" in run(code)
+    assert "rclpy" in run(code)
+
+
+def test_an_unknown_name_is_an_ordinary_error() -> None:
+    """The package behaves as any module does."""
+    with pytest.raises(AttributeError, match="no attribute 'Agnt'"):
+        _ = sailenv_ros.Agnt
