@@ -1,41 +1,64 @@
-"""`sailenv doctor`: what this machine has of what the simulator needs, and what is missing.
+"""`sailenv doctor`: what the simulator would run on here, what is wrong, and what to do about it.
 
-Whatever might hang or crash (drivers do) happens in a process of its own with a deadline. The exit
-status is 0 only if a frame could be rendered.
+Asks the system and the probes, gives a table of findings. Exit status 0 only if a frame can be
+rendered. Never hangs: whatever could, runs in a process of its own with a deadline.
 """
 
 from __future__ import annotations
 
 import argparse
-import importlib.metadata
-import importlib.util
-import json
 import os
 import platform
 import shutil
-import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from rich.console import Console
 from rich.table import Table
 
 from sailenv_ros import __version__
-from sailenv_ros.errors import SailenvError
-from sailenv_ros.transport import NEEDED_BYTES, SHARED_MEMORY
+from sailenv_ros.cli.probes import try_probe
+from sailenv_ros.presence import simulator_is_present
+from sailenv_ros.transport import NEEDED_BYTES, SHARED_MEMORY, remove_abandoned_segments
 
-__all__ = ["add_parser", "examine", "run"]
+__all__ = ["Finding", "add_parser", "diagnose", "run"]
 
-PROBE_TIMEOUT_S = 60.0
+Level = Literal["ok", "note", "warning", "FAILED"]
+Probe = Callable[[str, float], "tuple[dict[str, Any] | None, str]"]
 
-SYSTEM_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri libgl1"
+_STYLES: dict[Level, str] = {"ok": "green", "note": "cyan", "warning": "yellow", "FAILED": "red"}
 
-Finding = tuple[str, str, str]
-"""'ok', 'note' or 'bad'; what was examined; what was found."""
+LIBRARIES = ("numpy", "scipy", "numba", "moderngl", "pydantic", "opencv-python-headless")
+GRAPHICS_PACKAGES = "libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri"
+GRAPHICS_VARIABLES = (
+    "EGL_PLATFORM",
+    "LIBGL_ALWAYS_SOFTWARE",
+    "GALLIUM_DRIVER",
+    "MESA_LOADER_DRIVER_OVERRIDE",
+    "__EGL_VENDOR_LIBRARY_FILENAMES",
+)
 
-_COLOURS = {"ok": "green", "note": "yellow", "bad": "red"}
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One line of the report.
+
+    Attributes
+    ----------
+    topic : str
+    text : str
+        What was found, and where it is bad, what to do.
+    level : {'ok', 'note', 'warning', 'FAILED'}
+        ``FAILED`` alone changes the exit status.
+    """
+
+    topic: str
+    text: str
+    level: Level = "ok"
 
 
 def add_parser(subparsers: Any) -> None:
@@ -46,128 +69,203 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--timeout",
         type=float,
-        default=PROBE_TIMEOUT_S,
-        metavar="S",
-        help="wall time after which a driver counts as hanging (default: %(default)s)",
+        default=60.0,
+        metavar="SECONDS",
+        help="how long each probe may take (default: %(default)g)",
     )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Show the findings; 0 if a frame could be rendered, else 1."""
+    """Print the table; 0 if a frame can be rendered, else 1."""
     console = Console(highlight=False)
-    findings, rendered = examine(args.timeout)
-    table = Table(show_header=False, box=None, pad_edge=False)
-    for grade, what, found in findings:
-        table.add_row(f"[{_COLOURS[grade]}]{grade}[/]", what, found)
+    table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+    failed = False
+    with console.status("looking around"):
+        for finding in diagnose(timeout_s=args.timeout):
+            failed |= finding.level == "FAILED"
+            style = _STYLES[finding.level]
+            table.add_row(f"[{style}]{finding.level}[/]", finding.topic, _plain(finding.text))
     console.print(table)
-    if not rendered:
-        console.print("[red]No frame could be rendered[/], so the simulator will not run here.")
-    return 0 if rendered else 1
+    console.print(
+        "[red]The simulator cannot render here.[/]"
+        if failed
+        else "[green]Frames can be rendered.[/]"
+    )
+    return int(failed)
 
 
-def examine(timeout_s: float) -> tuple[list[Finding], bool]:
-    """Examine everything; say also whether a frame could be rendered.
+def diagnose(*, timeout_s: float, probe: Probe = try_probe) -> Iterator[Finding]:
+    """Look at everything, one after the other.
 
     Parameters
     ----------
     timeout_s : float
-        Deadline of each process that tries a renderer [s].
+        How long each probe may take [s].
+    probe : callable
+        Runs a probe by its name, as `try_probe` does.
     """
-    findings = [*_python(), *_ros(), *_scenes(), *_shared_memory()]
-    opengl, devices = _opengl(timeout_s)
-    findings += devices
-    if opengl:
-        return findings, True
-    probe = _probe("tiny", timeout_s)
-    if "rendered" in probe:
-        findings.append(("note", "fallback renderer", f"works, slowly: {probe['rendered']}"))
-        return findings, True
-    findings.append(("bad", "fallback renderer", probe["fault"]))
-    return findings, False
+    yield from _python()
+    yield from _ros(*probe("ros", timeout_s))
+    yield from _shared_memory()
+    yield from _scenes(*probe("scenes", timeout_s))
+    yield from _graphics(*probe("graphics", timeout_s))
+    yield from _frame(probe, timeout_s)
 
 
 def _python() -> Iterator[Finding]:
-    version = platform.python_version()
-    fits = (3, 10) <= sys.version_info[:2] <= (3, 13)
-    yield "ok" if fits else "note", "Python", f"{version}, {platform.machine()}, {sys.prefix}"
-    yield "ok", "sailenv_ros", f"{__version__}, {Path(__file__).parents[1]}"
+    yield Finding(
+        topic="Python",
+        text=f"{platform.python_version()} at {sys.executable}, {platform.platform()}",
+    )
+    yield Finding(topic="package", text=f"sailenv_ros {__version__} at {_own_folder()}")
+    bullet = "pybullet" if sys.version_info < (3, 12) else "pybullet-arm64"
+    yield Finding(
+        topic="libraries",
+        text=", ".join(f"{name} {_version(name)}" for name in (*LIBRARIES, bullet)),
+    )
 
 
-def _ros() -> Iterator[Finding]:
-    if importlib.util.find_spec("rclpy") is None:
-        yield (
-            "note",
-            "ROS 2",
-            "not here: Simulation works, nodes and Agent do not (see scripts/run)",
+def _ros(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
+    if found is None:
+        yield Finding(topic="ROS", text=why_not, level="warning")
+        return
+    if found["missing"]:
+        yield Finding(
+            topic="ROS",
+            text=f"missing: {'; '.join(found['missing'])}. The simulator runs without it, its node "
+            "and Agent do not: scripts/setup brings it, or source your ROS 2 Jazzy",
+            level="warning",
         )
+    if "rclpy" not in found:
         return
+    of_pypi = Path(found["rclpy"]).is_relative_to(sys.prefix)
+    distro = os.environ.get("ROS_DISTRO", "")
+    source = "from PyPI" if of_pypi else f"installed ({found['rclpy']})"
+    yield Finding(topic="ROS", text=f"{distro or 'jazzy'}, {source}, {found['rmw']}")
+    if of_pypi and distro:
+        yield Finding(
+            topic="ROS",
+            text=f"ROS 2 {distro} is sourced, and this Python has another one from PyPI: the two "
+            "must not be mixed. Use a shell without the first, or run scripts/setup in this one",
+            level="warning",
+        )
+    yield _domain()
+
+
+def _domain() -> Finding:
+    reach = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     try:
-        importlib.metadata.version("ros-rclpy")
-        source = f"wheels in {sys.prefix}"
-    except importlib.metadata.PackageNotFoundError:
-        source = os.environ.get("AMENT_PREFIX_PATH", "a prefix that is not named").split(":")[-1]
-    yield "ok", "ROS 2", f"{os.environ.get('ROS_DISTRO', 'jazzy')}, {source}"
-    messages = importlib.util.find_spec("sailenv_msgs") is not None
-    found = "installed" if messages else "not installed: run scripts/setup, or colcon build"
-    yield "ok" if messages else "bad", "sailenv_msgs", found
-    domain = os.environ.get("ROS_DOMAIN_ID", "0")
-    rmw = os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp (default)")
-    yield "ok", "middleware", f"{rmw}, ROS_DOMAIN_ID {domain}"
-
-
-def _scenes() -> Iterator[Finding]:
-    # Imported here: it reads the asset catalogue, and the rest must be told even if that fails.
-    from sailenv_ros.simulation.scenes import SceneLibrary
-
-    try:
-        library = SceneLibrary()
-        for name in library.scene_names:
-            library.load(name)
-    except SailenvError as fault:
-        yield "bad", "scenes", str(fault)
-        return
-    yield "ok", "scenes", ", ".join(library.scene_names)
-    yield "ok", "assets", f"{len(library.spawnables)}: {', '.join(library.spawnables[:8])} …"
+        domain = int(os.environ.get("ROS_DOMAIN_ID") or 0)
+    except ValueError:
+        text = f"ROS_DOMAIN_ID={os.environ['ROS_DOMAIN_ID']} is no number from 0 to 232"
+        return Finding(topic="domain", text=text, level="warning")
+    running = "a simulator runs" if simulator_is_present(domain, "/sailenv") else "no simulator"
+    text = f"{domain}, discovery range {reach}; {running} as /sailenv"
+    return Finding(topic="domain", text=text)
 
 
 def _shared_memory() -> Iterator[Finding]:
-    if not SHARED_MEMORY.is_dir():
-        yield "note", str(SHARED_MEMORY), "not here: big images will be slow between processes"
+    freed = remove_abandoned_segments()
+    if freed:
+        yield Finding(
+            topic="/dev/shm",
+            text=f"removed {freed >> 20} MiB that processes left behind when they were killed",
+            level="note",
+        )
+    try:
+        usage = shutil.disk_usage(SHARED_MEMORY)
+    except OSError as problem:
+        yield Finding(
+            topic="/dev/shm", text=f"{problem.strerror}: images go the slow way", level="warning"
+        )
         return
-    usage = shutil.disk_usage(SHARED_MEMORY)
-    left = sum(1 for _ in SHARED_MEMORY.glob("fastrtps_*"))
-    found = f"{usage.free >> 20} MiB free of {usage.total >> 20}, {left} files of Fast DDS"
-    enough = usage.free >= NEEDED_BYTES
-    hint = "" if enough else f"; under {NEEDED_BYTES >> 20} MiB images go the slow way"
-    yield "ok" if enough else "note", str(SHARED_MEMORY), found + hint
+    in_use = sum(1 for _ in SHARED_MEMORY.glob("fastrtps_*[0-9a-f]"))
+    text = (
+        f"{usage.free >> 20} of {usage.total >> 20} MiB free, {in_use} segments of Fast DDS in use"
+    )
+    if usage.free >= NEEDED_BYTES:
+        yield Finding(topic="/dev/shm", text=text)
+    else:
+        yield Finding(
+            topic="/dev/shm",
+            text=f"{text}; images want {NEEDED_BYTES >> 20} MiB, else they go the slow way "
+            "(docker run --shm-size=1g)",
+            level="warning",
+        )
 
 
-def _opengl(timeout_s: float) -> tuple[bool, list[Finding]]:
-    probe = _probe("gl", timeout_s)
-    findings: list[Finding] = [
-        ("note" if device["refused"] else "ok", f"EGL device {device['index']}", device["text"])
-        for device in probe.get("devices", ())
-    ]
-    if "rendered" not in probe:
-        hint = f"; on Debian and Ubuntu: apt-get install {SYSTEM_PACKAGES}"
-        return False, [*findings, ("bad", "OpenGL", probe["fault"] + hint)]
-    if probe["software"]:
-        found = f"SOFTWARE, on the CPU: {probe['rendered']}"
-        return True, [*findings, ("note", "OpenGL", found)]
-    return True, [*findings, ("ok", "OpenGL", probe["rendered"])]
+def _scenes(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
+    if found is None:
+        yield Finding(topic="scenes", text=why_not, level="FAILED")
+        return
+    yield Finding(
+        topic="scenes",
+        text=f"{', '.join(found['scenes']) or 'none'}; {found['assets']} assets to put into them",
+        level="ok" if found["scenes"] else "FAILED",
+    )
+    for fault in found["scenes"].values():
+        if fault:
+            yield Finding(topic="scenes", text=fault, level="warning")
 
 
-def _probe(backend: str, timeout_s: float) -> dict[str, Any]:
-    """Try a renderer in a process of its own; 'fault' in its answer says why it failed."""
-    command = [sys.executable, "-m", "sailenv_ros.cli.probe_renderer", backend]
+def _graphics(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
+    for name in GRAPHICS_VARIABLES:
+        if name in os.environ:
+            yield Finding(topic="OpenGL", text=f"{name}={os.environ[name]} is set", level="note")
+    remedy = f"If there is no driver: sudo apt-get install {GRAPHICS_PACKAGES}"
+    if found is None:
+        yield Finding(topic="OpenGL", text=f"{why_not}. {remedy}", level="warning")
+        return
+    usable = [device for device in found["devices"] if not device["refused"]]
+    for device in found["devices"]:
+        topic = f"EGL device {device['index']}"
+        if device["refused"]:
+            yield Finding(topic=topic, text=f"refused: {device['refused']}", level="note")
+        else:
+            yield Finding(topic=topic, text=f"{device['renderer']}, OpenGL {device['version']}")
+    if not usable:
+        yield Finding(topic="OpenGL", text=f"no device gives a context. {remedy}", level="warning")
+    elif all(device["software"] for device in usable):
+        yield Finding(
+            topic="OpenGL",
+            text="rendering in SOFTWARE, on the CPU: no device is graphics hardware. Right "
+            "pictures, slowly; where there is a graphics card, its driver lacks EGL",
+            level="warning",
+        )
+
+
+def _frame(probe: Probe, timeout_s: float) -> Iterator[Finding]:
+    found, why_not = probe("frame by gl", timeout_s)
+    if found is None:
+        yield Finding(topic="OpenGL", text=f"no frame: {why_not}", level="warning")
+        found, why_not = probe("frame by tiny", timeout_s)
+        if found is None:
+            yield Finding(topic="a frame", text=f"nor by the fallback: {why_not}", level="FAILED")
+            return
+        text = f"FALLBACK, slow, on the CPU: {found['renderer']}"
+        yield Finding(topic="renderer", text=text, level="warning")
+    else:
+        yield Finding(topic="renderer", text=found["renderer"])
+    yield Finding(
+        topic="a frame",
+        text=f"{found['scene']} at 640x480 with five views in {found['ms']:.0f} ms, "
+        f"{found['instances']} objects seen",
+        level="ok" if found["instances"] else "FAILED",
+    )
+
+
+def _version(distribution: str) -> str:
     try:
-        done = subprocess.run(command, capture_output=True, timeout=timeout_s, check=False)
-    except subprocess.TimeoutExpired:
-        return {"fault": f"hangs: no answer within {timeout_s:g} s"}
-    try:
-        answer: dict[str, Any] = json.loads(done.stdout.decode().strip().splitlines()[-1])
-    except (ValueError, IndexError):
-        last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
-        return {"fault": f"ended with status {done.returncode} {' '.join(last)}".strip()}
-    return answer
+        return version(distribution)
+    except PackageNotFoundError:
+        return "(missing)"
+
+
+def _own_folder() -> Path:
+    return Path(__file__).resolve().parents[1]
+
+
+def _plain(text: str) -> str:
+    """Keep rich from reading brackets as its markup."""
+    return text.replace("[", r"\[")

@@ -1,22 +1,27 @@
 """`sailenv`: finds the subcommand's module and runs it.
 
-A module in `COMMANDS` has ``add_parser(subparsers)`` and ``run(args) -> int``; it is imported only
-where its command is named, or for the list of all.
+The module of a command has ``add_parser(subparsers)`` and ``run(args) -> int``; it is imported only
+where its command is named, so that help appears at once and one command cannot break another.
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
+from sailenv_ros import __version__
 from sailenv_ros.errors import SailenvError
 
 __all__ = ["COMMANDS", "main"]
 
-COMMANDS = ("doctor", "scene")
-"""Names of the subcommands and of their modules."""
+COMMANDS = {
+    "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "scene": "check scene files, list scenes, export the schema of the format",
+}
+"""What each subcommand does, by its name, which is its module's too."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -29,21 +34,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
         130 after Ctrl-C.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    named = [name for name in COMMANDS if words[:1] == [name]]
     parser = argparse.ArgumentParser(
         prog="sailenv", description="A virtual visual environment: its tools for the command line."
     )
+    parser.add_argument("--version", action="version", version=f"sailenv_ros {__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name in named or COMMANDS:
-        importlib.import_module(f"sailenv_ros.cli.{name}").add_parser(subparsers)
+    for name, purpose in COMMANDS.items():
+        if words[:1] == [name]:
+            importlib.import_module(f"sailenv_ros.cli.{name}").add_parser(subparsers)
+        else:
+            subparsers.add_parser(name, help=purpose)
     args = parser.parse_args(words)
     try:
-        return int(args.run(args))
+        status = int(args.run(args))
+        sys.stdout.flush()  # here, where a reader that has gone is still caught
+        return status
     except SailenvError as problem:
         print(f"sailenv {args.command}: {problem}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
+    except BrokenPipeError:
+        # Python would complain once more when it closes its output at the very end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
 
 
 if __name__ == "__main__":

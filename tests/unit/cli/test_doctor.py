@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -9,58 +10,148 @@ from typing import Any
 import pytest
 
 from sailenv_ros.cli import doctor
+from sailenv_ros.cli.doctor import Finding, diagnose
 from sailenv_ros.cli.main import main
+from sailenv_ros.cli.probes import try_probe
+
+Answer = tuple[dict[str, Any] | None, str]
+
+HARDWARE = {"index": 0, "renderer": "A Card", "version": "4.6", "refused": "", "software": False}
+SOFTWARE = {"index": 1, "renderer": "llvmpipe", "version": "4.5", "refused": "", "software": True}
+REFUSED = {"index": 2, "renderer": "", "version": "", "refused": "no driver", "software": False}
+FRAME = {"scene": "optical", "renderer": "a renderer", "ms": 20.0, "instances": 7}
+HEALTHY: dict[str, Answer] = {
+    "ros": ({"missing": [], "rclpy": f"{sys.prefix}/rclpy.py", "rmw": "rmw_fastrtps_cpp"}, ""),
+    "scenes": ({"scenes": {"optical": ""}, "assets": 5}, ""),
+    "graphics": ({"devices": [HARDWARE, REFUSED]}, ""),
+    "frame by gl": (FRAME, ""),
+}
+
+
+def findings(**changes: Answer) -> list[Finding]:
+    """Diagnose a healthy machine with some answers replaced, `_` for a blank in their names."""
+    answers = HEALTHY | {name.replace("_", " "): answer for name, answer in changes.items()}
+    return list(diagnose(timeout_s=1.0, probe=lambda name, _: answers[name]))
+
+
+def about(topic: str, found: list[Finding], level: str) -> str:
+    return "\n".join(one.text for one in found if one.topic == topic and one.level == level)
 
 
 def test_a_machine_that_renders_is_well(capsys: pytest.CaptureFixture[str]) -> None:
     """Status 0, with the device, the renderer and the scenes in the table."""
     assert main(["doctor"]) == 0
     shown = capsys.readouterr().out
-    for word in ("EGL device 0", "OpenGL", "optical", "/dev/shm", "Python"):
+    for word in ("EGL device 0", "renderer", "optical", "/dev/shm", "Python"):
         assert word in shown
+    assert "Frames can be rendered" in shown
 
 
-def test_without_opengl_the_fallback_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_graphics_hardware_leaves_nothing_to_warn_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No warning about OpenGL; the refused device is told with its reason."""
+    for name in doctor.GRAPHICS_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    found = findings()
+    assert about("EGL device 0", found, "ok") == "A Card, OpenGL 4.6"
+    assert about("EGL device 2", found, "note") == "refused: no driver"
+    assert not about("OpenGL", found, "warning")
+
+
+def test_software_rendering_is_told_loudly() -> None:
+    """Where no device is hardware, there is a warning that says so."""
+    found = findings(graphics=({"devices": [SOFTWARE, REFUSED]}, ""))
+    assert "SOFTWARE" in about("OpenGL", found, "warning")
+
+
+def test_without_opengl_the_fallback_is_enough() -> None:
     """OpenGL's fault is told with the packages that mend it; the fallback's frame counts."""
-    real = doctor._probe
-
-    def probe(backend: str, timeout_s: float) -> dict[str, Any]:
-        return {"fault": "no driver"} if backend == "gl" else real(backend, timeout_s)
-
-    monkeypatch.setattr(doctor, "_probe", probe)
-    findings, rendered = doctor.examine(60.0)
-    assert rendered
-    told = {what: (grade, found) for grade, what, found in findings}
-    assert told["OpenGL"][0] == "bad"
-    assert "apt-get install libegl1" in told["OpenGL"][1]
-    assert told["fallback renderer"][0] == "note"
-
-
-def test_without_any_renderer_the_status_is_1(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Nothing renders: said in words, and the status says so."""
-    monkeypatch.setattr(doctor, "_probe", lambda *_: {"fault": "no driver"})
-    assert main(["doctor"]) == 1
-    assert "No frame could be rendered" in capsys.readouterr().out
+    found = findings(
+        graphics=({"devices": [REFUSED]}, ""),
+        frame_by_gl=(None, "no OpenGL context"),
+        frame_by_tiny=(FRAME, ""),
+    )
+    assert "apt-get install libegl1" in about("OpenGL", found, "warning")
+    assert "no OpenGL context" in about("OpenGL", found, "warning")
+    assert "FALLBACK" in about("renderer", found, "warning")
+    assert "FAILED" not in {one.level for one in found}
 
 
 @pytest.mark.parametrize(
-    ("script", "fault"),
+    "changes",
     [
-        ("import time; time.sleep(60)", "hangs: no answer within 0.5 s"),
-        ("import os; os.abort()", "ended with status -6"),
-        ("import sys; sys.exit('libEGL is broken')", "ended with status 1 libEGL is broken"),
-        ("print('not json')", "ended with status 0"),
+        {"frame_by_gl": (None, "crashed"), "frame_by_tiny": (None, "crashed too")},
+        {"frame_by_gl": ({**FRAME, "instances": 0}, "")},
+        {"scenes": (None, "crashed")},
+    ],
+)
+def test_what_keeps_a_simulator_from_rendering_fails(
+    changes: dict[str, Answer],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """No renderer, an empty picture or no scene: said in words, and status 1."""
+    found = findings(**changes)
+    monkeypatch.setattr(doctor, "diagnose", lambda **_: iter(found))
+    assert main(["doctor"]) == 1
+    assert "cannot render here" in capsys.readouterr().out
+
+
+def test_without_ros_the_simulator_still_renders() -> None:
+    """Missing ROS is a warning that names what is missing and what brings it."""
+    missing = {"missing": ["rclpy (No module named 'rclpy')"]}
+    found = findings(ros=(missing, ""))
+    assert "rclpy" in about("ROS", found, "warning")
+    assert "scripts/setup" in about("ROS", found, "warning")
+    assert "FAILED" not in {one.level for one in found}
+
+
+def test_two_ros_at_once_are_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sourced ROS and another one from PyPI do not go together."""
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    assert "must not be mixed" in about("ROS", findings(), "warning")
+
+
+@pytest.mark.parametrize("domain", ["twelve", ""])
+def test_a_domain_that_is_no_number_is_told(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Doctor survives the settings that keep others from starting."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    found = findings()
+    if domain:
+        assert "twelve" in about("domain", found, "warning")
+    else:
+        assert about("domain", found, "ok").startswith("0,")
+
+
+@pytest.mark.parametrize(
+    ("script", "why_not"),
+    [
+        ("import time; time.sleep(60)", "did not come back within 0.5 s, and was ended"),
+        ("import os; os.abort()", "crashed (SIGABRT)"),
+        ("import sys; sys.exit('libEGL is broken')", "libEGL is broken"),
+        ("print('{}')", "ended with status 0 and said nothing"),
     ],
 )
 def test_a_driver_that_hangs_or_crashes_is_reported(
-    script: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    script: str, why_not: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The probing process may do what it wants; doctor comes back in time with the reason."""
-    fake = tmp_path / "python"
-    body = script.replace('"', '\\"')
-    fake.write_text(f'#!/bin/sh\nexec {sys.executable} -c "{body}"\n')
+    monkeypatch.setattr(sys, "executable", _python_that_runs(script, tmp_path))
+    assert try_probe("graphics", 0.5 if "sleep" in script else 30.0) == (None, why_not)
+
+
+def test_a_chatty_driver_does_not_spoil_the_answer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What libraries print beside the answer is passed over."""
+    answer = json.dumps({"devices": []})
+    script = f"print('MESA: hello'); print('sailenv-probe:' + {answer!r}); print('bye')"
+    monkeypatch.setattr(sys, "executable", _python_that_runs(script, tmp_path))
+    assert try_probe("graphics", 30.0) == ({"devices": []}, "")
+
+
+def _python_that_runs(script: str, folder: Path) -> str:
+    (folder / "script.py").write_text(script)
+    fake = folder / "python"
+    fake.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{folder}/script.py"\n')
     fake.chmod(0o755)
-    monkeypatch.setattr(sys, "executable", str(fake))
-    assert doctor._probe("gl", 0.5 if "sleep" in script else 30.0) == {"fault": fault}
+    return str(fake)

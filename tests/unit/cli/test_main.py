@@ -53,14 +53,16 @@ def test_ctrl_c_is_quiet(
     assert capsys.readouterr().err == ""
 
 
-def test_naming_a_command_imports_no_other() -> None:
-    """`sailenv doctor --help` needs neither OpenGL nor PyBullet nor ROS."""
+@pytest.mark.parametrize("arguments", [["doctor", "--help"], ["--help"], ["--version"]])
+def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
+    """A little help needs neither OpenGL nor PyBullet nor ROS."""
     code = (
         "import sys\n"
         "from sailenv_ros.cli.main import main\n"
-        "try: main(['doctor', '--help'])\n"
+        f"try: main({arguments})\n"
         "except SystemExit: pass\n"
-        "print([m for m in ('moderngl', 'pybullet', 'rclpy', 'numba') if m in sys.modules])"
+        "heavy = ('moderngl', 'pybullet', 'rclpy', 'numba', 'numpy')\n"
+        "print([m for m in heavy if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("[]")
