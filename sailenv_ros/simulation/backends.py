@@ -41,6 +41,6 @@ def make_backend(backend: BackendName, device: int | None) -> RenderBackend:
             if backend == "gl":
                 raise
             _log.warning("falling back to the slow software renderer: %s", problem)
-    from sailenv_ros.world.tiny_renderer import TinyRenderer
+    from sailenv_ros.simulation.tiny_renderer import TinyRenderer
 
     return TinyRenderer()
