@@ -17,9 +17,13 @@ from numpy.typing import NDArray
 from sailenv_ros.model import Material
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.materials import MaterialBuffers
-from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 __all__ = ["Batch", "BatchKind", "DrawList"]
+
+LARGEST_CASTER_M = 12.0
+"""Bodies with a longer diagonal (grounds) receive shadows and cast none: they would stretch the
+shadow map to their own size."""
 
 ROW = np.dtype(
     [
@@ -119,7 +123,11 @@ class DrawList:
             commands[number] = (lies.index_count, 1, lies.first_index, lies.first_vertex, number)
         self.row_buffer = context.buffer(reserve=self._rows.nbytes, dynamic=True)
         self.draw_numbers = context.buffer(np.arange(max(1, len(parts)), dtype=np.int32).tobytes())
-        self.batches = tuple(_batches(context, [kind for kind, *_ in parts], commands))
+        kinds = [kind for kind, *_ in parts]
+        self.batches = tuple(_batches(context, kinds, commands))
+        casting = np.array([_casts(contents.instances[row]) for row in self._instance_rows], bool)
+        shadows = [kind for kind, casts in zip(kinds, casting, strict=True) if casts]
+        self.caster_batches = tuple(_batches(context, shadows, commands[casting]))
 
     def place(
         self,
@@ -149,8 +157,14 @@ class DrawList:
 
     def close(self) -> None:
         """Free the buffers."""
-        for buffer in (self.row_buffer, self.draw_numbers, *(b.commands for b in self.batches)):
+        batches = (*self.batches, *self.caster_batches)
+        for buffer in (self.row_buffer, self.draw_numbers, *(b.commands for b in batches)):
             buffer.release()
+
+
+def _casts(drawn: DrawnInstance) -> bool:
+    low, high = drawn.model.bounds() * np.asarray(drawn.scale)
+    return float(np.linalg.norm(high - low)) <= LARGEST_CASTER_M
 
 
 def _batches(

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.render.geometry_pass import GeometryPass, Targets
-from sailenv_ros.render.smooth_edges import smooth_edges
 
 __all__ = ["PictureBuffers"]
 
@@ -43,12 +42,12 @@ class PictureBuffers:
         return self._targets[key]
 
     def read_picture(self, targets: Targets) -> NDArray[np.uint8]:
-        """Read the picture with its edges smoothed; a fresh (H, W, 3) array."""
+        """Read the lit picture, sRGB and luma; a fresh (H, W, 4) array."""
         assert targets.picture is not None
         four = np.empty((targets.picture.height, targets.picture.width, 4), np.uint8)
         # Reading three components would make the driver convert them, ten times slower.
         targets.picture.read_into(four, components=4)
-        return smooth_edges(four)
+        return four
 
     def read_surface(self, targets: Targets) -> NDArray[np.float32]:
         """Read depth and instance id; a fresh (H, W, 2) array."""

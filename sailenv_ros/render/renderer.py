@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -66,6 +67,7 @@ class Renderer:
             self._context.release()
             raise
         self._draws: DrawList | None = None
+        self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
         self._closed = False
         ground_truth.warm_up()
         smooth_edges.warm_up()
@@ -99,7 +101,13 @@ class Renderer:
                 previous = self._with_depth(previous)
             arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
-        truth = ground_truth.annotate(arrays.pop("surface"), snapshot, previous, camera, wanted)
+        # Both walks leave Python's lock alone: the labels are made beside the picture.
+        walk = self._beside.submit(
+            ground_truth.annotate, arrays.pop("surface"), snapshot, previous, camera, wanted
+        )
+        if "rgb" in wanted:
+            arrays["rgb"] = smooth_edges.smooth_edges(arrays["rgb"])
+        truth = walk.result()
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
         depth: NDArray[np.float32] = truth["depth"]
@@ -119,6 +127,7 @@ class Renderer:
         if self._closed:
             return
         self._closed = True
+        self._beside.shutdown()
         with self._context:
             for resource in (
                 self._draws,
@@ -172,7 +181,6 @@ class Renderer:
             )
             mark("lighting")
             arrays["rgb"] = self._pictures.read_picture(targets)
-            mark("edges")
         arrays["surface"] = self._pictures.read_surface(targets)
         if targets.normals is not None:
             arrays["normals"] = self._pictures.read_normals(targets)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.lights import Light
-from sailenv_ros.render.draw_list import DrawList
+from sailenv_ros.render.draw_list import LARGEST_CASTER_M, DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import issue
 from sailenv_ros.render.programs import ProgramCache
@@ -20,10 +20,6 @@ from sailenv_ros.snapshot import WorldSnapshot
 __all__ = ["ShadowPass"]
 
 SIZE_PX = 1024
-
-LARGEST_CASTER_M = 12.0
-"""Bodies with a longer diagonal (grounds) do not stretch the map: what they cast from beyond the
-others is not seen."""
 
 
 class ShadowPass:
@@ -64,7 +60,7 @@ class ShadowPass:
         context.enable_only(moderngl.DEPTH_TEST)
         self._context.polygon_offset = 1.5, 2.0
         draws.row_buffer.bind_to_storage_buffer(0)
-        for batch in draws.batches:
+        for batch in draws.caster_batches:
             issue(context, self._program, draws, geometry, batch.commands, batch.count)
         self._context.polygon_offset = 0.0, 0.0
 
@@ -109,7 +105,7 @@ def _caster_bounds(
         )
     ]
     for matrix, (middle, radius) in zip(snapshot.world_from_body, spheres, strict=True):
-        if 2.0 * radius > LARGEST_CASTER_M and len(spheres) > 1:
+        if 2.0 * radius > LARGEST_CASTER_M:
             continue
         world = matrix[:3, :3] @ middle + matrix[:3, 3]
         centre = light_from_world[:3, :3] @ world

@@ -214,7 +214,7 @@ def test_only_what_is_wanted_is_made(renderer: Renderer) -> None:
     """Without rgb neither shadow nor lighting run, and no other view comes back."""
     rendered = renderer.render(gallery(), None, camera_at(), ["instance"])
     assert set(rendered.views) == {"instance"}
-    assert not {"shadow", "lighting", "edges"} & set(rendered.timings_s)
+    assert not {"shadow", "lighting"} & set(rendered.timings_s)
     assert "lighting" in renderer.render(gallery(), None, camera_at(), ["rgb"]).timings_s
 
 

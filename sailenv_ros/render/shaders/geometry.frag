@@ -1,17 +1,17 @@
 // Leaves depth and instance id of each pixel; for pictures also normal and material.
-#include "draws.glsl"
-
-flat in int draw_row;
+flat in float instance_id;
 
 layout(location = 0) out vec2 out_surface;  // depth along the optical axis [m], instance id
 
 #ifdef SHADED
-#include "materials.glsl"
+#include "textures.glsl"
 
 uniform vec4 lens;  // focal length, cx, cy [px], unused
 
 in vec3 optical_normal;
 in vec2 uv;
+flat in vec4 material_colour;
+flat in vec4 material_finish;  // roughness, metallic, alpha cutoff, emission
 #ifndef UNLIT
 layout(location = 1) out vec4 out_shape;   // octahedral normal, roughness, metallic
 layout(location = 2) out vec4 out_albedo;  // square root of linear albedo, emission / 16
@@ -32,12 +32,11 @@ vec2 octahedral(vec3 n) {
 void main() {
     // Clip w is the depth, and gl_FragCoord.w its reciprocal, which is linear in the window:
     // the most exact form in which the rasteriser knows it.
-    out_surface = vec2(1.0 / gl_FragCoord.w, draws[draw_row].instance_id);
+    out_surface = vec2(1.0 / gl_FragCoord.w, instance_id);
 #ifdef SHADED
-    Material material = materials[draws[draw_row].material];
-    vec4 base = base_colour(material, uv);
+    vec4 base = base_colour(material_colour, uv);
 #ifdef MASKED
-    if (base.a < material.alpha_cutoff) discard;
+    if (base.a < material_finish.z) discard;
 #endif
     vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
 #ifdef NORMALS
@@ -46,11 +45,11 @@ void main() {
 #ifndef UNLIT
 #ifdef TEXTURED
     vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
-    normal = mapped_normal(material, uv, normal, point);
+    normal = mapped_normal(uv, normal, point);
 #endif
-    vec2 rough_metal = roughness_metallic(material, uv);
+    vec2 rough_metal = roughness_metallic(material_finish.xy, uv);
     out_shape = vec4(octahedral(normal), rough_metal);
-    out_albedo = vec4(sqrt(base.rgb), material.emission);
+    out_albedo = vec4(sqrt(base.rgb), material_finish.w);
 #endif
 #endif
 }

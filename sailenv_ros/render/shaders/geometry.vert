@@ -5,13 +5,22 @@ in vec2 in_uv;
 in int in_draw;  // advances once per draw: the base instance chooses the row
 
 #include "draws.glsl"
+#ifdef SHADED
+#include "materials.glsl"
+#endif
 
 uniform float far_m;
 
-flat out int draw_row;
+// Fetched once per vertex: a fetch from a buffer costs a software rasteriser much per pixel.
+flat out float instance_id;
 #ifdef SHADED
 out vec3 optical_normal;
 out vec2 uv;
+flat out vec4 material_colour;
+flat out vec4 material_finish;    // roughness, metallic, alpha cutoff, emission
+#ifdef TEXTURED
+flat out ivec4 material_textures;
+#endif
 #endif
 
 out float gl_ClipDistance[1];
@@ -20,8 +29,14 @@ void main() {
     gl_Position = draws[in_draw].clip_from_object * vec4(in_position, 1.0);
     // Depth clamp lets surfaces nearer than near through; it must not let those beyond far.
     gl_ClipDistance[0] = far_m - gl_Position.w;
-    draw_row = in_draw;
+    instance_id = draws[in_draw].instance_id;
 #ifdef SHADED
+    Material material = materials[draws[in_draw].material];
+    material_colour = material.base_colour;
+    material_finish = material.finish;
+#ifdef TEXTURED
+    material_textures = material.textures;
+#endif
     optical_normal = vec3(dot(draws[in_draw].optical_normal_from_object[0].xyz, in_normal),
                           dot(draws[in_draw].optical_normal_from_object[1].xyz, in_normal),
                           dot(draws[in_draw].optical_normal_from_object[2].xyz, in_normal));
