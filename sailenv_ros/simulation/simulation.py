@@ -12,47 +12,22 @@ import logging
 import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
-from concurrent.futures import TimeoutError as FutureTimeout
 from pathlib import Path
 from typing import Any, TypeVar
 
-from numpy.typing import ArrayLike
-
-from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, SimulationClosed, UnknownName
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import Pose
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.backends import make_backend
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.pacing import Pacer
+from sailenv_ros.simulation.requests import REQUESTS, Requests, wait_for
 from sailenv_ros.simulation.scenes import DEFAULT_SCENE, SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
 
 __all__ = ["Simulation"]
 
 _log = logging.getLogger(__name__)
-
-REQUESTS = frozenset(
-    {
-        "capture",
-        "change_scene",
-        "delete_agent",
-        "get_pose",
-        "pause",
-        "register_agent",
-        "reset",
-        "resume",
-        "set_follow",
-        "set_pose",
-        "set_position",
-        "set_rotation",
-        "step",
-        "toggle_follow",
-    }
-)
-"""Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
 
 TICK_STEPS = 2
 """Steps between two looks at the clock while no frame is due (120 per simulated second)."""
@@ -63,7 +38,7 @@ _START_TIMEOUT_S = 120.0
 T = TypeVar("T")
 
 
-class Simulation:
+class Simulation(Requests):
     """A running simulation; a context manager.
 
     Parameters
@@ -142,7 +117,7 @@ class Simulation:
             target=self._run, args=(make_core, started), name="sailenv-simulation", daemon=True
         )
         self._thread.start()
-        _await(started, "the simulation to start", _START_TIMEOUT_S)
+        wait_for(started, "the simulation to start", _START_TIMEOUT_S)
         # The loop thread is a daemon; GL objects and the engine want an orderly end all the same.
         atexit.register(self.close)
 
@@ -180,81 +155,6 @@ class Simulation:
             raise UnknownName("request", name, sorted(REQUESTS))
         return self._submit(lambda core: getattr(core, name)(*args, **kwargs))
 
-    def register_agent(self, spec: AgentSpec, *, timeout_s: float = 30.0) -> AgentSpec:
-        """Add an agent; give its spec as accepted."""
-        result: AgentSpec = self._ask("register_agent", timeout_s, spec)
-        return result
-
-    def delete_agent(self, name: str, *, timeout_s: float = 30.0) -> None:
-        """Remove an agent and end its streams."""
-        self._ask("delete_agent", timeout_s, name)
-
-    def get_pose(self, agent: str, *, timeout_s: float = 30.0) -> AgentPose:
-        """Say where an agent is."""
-        result: AgentPose = self._ask("get_pose", timeout_s, agent)
-        return result
-
-    def set_pose(
-        self, agent: str, pose: Pose, *, teleport: bool = False, timeout_s: float = 30.0
-    ) -> None:
-        """Move an agent, or the mover that it follows (which waypoints then drive no longer).
-
-        A set pose is motion, which flow shows; `teleport` cuts the past off instead.
-        """
-        self._ask("set_pose", timeout_s, agent, pose, teleport=teleport)
-
-    def set_position(
-        self, agent: str, position_m: ArrayLike, *, teleport: bool = False, timeout_s: float = 30.0
-    ) -> None:
-        """Move an agent to world coordinates [m] and leave its orientation."""
-        self._ask("set_position", timeout_s, agent, position_m, teleport=teleport)
-
-    def set_rotation(
-        self, agent: str, rpy_deg: ArrayLike, *, teleport: bool = False, timeout_s: float = 30.0
-    ) -> None:
-        """Turn an agent to roll, pitch, yaw about fixed axes [deg] and leave its position."""
-        self._ask("set_rotation", timeout_s, agent, rpy_deg, teleport=teleport)
-
-    def set_follow(self, agent: str, following: bool, *, timeout_s: float = 30.0) -> bool:
-        """Follow the mover or stop; give the new state."""
-        result: bool = self._ask("set_follow", timeout_s, agent, following)
-        return result
-
-    def toggle_follow(self, agent: str, *, timeout_s: float = 30.0) -> bool:
-        """Change between following and not; give the new state."""
-        result: bool = self._ask("toggle_follow", timeout_s, agent)
-        return result
-
-    def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
-        """Leave the present world for another scene, at simulated time 0."""
-        self._ask("change_scene", timeout_s, name)
-
-    def reset(self, seed: int | None = None, *, timeout_s: float = 120.0) -> int:
-        """Begin the present scene anew, with another seed if one is given; give the epoch."""
-        result: int = self._ask("reset", timeout_s, seed)
-        return result
-
-    def pause(self, *, timeout_s: float = 30.0) -> None:
-        """Hold simulated time."""
-        self._ask("pause", timeout_s)
-
-    def resume(self, *, timeout_s: float = 30.0) -> None:
-        """Let simulated time run on."""
-        self._ask("resume", timeout_s)
-
-    def step(self, count: int = 1, *, timeout_s: float = 600.0) -> int:
-        """Advance by physics steps of 1/240 s; give the simulated time afterwards [ns]."""
-        result: int = self._ask("step", timeout_s, count)
-        return result
-
-    def capture(
-        self, agent: str, views: Iterable[str] | None = None, *, timeout_s: float = 30.0
-    ) -> Frame:
-        """Render exactly one frame of an agent, after everything asked before."""
-        wanted = None if views is None else tuple(views)
-        result: Frame = self._ask("capture", timeout_s, agent, wanted)
-        return result
-
     # -- streams and listeners -------------------------------------------------------------
 
     def stream(self, agent: str, views: Iterable[str], *, timeout_s: float = 30.0) -> FrameStream:
@@ -265,7 +165,7 @@ class Simulation:
             self._nudge()
 
         future = self._submit(lambda core: core.open_stream(agent, wanted, changed))
-        return _await(future, f"a stream of agent {agent!r}", timeout_s)
+        return wait_for(future, f"a stream of agent {agent!r}", timeout_s)
 
     def on_info(self, listener: Callable[[SceneInfo], None]) -> Callable[[], None]:
         """Have a quick function called, now and at every change; gives the one that ends it.
@@ -392,20 +292,6 @@ class Simulation:
     def _nudge(self) -> None:
         with self._wake:
             self._wake.notify_all()
-
-    def _ask(self, name: str, timeout_s: float, *args: Any, **kwargs: Any) -> Any:
-        """Queue a request and wait; its result has the type of the core's method."""
-        return _await(self.request(name, *args, **kwargs), f"the request {name!r}", timeout_s)
-
-
-def _await(future: Future[T], what: str, timeout_s: float) -> T:
-    try:
-        return future.result(timeout_s)
-    except FutureTimeout:
-        if future.done():
-            raise
-        future.cancel()
-        raise DeadlineExceeded(what, timeout_s) from None
 
 
 def _discard(listeners: list[Any], listener: Any) -> None:

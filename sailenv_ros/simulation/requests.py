@@ -1,0 +1,141 @@
+"""Every request of a simulation as a blocking method with a deadline.
+
+The methods are those of `SimulationCore` by name; `Requests` queues them through `request` and
+waits. Knows no thread and no queue.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeout
+from typing import Any, TypeVar
+
+from numpy.typing import ArrayLike
+
+from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.errors import DeadlineExceeded
+from sailenv_ros.frame import Frame
+from sailenv_ros.geometry import Pose
+
+__all__ = ["REQUESTS", "Requests", "wait_for"]
+
+T = TypeVar("T")
+
+REQUESTS = frozenset(
+    {
+        "capture",
+        "change_scene",
+        "delete_agent",
+        "get_pose",
+        "pause",
+        "register_agent",
+        "reset",
+        "resume",
+        "set_follow",
+        "set_pose",
+        "set_position",
+        "set_rotation",
+        "step",
+        "toggle_follow",
+    }
+)
+"""Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
+
+
+class Requests:
+    """The blocking methods; `Simulation` adds the queue that `request` puts them into."""
+
+    def request(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Queue a request by its name; the future gives its result or raises its error."""
+        raise NotImplementedError
+
+    def register_agent(self, spec: AgentSpec, *, timeout_s: float = 30.0) -> AgentSpec:
+        """Add an agent; give its spec as accepted."""
+        result: AgentSpec = self._ask("register_agent", timeout_s, spec)
+        return result
+
+    def delete_agent(self, name: str, *, timeout_s: float = 30.0) -> None:
+        """Remove an agent and end its streams."""
+        self._ask("delete_agent", timeout_s, name)
+
+    def get_pose(self, agent: str, *, timeout_s: float = 30.0) -> AgentPose:
+        """Say where an agent is."""
+        result: AgentPose = self._ask("get_pose", timeout_s, agent)
+        return result
+
+    def set_pose(
+        self, agent: str, pose: Pose, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Move an agent, or the mover that it follows (which waypoints then drive no longer).
+
+        A set pose is motion, which flow shows; `teleport` cuts the past off instead.
+        """
+        self._ask("set_pose", timeout_s, agent, pose, teleport=teleport)
+
+    def set_position(
+        self, agent: str, position_m: ArrayLike, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Move an agent to world coordinates [m] and leave its orientation."""
+        self._ask("set_position", timeout_s, agent, position_m, teleport=teleport)
+
+    def set_rotation(
+        self, agent: str, rpy_deg: ArrayLike, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Turn an agent to roll, pitch, yaw about fixed axes [deg] and leave its position."""
+        self._ask("set_rotation", timeout_s, agent, rpy_deg, teleport=teleport)
+
+    def set_follow(self, agent: str, following: bool, *, timeout_s: float = 30.0) -> bool:
+        """Follow the mover or stop; give the new state."""
+        result: bool = self._ask("set_follow", timeout_s, agent, following)
+        return result
+
+    def toggle_follow(self, agent: str, *, timeout_s: float = 30.0) -> bool:
+        """Change between following and not; give the new state."""
+        result: bool = self._ask("toggle_follow", timeout_s, agent)
+        return result
+
+    def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
+        """Leave the present world for another scene, at simulated time 0."""
+        self._ask("change_scene", timeout_s, name)
+
+    def reset(self, seed: int | None = None, *, timeout_s: float = 120.0) -> int:
+        """Begin the present scene anew, with another seed if one is given; give the epoch."""
+        result: int = self._ask("reset", timeout_s, seed)
+        return result
+
+    def pause(self, *, timeout_s: float = 30.0) -> None:
+        """Hold simulated time."""
+        self._ask("pause", timeout_s)
+
+    def resume(self, *, timeout_s: float = 30.0) -> None:
+        """Let simulated time run on."""
+        self._ask("resume", timeout_s)
+
+    def step(self, count: int = 1, *, timeout_s: float = 600.0) -> int:
+        """Advance by physics steps of 1/240 s; give the simulated time afterwards [ns]."""
+        result: int = self._ask("step", timeout_s, count)
+        return result
+
+    def capture(
+        self, agent: str, views: Iterable[str] | None = None, *, timeout_s: float = 30.0
+    ) -> Frame:
+        """Render exactly one frame of an agent, after everything asked before."""
+        wanted = None if views is None else tuple(views)
+        result: Frame = self._ask("capture", timeout_s, agent, wanted)
+        return result
+
+    def _ask(self, name: str, timeout_s: float, *args: Any, **kwargs: Any) -> Any:
+        """Queue a request and wait; its result has the type of the core's method."""
+        return wait_for(self.request(name, *args, **kwargs), f"the request {name!r}", timeout_s)
+
+
+def wait_for(future: Future[T], what: str, timeout_s: float) -> T:
+    """Wait for a future; the deadline's error names what it was waited for."""
+    try:
+        return future.result(timeout_s)
+    except FutureTimeout:
+        if future.done():
+            raise
+        future.cancel()
+        raise DeadlineExceeded(what, timeout_s) from None
