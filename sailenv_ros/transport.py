@@ -1,4 +1,4 @@
-"""Which Fast DDS profile our own processes use: a big shared-memory segment where it fits.
+"""Which Fast DDS profile our own processes use: shared memory, as much of it as there is.
 
 The node and the `Agent` call `use_shared_memory_profile` before their first ROS context. It only
 sets an environment variable, so it needs no ROS; a profile or middleware of the user's wins.
@@ -21,6 +21,7 @@ from sailenv_ros.resources import resource_path
 
 __all__ = [
     "NEEDED_BYTES",
+    "PROFILES",
     "ProfileChoice",
     "remove_abandoned_segments",
     "use_shared_memory_profile",
@@ -33,8 +34,14 @@ PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 
 _USERS_OWN = (PROFILE_VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE", "FASTDDS_BUILTIN_TRANSPORTS")
 
-NEEDED_BYTES = 256 * 2**20
-"""Free shared memory that is asked for: segments of a node and two clients, and some air."""
+PROFILES = (("fastdds.xml", 256), ("fastdds_small.xml", 48), ("fastdds_udp.xml", 0))
+"""Our profiles with the free shared memory that each asks for [MiB]; the first that fits is used.
+
+A segment of 64 or 8 MiB for each of a node, an agent and two more, and some air.
+"""
+
+NEEDED_BYTES = PROFILES[0][1] * 2**20
+"""Free shared memory that the first profile asks for [B]."""
 
 SHARED_MEMORY = Path("/dev/shm")
 
@@ -48,28 +55,29 @@ class ProfileChoice:
 
     Attributes
     ----------
-    used : bool
-        True if our profile is set.
+    profile : Path or None
+        The profile that was set; None if an earlier choice is left as it is, be it the user's
+        or that of the process which started this one.
     why : str
-        One clause that says why, for the log.
+        One clause that says what and why, for the log.
     """
 
-    used: bool
+    profile: Path | None
     why: str
 
 
 def use_shared_memory_profile(
-    profile: Path | None = None,
+    folder: Path | None = None,
     *,
     environment: MutableMapping[str, str] = os.environ,
     shared_memory: Path = SHARED_MEMORY,
 ) -> ProfileChoice:
-    """Set our Fast DDS profile for this process and its children, unless there is a reason not to.
+    """Set one of our Fast DDS profiles for this process and its children, or leave the user's own.
 
     Parameters
     ----------
-    profile : Path or None
-        Our profile file, if not the installed one.
+    folder : Path or None
+        Where our profiles lie, if not where they are installed.
     environment : mutable mapping
     shared_memory : Path
         The folder whose file system holds the segments.
@@ -79,13 +87,40 @@ def use_shared_memory_profile(
     choice : ProfileChoice
     """
     remove_abandoned_segments(shared_memory)
-    profile = resource_path("config", "fastdds.xml") if profile is None else profile
-    why_not = _reason_against(profile, environment, shared_memory)
-    if why_not:
-        _log.info("without the shared-memory profile, as %s", why_not)
-        return ProfileChoice(used=False, why=why_not)
+    own = _users_choice(environment)
+    if own:
+        return ProfileChoice(profile=None, why=f"transport as {own} says")
+    folder = resource_path("config") if folder is None else folder
+    free = _free_mib(shared_memory)
+    name = next(name for name, needed in PROFILES if free >= needed)
+    profile = folder / name
     environment[PROFILE_VARIABLE] = str(profile)
-    return ProfileChoice(used=True, why=f"profile {profile}")
+    why = f"transport profile {name}"
+    if name != PROFILES[0][0]:
+        why += (
+            f", because {shared_memory} has {free} MiB free and pictures want {PROFILES[0][1]}"
+            " (docker: --shm-size)"
+        )
+        _log.warning("%s", why)
+    return ProfileChoice(profile=profile, why=why)
+
+
+def _users_choice(environment: MutableMapping[str, str]) -> str:
+    """Name what is set already, if anything."""
+    middleware = environment.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
+    if not middleware.startswith("rmw_fastrtps"):
+        return f"RMW_IMPLEMENTATION={middleware}"
+    for name in _USERS_OWN:
+        if environment.get(name):
+            return f"{name}={environment[name]}"
+    return ""
+
+
+def _free_mib(shared_memory: Path) -> int:
+    try:
+        return shutil.disk_usage(shared_memory).free >> 20
+    except OSError:
+        return 0
 
 
 def remove_abandoned_segments(shared_memory: Path = SHARED_MEMORY) -> int:
@@ -119,24 +154,3 @@ def _remove_if_abandoned(segment: Path, lock_file: Path) -> int:
         return size
     finally:
         os.close(fd)
-
-
-def _reason_against(
-    profile: Path, environment: MutableMapping[str, str], shared_memory: Path
-) -> str:
-    middleware = environment.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
-    if not middleware.startswith("rmw_fastrtps"):
-        return f"RMW_IMPLEMENTATION is {middleware}"
-    own = next((name for name in _USERS_OWN if environment.get(name)), None)
-    if own is not None and environment[own] != str(profile):
-        return f"{own} is set to {environment[own]}"
-    if not profile.is_file():
-        return f"there is no file {profile}"
-    try:
-        free = shutil.disk_usage(shared_memory).free
-    except OSError as problem:
-        return f"{shared_memory} cannot be used ({problem.strerror})"
-    if free < NEEDED_BYTES:
-        mib = 2**20
-        return f"{shared_memory} has {free // mib} MiB free and {NEEDED_BYTES // mib} are needed"
-    return ""

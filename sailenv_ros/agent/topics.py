@@ -7,6 +7,7 @@ it asked for. Subscribes before the agent exists, so that its publishers find th
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -40,6 +41,7 @@ class AgentTopics:
         self._sync = FrameSync()
         self._changed = threading.Condition()
         self._newest: Bundle | None = None
+        self._last_arrival_s = 0.0
         self._subscriptions: dict[str, Any] = {}
         self._subscribe("frame_info", FrameInfo, self._take_info)
         self.add_views(views)
@@ -70,23 +72,34 @@ class AgentTopics:
             self._sync.clear()
             self._newest = None
 
-    def take(self, sequence: int, timeout_s: float) -> Bundle:
+    def take(self, sequence: int, timeout_s: float, quiet_s: float) -> Bundle | None:
         """Wait for the frame of that number.
+
+        Parameters
+        ----------
+        sequence : int
+        timeout_s : float
+            Deadline [s].
+        quiet_s : float
+            None is given if nothing at all arrives for so long [s]: what is missing was lost.
 
         Raises
         ------
         SimulatorLost, DeadlineExceeded
             If it did not come.
         """
-        taken: list[Bundle] = []
+        taken: list[Bundle | None] = []
+        self._last_arrival_s = time.monotonic()
 
         def met(interval_s: float) -> bool:
             with self._changed:
                 if self._newest is None or self._newest.sequence != sequence:
-                    self._changed.wait(interval_s)
+                    self._changed.wait(min(interval_s, quiet_s))
                 if self._newest is not None and self._newest.sequence == sequence:
                     taken.append(self._newest)
                     self._newest = None
+                elif time.monotonic() - self._last_arrival_s >= quiet_s:
+                    taken.append(None)
             return bool(taken)
 
         self._connection.wait_for(met, f"frame {sequence} of agent {self._agent!r}", timeout_s)
@@ -119,6 +132,7 @@ class AgentTopics:
             self._deliver(self._sync.add_info(msg.sequence, stamp_ns, views, sent_ns, msg))
 
     def _deliver(self, bundle: Bundle | None) -> None:
+        self._last_arrival_s = time.monotonic()
         if bundle is not None:
             self._newest = bundle
             self._changed.notify_all()

@@ -1,4 +1,4 @@
-"""When the shared-memory profile is set, and when it is left alone."""
+"""Which transport profile is set, and when the user's own is left alone."""
 
 from __future__ import annotations
 
@@ -10,31 +10,38 @@ from xml.etree import ElementTree
 
 import pytest
 
+from sailenv_ros.resources import resource_path
 from sailenv_ros.transport import (
-    NEEDED_BYTES,
     PROFILE_VARIABLE,
+    PROFILES,
     remove_abandoned_segments,
     use_shared_memory_profile,
 )
 
-PROFILE = Path(__file__).parents[2] / "config" / "fastdds.xml"
 
-
-@pytest.fixture
-def roomy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Give a folder that has just enough room."""
-    usage = SimpleNamespace(free=NEEDED_BYTES)
+@pytest.mark.parametrize(
+    ("free_mib", "profile"),
+    [
+        (100_000, "fastdds.xml"),
+        (256, "fastdds.xml"),
+        (255, "fastdds_small.xml"),
+        (48, "fastdds_small.xml"),
+        (47, "fastdds_udp.xml"),
+        (0, "fastdds_udp.xml"),
+    ],
+)
+def test_the_profile_fits_the_shared_memory(
+    free_mib: int, profile: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The biggest segment that there is room for, and a word where it is not the biggest."""
+    usage = SimpleNamespace(free=free_mib * 2**20)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: usage)
-    return tmp_path
-
-
-def test_the_profile_is_set_where_there_is_room(roomy: Path) -> None:
-    """Without a word of the user's, ours is used, however often it is asked for."""
     environment: dict[str, str] = {}
-    for _ in range(2):
-        choice = use_shared_memory_profile(PROFILE, environment=environment, shared_memory=roomy)
-        assert choice.used
-        assert environment == {PROFILE_VARIABLE: str(PROFILE)}
+    choice = use_shared_memory_profile(environment=environment, shared_memory=tmp_path)
+    assert choice.profile == resource_path("config") / profile
+    assert environment == {PROFILE_VARIABLE: str(choice.profile)}
+    assert profile in choice.why
+    assert (f"has {free_mib} MiB free" in choice.why) == (profile != "fastdds.xml")
 
 
 @pytest.mark.parametrize(
@@ -44,40 +51,24 @@ def test_the_profile_is_set_where_there_is_room(roomy: Path) -> None:
         {"FASTDDS_DEFAULT_PROFILES_FILE": "/home/me/own.xml"},
         {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"},
         {"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"},
+        {PROFILE_VARIABLE: str(resource_path("config", "fastdds_udp.xml"))},
     ],
 )
-def test_the_users_own_choice_wins(environment: dict[str, str], roomy: Path) -> None:
+def test_the_users_own_choice_wins(environment: dict[str, str], tmp_path: Path) -> None:
     """A profile, transports or another middleware of the user's are left as they are."""
     before = dict(environment)
-    choice = use_shared_memory_profile(PROFILE, environment=environment, shared_memory=roomy)
-    assert not choice.used
+    choice = use_shared_memory_profile(environment=environment, shared_memory=tmp_path)
+    assert choice.profile is None
     assert next(iter(before)) in choice.why
     assert environment == before
 
 
-def test_a_small_shared_memory_is_left_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A container's 64 MiB would not hold the segments; the reason names both numbers."""
-    monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=64 * 2**20))
-    environment: dict[str, str] = {}
-    choice = use_shared_memory_profile(PROFILE, environment=environment, shared_memory=tmp_path)
-    assert not choice.used
-    assert "64 MiB free and 256 are needed" in choice.why
-    assert environment == {}
-
-
-def test_what_is_missing_is_said(roomy: Path, tmp_path: Path) -> None:
-    """A missing profile or shared memory is a reason, not an error."""
-    missing = tmp_path / "none.xml"
-    assert "none.xml" in use_shared_memory_profile(missing, environment={}).why
-
-
-def test_no_shared_memory_is_a_reason(tmp_path: Path) -> None:
-    """Where there is no shared memory at all, that is said."""
+def test_where_there_is_no_shared_memory_none_is_used(tmp_path: Path) -> None:
+    """A system without /dev/shm gets sockets, and a reason."""
     gone = tmp_path / "shm"
-    choice = use_shared_memory_profile(PROFILE, environment={}, shared_memory=gone)
-    assert not choice.used
+    choice = use_shared_memory_profile(environment={}, shared_memory=gone)
+    assert choice.profile is not None
+    assert choice.profile.name == "fastdds_udp.xml"
     assert str(gone) in choice.why
 
 
@@ -100,10 +91,20 @@ def test_segments_of_the_dead_are_removed_and_of_the_living_kept(tmp_path: Path)
     ]
 
 
-def test_our_profile_has_the_segment_that_it_promises() -> None:
-    """64 MiB of shared memory, and UDP for other hosts, in the default profile."""
-    root = ElementTree.parse(PROFILE).getroot()
-    assert [e.text for e in root.iterfind(".//{*}segment_size")] == [str(64 * 2**20)]
-    assert [e.text for e in root.iterfind(".//{*}type")] == ["SHM", "UDPv4"]
-    (participant,) = root.iterfind(".//{*}participant")
-    assert participant.get("is_default_profile") == "true"
+@pytest.mark.parametrize(
+    ("name", "segment_mib"), [(PROFILES[0][0], 64), (PROFILES[1][0], 8), (PROFILES[2][0], 0)]
+)
+def test_the_profiles_are_what_they_promise(name: str, segment_mib: int) -> None:
+    """The segment's size, UDP for other hosts, quick mending; all of it for every participant."""
+    root = ElementTree.parse(resource_path("config", name)).getroot()
+
+    def texts(tag: str) -> list[str | None]:
+        return [element.text for element in root.iterfind(f".//{{*}}{tag}")]
+
+    assert texts("segment_size") == [str(segment_mib << 20)] * bool(segment_mib)
+    assert texts("type") == ["SHM"] * bool(segment_mib) + ["UDPv4"]
+    assert set(texts("maxInitialPeersRange")) == {"64"}
+    assert texts("nanosec") == ["20000000"]
+    for kind in ("participant", "data_writer"):
+        (entry,) = root.iterfind(f".//{{*}}{kind}")
+        assert entry.get("is_default_profile") == "true"
