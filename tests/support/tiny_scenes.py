@@ -165,3 +165,21 @@ def camera_at(pose: Pose = FORWARD, **intrinsics: Any) -> Camera:
     intrinsics.setdefault("width", 96)
     intrinsics.setdefault("height", 72)
     return Camera(intrinsics=CameraIntrinsics(**intrinsics), pose=pose)
+
+
+def two_instants() -> tuple[WorldSnapshot, WorldSnapshot, Camera, Camera]:
+    """Many textured things that move, before and after, and a camera that does."""
+    skin = {"base_colour_texture": checker(3)}
+    box = model_of(box_mesh(0.5), **skin)
+    things = [Thing(model_of(wall_mesh(30.0, 30.0), **skin), Pose((9.0, 0.0, 0.0)))]
+    ends = [things[0].pose]
+    for i in range(9):
+        place = (3.0 + 0.3 * i, i - 4.0, 0.2 * i - 1.0)
+        things.append(Thing(box, Pose.from_rpy_deg(place, (7 * i, 11 * i, 13 * i))))
+        ends.append(Pose.from_rpy_deg(np.add(place, 0.02), (7 * i, 11 * i + 2, 13 * i - 3)))
+    contents = contents_of(things)
+    before = snapshot_of(things, contents=contents)
+    after = snapshot_of(moved(things, *ends), contents=contents, time_ns=FRAME_NS)
+    size = {"width": 203, "height": 151}
+    now = camera_at(Pose.from_rpy_deg((0.0, 0.05, 0.0), (1, 2, 3)), **size)
+    return before, after, camera_at(**size), now
