@@ -2,6 +2,7 @@
 
 import sys
 from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
@@ -71,6 +72,8 @@ setup(
     name=PACKAGE,
     version="0.1.0",
     description="A virtual visual environment: simulated rooms with exact per-pixel ground truth",
+    long_description=Path("README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
     license="Apache-2.0",
     maintainer="sailenv_ros maintainers",
     maintainer_email="maintainers@users.noreply.github.com",

@@ -29,6 +29,13 @@ def _isolate_ros() -> None:
 
 _isolate_ros()
 
+INSTALLED_PREFIX = os.environ.get("SAILENV_INSTALLED_PREFIX", "")
+"""Set by scripts/test: where the package under test was installed to; else it is the sources'."""
+
+if INSTALLED_PREFIX:
+    # Programs started by `python -m` look into the current folder first, which must not be ours.
+    os.chdir(INSTALLED_PREFIX)
+
 settings.register_profile("dev", deadline=None)
 # The same examples each time, many of them; a shared machine makes no promise about time.
 settings.register_profile(

@@ -1,0 +1,139 @@
+"""What is shipped works where it is installed: by pip in a new venv, by colcon in a workspace."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.packaging.project import ROOT, copy_sources
+from tests.packaging.started_node import assert_publishes
+
+pytestmark = [pytest.mark.slow, pytest.mark.ros, pytest.mark.timeout(900)]
+
+ROS_IS_SOURCED = bool(os.environ.get("AMENT_PREFIX_PATH") and os.environ.get("ROS_DISTRO"))
+SCRIPTS = Path(sys.prefix) / "bin"
+
+OURS = ("PYTHONPATH", "VIRTUAL_ENV", "SAILENV_INSTALLED_PREFIX")
+BOOTSTRAPPED = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
+"""Set by the ROS 2 wheels for this interpreter; another one has to do it anew."""
+
+
+def run(*command: str | Path, folder: Path, environment: dict[str, str]) -> str:
+    """Run a step of a build; its output is shown if it fails."""
+    done = subprocess.run(
+        [str(word) for word in command],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert done.returncode == 0, f"{command}:\n{done.stdout[-6000:]}"
+    return done.stdout
+
+
+def without(*names: str) -> dict[str, str]:
+    """Give this process's environment without some variables."""
+    return {name: value for name, value in os.environ.items() if name not in names}
+
+
+def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
+    """Every module, shader, scene and configuration file, and an executable for ros2 run."""
+    sources = copy_sources(tmp_path / "sources")
+    pip = (sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation")
+    run(*pip, "--wheel-dir", tmp_path, sources, folder=tmp_path, environment=without(*OURS))
+    (path,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(path) as wheel:
+        held = {info.filename: info for info in wheel.infolist()}
+    data = f"{path.name.rsplit('-', 3)[0]}.data/data"
+    for folder in ("sailenv_ros", "sailenv_msgs_py"):
+        for source in (ROOT / folder).rglob("*"):
+            if source.suffix not in (".pyc", ".txt") and source.is_file():
+                assert str(source.relative_to(ROOT)) in held
+    for pattern in (
+        "scenes/*.yaml",
+        "scenes/*.json",
+        "config/*.yaml",
+        "config/*.xml",
+        "launch/*.py",
+    ):
+        for source in ROOT.glob(pattern):
+            assert f"{data}/share/sailenv_ros/{source.relative_to(ROOT)}" in held
+    assert f"{data}/share/ament_index/resource_index/packages/sailenv_ros" in held
+    assert f"{data}/share/sailenv_ros/package.xml" in held
+    assert held[f"{data}/lib/sailenv_ros/sim_node"].external_attr >> 16 & 0o111 == 0o111
+    assert not any(name.startswith("tests/") for name in held)
+
+
+def test_colcon_builds_a_workspace_whose_node_runs(tmp_path: Path) -> None:
+    """Both packages build from the defaults file; the node runs from where ros2 run looks."""
+    copy_sources(tmp_path / "src" / "sailenv_ros")
+    environment = without(*OURS) | {
+        "COLCON_DEFAULTS_FILE": "src/sailenv_ros/colcon_defaults.yaml",
+        "PATH": f"{SCRIPTS}{os.pathsep}{os.environ['PATH']}",
+    }
+    cmake = [f"-DPython3_EXECUTABLE={sys.executable}", "-DBUILD_TESTING=OFF"]
+    if not ROS_IS_SOURCED:
+        # The wheels are a prefix like any other, only that nothing was sourced.
+        environment |= {"AMENT_PREFIX_PATH": sys.prefix, "CMAKE_PREFIX_PATH": sys.prefix}
+        cmake += ["-G", "Ninja"]
+    listed = run(SCRIPTS / "colcon", "list", "-n", folder=tmp_path, environment=environment)
+    assert listed.split() == ["sailenv_msgs", "sailenv_ros"]
+    run(
+        *(SCRIPTS / "colcon", "build", "--event-handlers", "console_direct+"),
+        *("--cmake-args", *cmake),
+        folder=tmp_path,
+        environment=environment,
+    )
+    install = tmp_path / "install"
+    node = install / "sailenv_ros" / "lib" / "sailenv_ros" / "sim_node"
+    for package in ("sailenv_ros", "sailenv_msgs"):
+        index = install / package / "share" / "ament_index" / "resource_index" / "packages"
+        assert (index / package).is_file()
+    in_workspace = ["bash", "-c", f'source "{install}/local_setup.bash"; exec "$0" "$@"']
+    where = "import sailenv_ros, sailenv_msgs; print(sailenv_ros.__file__, sailenv_msgs.__file__)"
+    imported = run(
+        *in_workspace, sys.executable, "-c", where, folder=tmp_path, environment=environment
+    )
+    assert all(Path(path).is_relative_to(install) for path in imported.split()), imported
+    assert_publishes(
+        [*in_workspace, str(node)], environment=environment, folder=tmp_path, namespace="/colcon"
+    )
+
+
+@pytest.mark.skipif(ROS_IS_SOURCED, reason="the packages of an installed ROS 2 are not pip's")
+def test_pip_installs_into_a_new_venv_where_the_node_runs(tmp_path: Path) -> None:
+    """`pip install` of both folders is all that is needed; the node runs from both its places."""
+    sources = copy_sources(tmp_path / "sources")
+    environment = without(*OURS, *BOOTSTRAPPED, "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
+    venv = tmp_path / "venv"
+    run(sys.executable, "-m", "venv", venv, folder=tmp_path, environment=environment)
+    # The messages are those that this test itself speaks, so they are only packed, not built anew.
+    run(
+        *(sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation"),
+        *("--wheel-dir", tmp_path, sources / "sailenv_msgs"),
+        folder=tmp_path,
+        environment=environment | {"PATH": f"{SCRIPTS}{os.pathsep}{os.environ['PATH']}"},
+    )
+    (messages,) = tmp_path.glob("sailenv_msgs-*.whl")
+    run(
+        *(venv / "bin" / "python", "-m", "pip", "install", "--no-compile"),
+        *("--constraint", ROOT / "constraints.txt", messages, f"{sources}[ros]"),
+        folder=tmp_path,
+        environment=environment,
+    )
+    run(venv / "bin" / "python", "-m", "pip", "check", folder=tmp_path, environment=environment)
+    for place in ("bin", "lib/sailenv_ros"):
+        assert_publishes(
+            [str(venv / place / "sim_node")],
+            environment=environment,
+            folder=tmp_path,
+            namespace=f"/pip_{place.partition('/')[0]}",
+        )
+    doctor = run(venv / "bin" / "sailenv", "doctor", folder=tmp_path, environment=environment)
+    assert "Frames can be rendered" in doctor
