@@ -172,10 +172,9 @@ class AgentPublisher:
     def _publish(self, frame: Frame) -> tuple[str, ...]:
         header = header_of_frame(frame)
         sent = []
-        for view, values in frame.views.items():
-            topic = self._images[view]
-            if _is_subscribed(topic):
-                topic.publish(image_from_view(view, values, header))
+        for view, topic in self._images.items():
+            if view in frame.views and _is_subscribed(topic):
+                topic.publish(image_from_view(view, frame[view], header, copy=False))
                 sent.append(view)
         if _is_subscribed(self._camera_info):
             self._camera_info.publish(

@@ -1,0 +1,185 @@
+"""How the process of sim_node begins and ends: exit statuses, one line of reason, nothing left."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sensor_msgs.msg import Image
+
+from sailenv_msgs.srv import Reset, Step
+from tests.support.node_process import NodeProcess
+from tests.support.ros_probe import BEST_EFFORT, Probe
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.ros
+
+SMALL = {"mode": "lockstep", "agent__width": 64, "agent__height": 48}
+
+
+@pytest.fixture
+def node() -> Iterator[NodeProcess]:
+    """A small lockstep simulator."""
+    with NodeProcess("/ending", **SMALL) as node:
+        yield node
+
+
+# -- the end -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_cleanly(node: NodeProcess, number: int) -> None:
+    """Status 0, no word of trouble, no shared memory left, though the signal comes again."""
+    segments = node.segments()
+    assert segments
+    node.signal(number)
+
+    def ended() -> bool:
+        node.signal(signal.SIGINT)
+        return not node.alive
+
+    until(ended, "its end")
+    assert node.status() == 0
+    assert {path for path in segments if path.exists()} == set()
+    assert "Traceback" not in node.log
+    assert "ERROR" not in node.log
+
+
+def test_a_signal_ends_it_at_work(node: NodeProcess) -> None:
+    """A million steps that have just begun do not keep it, nor does a streaming subscriber."""
+    segments = node.segments()
+    with Probe("/ending") as probe:
+        images = probe.listen(Image, "agent/rgb")
+
+        def streams() -> bool:
+            probe.done(Step, "step", Step.Request(steps=8))
+            return bool(images.messages)
+
+        until(streams, "an image")
+        probe.begin(Step, "step", Step.Request(steps=1_000_000))
+        known = len(images.messages)
+        until(lambda: len(images.messages) > known, "an image of the long step")
+        node.signal(signal.SIGTERM)
+        assert node.status() == 0
+    assert {path for path in segments if path.exists()} == set()
+
+
+def test_a_signal_ends_it_while_it_starts() -> None:
+    """Before the scene is there, a signal ends it with status 0 as well."""
+    with NodeProcess("/starting", ready=False, **SMALL) as node:
+        # Its lock is the first thing that it makes known; the scene is loaded after that.
+        until(lambda: _dds_begun(node), "the node to begin")
+        node.signal(signal.SIGTERM)
+        assert node.status() == 0
+        assert "Traceback" not in node.log
+
+
+def test_the_death_of_a_parent_ends_it() -> None:
+    """A pipe whose other end is closed ends the node as a signal does."""
+    read_end, write_end = os.pipe()
+    arguments = ("--end-with-fd", str(read_end))
+    with NodeProcess("/child", arguments=arguments, pass_fds=(read_end,), **SMALL) as node:
+        os.close(read_end)
+        segments = node.segments()
+        os.close(write_end)
+        assert node.status() == 0
+        assert {path for path in segments if path.exists()} == set()
+
+
+# -- the beginning -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("parameters", "sentence"),
+    [
+        ({"scene": "opticle"}, "scene must be one of: "),
+        ({"agent__width": 3}, "parameter agent.width must be from 8 to 4096"),
+        ({"agent__near_m": 200.0}, "near_m must be less than far_m"),
+        ({"agent__name": "No Name"}, "name of the agent must be"),
+        ({"mode": "fast"}, "parameter mode must be one of: realtime, lockstep, got 'fast'"),
+        ({"seed": "many"}, "parameter seed must be of the type of 0, got 'many'"),
+        ({"widht": 3}, "parameter must be one of: scene,"),
+        ({"scene_paths": 3}, "parameter scene_paths must be of the type of"),
+    ],
+)
+def test_a_wrong_parameter_ends_it_with_a_reason(
+    parameters: dict[str, object], sentence: str
+) -> None:
+    """Status 2 and one line that says what was wrong and what is accepted."""
+    with NodeProcess("/wrong", ready=False, **parameters) as node:
+        assert node.status() == 2
+        [fatal] = [line for line in node.lines if "[FATAL]" in line]
+        assert sentence in fatal
+        assert "Traceback" not in node.log
+
+
+def test_a_faulty_scene_file_ends_it_with_every_fault(tmp_path: Path) -> None:
+    """Status 2, and each fault with its file, line and column."""
+    scene = tmp_path / "broken.yaml"
+    scene.write_text("version: 1\ntitle: Broken\nobjcts: []\nlights: 3\n", encoding="utf-8")
+    with NodeProcess("/broken", ready=False, scene=str(scene)) as node:
+        assert node.status() == 2
+        assert f"{scene}:3:1" in node.log
+        assert f"{scene}:4:" in node.log
+        assert "Traceback" not in node.log
+
+
+def test_wrong_arguments_end_it_with_a_reason() -> None:
+    """Status 2 where ROS does not understand an argument or the domain is beyond its numbers."""
+    with NodeProcess("/wrong", ready=False, remaps=("-r", "nonsense")) as node:
+        assert node.status() == 2
+        assert "Traceback" not in node.log
+    with NodeProcess("/wrong", ready=False, environment={"ROS_DOMAIN_ID": "233"}) as node:
+        assert node.status() == 2
+        assert "ROS_DOMAIN_ID must be from 0 to 232, got 233" in node.log
+
+
+def test_a_second_simulator_of_one_namespace_is_refused(node: NodeProcess) -> None:
+    """Status 3; the first one does not notice, and another namespace is free."""
+    with NodeProcess("/ending", ready=False, **SMALL) as second:
+        assert second.status() == 3
+        assert "not in use yet, got '/ending'" in second.log
+    assert node.alive
+    with NodeProcess("/ending/elsewhere", **SMALL) as third, Probe("/ending/elsewhere") as probe:
+        probe.done(Reset, "reset", Reset.Request(keep_seed=True))
+        assert third.alive
+
+
+def test_it_greets_with_one_line(node: NodeProcess) -> None:
+    """The line names scene, namespace, renderer and agents, and how to see pictures."""
+    [line] = [line for line in node.lines if "to see:" in line]
+    assert "scene 'optical' in /ending" in line
+    assert "renderer: " in line
+    assert "agents: agent" in line
+    assert "/ending/agent/rgb" in line
+
+
+def test_its_parameters_can_come_from_the_shipped_file() -> None:
+    """config/sim_node.yaml names parameters that exist, with the defaults that they have."""
+    file = Path(__file__).parents[2] / "config" / "sim_node.yaml"
+    remaps = ("--params-file", str(file))
+    with NodeProcess("/filed", remaps=remaps, mode="lockstep") as node:
+        assert "agents: agent" in node.log
+
+
+def test_quality_of_service_can_be_overridden() -> None:
+    """A publisher takes over what `qos_overrides` says of its topic."""
+    override = "qos_overrides./overridden/agent/rgb.publisher.reliability:=best_effort"
+    with (
+        NodeProcess("/overridden", remaps=("-p", override), **SMALL),
+        Probe("/overridden") as probe,
+    ):
+        topic = "/overridden/agent/rgb"
+        until(lambda: probe.node.get_publishers_info_by_topic(topic), "the publisher")
+        [publisher] = probe.node.get_publishers_info_by_topic(topic)
+        assert publisher.qos_profile.reliability == BEST_EFFORT.reliability
+
+
+def _dds_begun(node: NodeProcess) -> bool:
+    try:
+        return bool(node.segments()) or not node.alive
+    except OSError:
+        return not node.alive

@@ -1,0 +1,158 @@
+"""A ROS participant of a test's own: calls services, keeps what arrives on topics."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import CameraInfo, Image
+
+from sailenv_msgs.msg import AgentInfo, FrameInfo
+from sailenv_msgs.srv import Capture, DeleteAgent, RegisterAgent
+from sailenv_msgs_py.images import view_from_image
+from sailenv_msgs_py.stamps import ns_from_stamp
+from tests.support.waiting import until
+
+RELIABLE = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)
+LATCHED = QoSProfile(
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+BEST_EFFORT = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Topic:
+    """What arrived on one topic, in order."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.messages: list[Any] = []
+
+    @property
+    def last(self) -> Any:
+        return self.messages[-1]
+
+    def stamps(self) -> list[int]:
+        return [ns_from_stamp(message.header.stamp) for message in self.messages]
+
+
+class Probe:
+    """A node below a namespace, spun in a thread; a context manager."""
+
+    def __init__(self, namespace: str) -> None:
+        self.namespace = namespace
+        self._context = Context()
+        self._context.init([])
+        self.node = Node("probe", namespace=namespace, context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._clients: dict[str, Any] = {}
+        self._subscriptions: list[Any] = []
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        self._context.try_shutdown()
+        self._thread.join(5.0)
+        self._executor.shutdown(0.0)
+        self.node.destroy_node()
+
+    def __enter__(self) -> Probe:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    def begin(self, kind: Any, service: str, request: Any = None) -> Any:
+        """Call a service; give rclpy's future of the answer."""
+        if service not in self._clients:
+            self._clients[service] = self.node.create_client(kind, service)
+        client = self._clients[service]
+        until(client.service_is_ready, f"the service {service}")
+        return client.call_async(kind.Request() if request is None else request)
+
+    def call(self, kind: Any, service: str, request: Any = None) -> Any:
+        """Call a service and give its answer."""
+        future = self.begin(kind, service, request)
+        until(future.done, f"the answer of {service}", 30.0)
+        return future.result()
+
+    def done(self, kind: Any, service: str, request: Any = None) -> Any:
+        """Call a service that has to succeed."""
+        answer = self.call(kind, service, request)
+        assert answer.success, answer.message
+        return answer
+
+    def listen(self, kind: Any, topic: str, qos: QoSProfile = RELIABLE) -> Topic:
+        """Keep what arrives on a topic from now on."""
+        heard = Topic(topic)
+        self._subscriptions.append(
+            self.node.create_subscription(kind, topic, heard.messages.append, qos)
+        )
+        return heard
+
+    def listen_no_more(self) -> None:
+        """Give up every topic."""
+        while self._subscriptions:
+            self.node.destroy_subscription(self._subscriptions.pop())
+
+    def _spin(self) -> None:
+        with contextlib.suppress(ExternalShutdownException):
+            self._executor.spin()
+
+
+class Eye:
+    """An agent on request of a test's own: registers itself, gives its frames as arrays."""
+
+    def __init__(
+        self, probe: Probe, seen: Iterable[str], /, *, name: str = "eye", **fields: Any
+    ) -> None:
+        self._probe = probe
+        self.name = name
+        self.views = tuple(seen)
+        wanted = AgentInfo(
+            **{
+                "name": name,
+                "width": 160,
+                "height": 120,
+                "rate_hz": 0.0,
+                "following": False,
+                **fields,
+            }
+        )
+        probe.done(RegisterAgent, "register_agent", RegisterAgent.Request(agent=wanted))
+        self.frame_info = probe.listen(FrameInfo, f"{name}/frame_info")
+        self.camera_info = probe.listen(CameraInfo, f"{name}/camera_info")
+        self.images = {view: probe.listen(Image, f"{name}/{view}") for view in self.views}
+
+    def capture(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Capture the views and wait until all that belongs to the frame is there."""
+        topics = (self.frame_info, self.camera_info, *self.images.values())
+        for topic in topics:
+            topic.messages.clear()
+        request = Capture.Request(views=list(self.views))
+        answer = self._probe.done(Capture, f"{self.name}/capture", request)
+        assert set(answer.views_published) == set(self.views)
+        until(lambda: all(topic.messages for topic in topics), "the frame captured")
+        assert self.frame_info.last.sequence == answer.sequence
+        assert {stamp for topic in topics for stamp in topic.stamps()} == {
+            ns_from_stamp(answer.stamp)
+        }
+        return {view: view_from_image(view, topic.last) for view, topic in self.images.items()}
+
+    def close(self) -> None:
+        self._probe.done(DeleteAgent, "delete_agent", DeleteAgent.Request(name=self.name))
+
+    def __enter__(self) -> Eye:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
