@@ -1,7 +1,7 @@
-"""Meshes on the GPU: one vertex buffer and one index buffer for everything that was ever drawn.
+"""Meshes on the GPU: one vertex buffer and one index buffer for everything that is drawn.
 
-Models come in, slices of the two buffers go out. A model is uploaded once, whenever it is first
-seen; the buffers grow by doubling.
+Models come in, slices of the two buffers go out. The buffers are made anew when a mesh appears
+that is not there, and then hold what the present scene shows and nothing else.
 """
 
 from __future__ import annotations
@@ -30,55 +30,44 @@ class MeshSlice:
 
 
 class GeometryBuffers:
-    """All meshes of one context."""
+    """The meshes of the scene that is shown, in one context."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._vertices = np.zeros(0, VERTEX)
-        self._indices = np.zeros(0, np.uint32)
         self._slices: dict[int, MeshSlice] = {}
         self._kept: list[Mesh] = []
-        self.vertex_buffer: moderngl.Buffer | None = None
-        self.index_buffer: moderngl.Buffer | None = None
+        self.vertex_buffer = context.buffer(np.zeros(1, VERTEX).tobytes())
+        self.index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())
 
-    def upload(self, models: Iterable[Model]) -> bool:
-        """Make sure that all meshes are there; True if the buffers are new ones."""
-        new = [
-            part.mesh
-            for model in {id(m): m for m in models}.values()
-            for part in model.parts
-            if id(part.mesh) not in self._slices
-        ]
-        unique = list({id(mesh): mesh for mesh in new}.values())
-        if not unique and self.vertex_buffer is not None:
-            return False
-        vertices, indices = [self._vertices], [self._indices]
-        vertex_count, index_count = len(self._vertices), len(self._indices)
-        for mesh in unique:
-            self._slices[id(mesh)] = MeshSlice(index_count, mesh.triangles.size, vertex_count)
-            # The number of an object is unique only while the object lives.
-            self._kept.append(mesh)
-            vertices.append(_interleaved(mesh))
-            indices.append(mesh.triangles.reshape(-1))
-            vertex_count += len(mesh.positions)
-            index_count += mesh.triangles.size
-        self._vertices = np.concatenate(vertices)
-        self._indices = np.concatenate(indices)
+    def show(self, models: Iterable[Model]) -> None:
+        """Make sure that the meshes of these models are there; others may be gone afterwards."""
+        wanted = list({id(part.mesh): part.mesh for m in models for part in m.parts}.values())
+        held = sum(len(mesh.positions) for mesh in self._kept)
+        needed = sum(len(mesh.positions) for mesh in wanted)
+        if all(id(mesh) in self._slices for mesh in wanted) and held <= 2 * needed:
+            return
+        self._slices = {}
+        # The number of an object is unique only while the object lives: it is kept.
+        self._kept = wanted
+        first_index = first_vertex = 0
+        for mesh in wanted:
+            self._slices[id(mesh)] = MeshSlice(first_index, mesh.triangles.size, first_vertex)
+            first_vertex += len(mesh.positions)
+            first_index += mesh.triangles.size
+        vertices = [np.zeros(0, VERTEX), *(_interleaved(mesh) for mesh in wanted)]
+        indices = [np.zeros(0, np.uint32), *(mesh.triangles.reshape(-1) for mesh in wanted)]
         self.close()
-        self.vertex_buffer = self._context.buffer(_or_one(self._vertices).tobytes())
-        self.index_buffer = self._context.buffer(_or_one(self._indices).tobytes())
-        return True
+        self.vertex_buffer = self._context.buffer(_or_one(np.concatenate(vertices)).tobytes())
+        self.index_buffer = self._context.buffer(_or_one(np.concatenate(indices)).tobytes())
 
     def slice(self, mesh: Mesh) -> MeshSlice:
-        """Say where an uploaded mesh lies."""
+        """Say where a mesh that is shown lies."""
         return self._slices[id(mesh)]
 
     def close(self) -> None:
-        """Free the buffers; what was uploaded is kept in memory."""
-        for buffer in (self.vertex_buffer, self.index_buffer):
-            if buffer is not None:
-                buffer.release()
-        self.vertex_buffer = self.index_buffer = None
+        """Free the buffers."""
+        self.vertex_buffer.release()
+        self.index_buffer.release()
 
 
 def _interleaved(mesh: Mesh) -> NDArray[np.void]:

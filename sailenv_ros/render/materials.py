@@ -1,30 +1,19 @@
-"""Materials and textures on the GPU.
+"""Materials on the GPU: one row of a storage buffer each.
 
-Materials come in, row numbers of a storage buffer go out. Textures lie in three arrays by size;
-each is brought to the next size that holds it, with mip-maps and anisotropic filtering.
+Materials come in, row numbers go out. Their textures are `textures.TextureArrays`' matter.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-import cv2
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.model import Material, Texture
-from sailenv_ros.render.programs import set_uniform
+from sailenv_ros.render.textures import TextureArrays
 
 __all__ = ["MaterialBuffers"]
-
-SIZES_PX = (128, 512, 1024)
-"""Edge lengths of the three texture arrays."""
-
-ANISOTROPY = 4.0
-
-_LAYER_BITS = 12
-_FIRST_TEXTURE_UNIT = 8
 
 ROW = np.dtype(
     [
@@ -42,54 +31,43 @@ EMISSION_SCALE = 16.0
 
 
 class MaterialBuffers:
-    """All materials and textures of one context."""
+    """The materials of the scene that is shown, in one context."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._rows: dict[int, int] = {}
-        self._kept: list[Material] = []
-        self._layers: tuple[list[Texture], ...] = tuple([] for _ in SIZES_PX)
-        self._place_of: dict[int, int] = {}
-        self._buffer: moderngl.Buffer | None = None
-        self._arrays: list[moderngl.TextureArray] = []
+        self._textures = TextureArrays(context)
+        self._shown: list[Material] = []
+        self._row_of: dict[int, int] = {}
+        self._buffer = context.buffer(np.zeros(1, ROW).tobytes())
 
-    def upload(self, materials: Iterable[Material]) -> None:
-        """Make sure that all materials are there."""
-        new = list({id(m): m for m in materials if id(m) not in self._rows}.values())
-        if not new and self._buffer is not None:
+    def show(self, materials: Iterable[Material]) -> None:
+        """Make sure that these materials are there; others may be gone afterwards."""
+        wanted = list({id(material): material for material in materials}.values())
+        if all(id(material) in self._row_of for material in wanted):
             return
-        textures_before = sum(len(layers) for layers in self._layers)
-        for material in new:
-            self._rows[id(material)] = len(self._kept)
-            self._kept.append(material)
-        rows = np.zeros(max(1, len(self._kept)), ROW)
-        for row, material in zip(rows, self._kept, strict=False):
+        self._textures.show(t for m in wanted for t in _textures(m) if t is not None)
+        # The number of an object is unique only while the object lives: it is kept.
+        self._shown = wanted
+        self._row_of = {id(material): row for row, material in enumerate(wanted)}
+        rows = np.zeros(len(wanted), ROW)
+        for row, material in zip(rows, wanted, strict=True):
             self._fill(row, material)
-        if self._buffer is not None:
-            self._buffer.release()
+        self._buffer.release()
         self._buffer = self._context.buffer(rows.tobytes())
-        if not self._arrays or textures_before != sum(len(layers) for layers in self._layers):
-            self._build_arrays()
 
     def row(self, material: Material) -> int:
-        """Give the row of an uploaded material."""
-        return self._rows[id(material)]
+        """Give the row of a material that is shown."""
+        return self._row_of[id(material)]
 
     def bind(self, program: moderngl.Program) -> None:
         """Make rows and textures readable for a program."""
-        if self._buffer is not None:
-            self._buffer.bind_to_storage_buffer(1)
-        for number, array in enumerate(self._arrays):
-            array.use(_FIRST_TEXTURE_UNIT + number)
-            set_uniform(program, f"textures_{number}", _FIRST_TEXTURE_UNIT + number)
+        self._buffer.bind_to_storage_buffer(1)
+        self._textures.bind(program)
 
     def close(self) -> None:
         """Free everything on the GPU."""
-        for array in self._arrays:
-            array.release()
-        if self._buffer is not None:
-            self._buffer.release()
-        self._arrays, self._buffer = [], None
+        self._textures.close()
+        self._buffer.release()
 
     def _fill(self, row: np.void, material: Material) -> None:
         base = np.asarray(material.base_colour, dtype=np.float64)
@@ -101,47 +79,12 @@ class MaterialBuffers:
         row["roughness"], row["metallic"] = material.roughness, material.metallic
         row["alpha_cutoff"] = material.alpha_cutoff
         row["emission"] = min(1.0, glow / EMISSION_SCALE)
-        textures = (
-            material.base_colour_texture,
-            material.metallic_roughness_texture,
-            material.normal_texture,
-        )
-        row["textures"] = [*(self._place(texture) for texture in textures), -1]
-
-    def _place(self, texture: Texture | None) -> int:
-        """Give array and layer of a texture as one number, -1 for none."""
-        if texture is None:
-            return -1
-        if id(texture) not in self._place_of:
-            size = next(
-                (i for i, edge in enumerate(SIZES_PX) if max(texture.shape[:2]) <= edge),
-                len(SIZES_PX) - 1,
-            )
-            layers = self._layers[size]
-            self._place_of[id(texture)] = (size << _LAYER_BITS) + len(layers)
-            layers.append(texture)
-        return self._place_of[id(texture)]
-
-    def _build_arrays(self) -> None:
-        for array in self._arrays:
-            array.release()
-        self._arrays = []
-        for edge, layers in zip(SIZES_PX, self._layers, strict=True):
-            # An array that nothing lies in still has to be bound: the smallest there is.
-            pixels = [_resized(layer, edge) for layer in layers] or [np.zeros((1, 1, 4), np.uint8)]
-            shape = (pixels[0].shape[1], pixels[0].shape[0], len(pixels))
-            array = self._context.texture_array(shape, 4, np.stack(pixels).tobytes())
-            array.build_mipmaps()
-            array.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-            array.anisotropy = ANISOTROPY
-            self._arrays.append(array)
+        row["textures"] = [*(self._textures.number(texture) for texture in _textures(material)), -1]
 
 
-def _resized(texture: Texture, edge: int) -> NDArray[np.uint8]:
-    """Bring a texture to a square, its bottom row first as OpenGL has it."""
-    flipped = np.ascontiguousarray(texture[::-1])
-    if flipped.shape[:2] == (edge, edge):
-        return flipped
-    shrinks = max(flipped.shape[:2]) > edge
-    method = cv2.INTER_AREA if shrinks else cv2.INTER_CUBIC
-    return np.asarray(cv2.resize(flipped, (edge, edge), interpolation=method), dtype=np.uint8)
+def _textures(material: Material) -> tuple[Texture | None, Texture | None, Texture | None]:
+    return (
+        material.base_colour_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+    )

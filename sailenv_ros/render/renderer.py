@@ -195,8 +195,8 @@ class Renderer:
         if self._draws is not None and self._draws.contents is contents:
             return self._draws
         models = [drawn.model for drawn in contents.instances]
-        self._geometry.upload(models)
-        self._materials.upload(part.material for model in models for part in model.parts)
+        self._geometry.show(models)
+        self._materials.show(part.material for model in models for part in model.parts)
         if self._draws is not None:
             self._draws.close()
         self._draws = DrawList(self._context, contents, self._geometry, self._materials)

@@ -138,19 +138,16 @@ def test_two_processes_agree_to_the_byte() -> None:
     assert first == second
 
 
-LEAK = """
+MEASURE = """
 import gc
+import numpy as np
 from sailenv_ros.render.renderer import Renderer
-from tests.support.tiny_scenes import two_instants
-before, after, then, now = two_instants()
+from tests.support.tiny_scenes import *
 def resident_kb():
+    gc.collect()
     with open("/proc/self/status") as status:
         return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
-def pass_by():
-    made = Renderer()
-    made.render(after, None, now, ["rgb", "depth", "instance", "normals"])
-    made.close()
-    gc.collect()
+%s
 for _ in range(3):
     pass_by()
 start = resident_kb()
@@ -159,10 +156,33 @@ for _ in range(10):
 print(resident_kb() - start)
 """
 
+RENDERERS = """
+before, after, then, now = two_instants()
+def pass_by():
+    made = Renderer()
+    made.render(after, None, now, ["rgb", "depth", "instance", "normals"])
+    made.close()
+"""
+
+SCENES = """
+made = Renderer()
+def pass_by():
+    mesh = box_mesh(1.0)
+    vertices = (np.tile(getattr(mesh, name), (5000, 1)) for name in ("positions", "normals", "uvs"))
+    many = mesh_of(*vertices, mesh.triangles)
+    model = model_of(many, base_colour_texture=np.full((1024, 1024, 4), 99, np.uint8))
+    made.render(snapshot_of([Thing(model, Pose((3.0, 0.0, 0.0)))]), None, camera_at(), ["rgb"])
+"""
+
 
 def test_contexts_give_their_memory_back() -> None:
     """Ten renderers more leave less than 10 MB behind."""
-    assert int(_in_a_process(LEAK)) < 10_000
+    assert int(_in_a_process(MEASURE % RENDERERS)) < 10_000
+
+
+def test_scenes_that_are_left_give_their_memory_back() -> None:
+    """Ten scenes more, each with 8 MB of its own on the GPU, leave less than 20 MB behind."""
+    assert int(_in_a_process(MEASURE % SCENES)) < 20_000
 
 
 def _in_a_process(program: str) -> str:

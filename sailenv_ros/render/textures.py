@@ -1,0 +1,143 @@
+"""Textures on the GPU: arrays of layers, one array for each of three sizes.
+
+The textures of a scene come in, numbers that a shader can look them up by go out. Each texture is
+brought to the next size that holds it, with mip-maps and anisotropic filtering. What the present
+scene does not show gives way to what it does, so memory is bounded by the largest scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import cv2
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.model import Texture
+from sailenv_ros.render.programs import set_uniform
+
+__all__ = ["SIZES_PX", "TextureArrays"]
+
+SIZES_PX = (128, 512, 1024)
+"""Edge lengths of the three texture arrays."""
+
+ANISOTROPY = 4.0
+
+SPARE = 0.25
+"""Share of layers that a new array has in reserve, for what is spawned later."""
+
+_LAYER_BITS = 12
+_FIRST_TEXTURE_UNIT = 8
+
+
+class TextureArrays:
+    """All textures of one context."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._arrays = tuple(_Layers(context, edge) for edge in SIZES_PX)
+
+    def show(self, textures: Iterable[Texture]) -> None:
+        """Make sure that these are there; others may be gone afterwards."""
+        by_size: list[list[Texture]] = [[] for _ in SIZES_PX]
+        for texture in {id(texture): texture for texture in textures}.values():
+            by_size[_size_of(texture)].append(texture)
+        for array, wanted in zip(self._arrays, by_size, strict=True):
+            array.show(wanted)
+
+    def number(self, texture: Texture | None) -> int:
+        """Give array and layer of a texture that is there as one number; -1 for none."""
+        if texture is None:
+            return -1
+        size = _size_of(texture)
+        return (size << _LAYER_BITS) + self._arrays[size].layer(texture)
+
+    def bind(self, program: moderngl.Program) -> None:
+        """Make the textures readable for a program."""
+        for number, array in enumerate(self._arrays):
+            array.use(_FIRST_TEXTURE_UNIT + number)
+            set_uniform(program, f"textures_{number}", _FIRST_TEXTURE_UNIT + number)
+
+    def close(self) -> None:
+        """Free everything on the GPU."""
+        for array in self._arrays:
+            array.close()
+
+
+class _Layers:
+    """One array of square textures; a texture keeps its layer while it is shown."""
+
+    def __init__(self, context: moderngl.Context, edge: int) -> None:
+        self._context = context
+        self._edge = edge
+        self._textures: list[Texture | None] = []
+        self._layer_of: dict[int, int] = {}
+        # An array that nothing lies in still has to be bound: the smallest there is.
+        self._array = context.texture_array((1, 1, 1), 4)
+
+    def layer(self, texture: Texture) -> int:
+        return self._layer_of[id(texture)]
+
+    def use(self, unit: int) -> None:
+        self._array.use(unit)
+
+    def close(self) -> None:
+        self._array.release()
+
+    def show(self, wanted: list[Texture]) -> None:
+        """Bring in what is not there yet: over what is no longer wanted, or into a new array."""
+        new = [texture for texture in wanted if id(texture) not in self._layer_of]
+        roomy = len(self._textures) > 2 * (len(wanted) + 4)
+        if not new and not roomy:
+            return
+        if roomy or len(wanted) > len(self._textures):
+            self._make(len(wanted))
+            new = wanted
+        kept = {id(texture) for texture in wanted}
+        free = (
+            layer
+            for layer, texture in enumerate(self._textures)
+            if texture is None or id(texture) not in kept
+        )
+        for layer, texture in zip(list(free), new, strict=False):
+            self._put(layer, texture)
+        if new:
+            self._array.build_mipmaps()
+            # Building resets the filter.
+            self._array.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+            self._array.anisotropy = ANISOTROPY
+
+    def _make(self, count: int) -> None:
+        """Begin anew with room for so many textures, and some."""
+        self._array.release()
+        layers = count + int(SPARE * count) if count else 0
+        edge = self._edge if layers else 1
+        self._array = self._context.texture_array((edge, edge, max(1, layers)), 4)
+        self._textures = [None] * layers
+        self._layer_of = {}
+
+    def _put(self, layer: int, texture: Texture) -> None:
+        old = self._textures[layer]
+        if old is not None:
+            del self._layer_of[id(old)]
+        # The number of an object is unique only while the object lives: it is kept.
+        self._textures[layer] = texture
+        self._layer_of[id(texture)] = layer
+        pixels = _resized(texture, self._edge)
+        self._array.write(pixels, viewport=(0, 0, layer, self._edge, self._edge, 1))
+
+
+def _size_of(texture: Texture) -> int:
+    """Give the place in `SIZES_PX` of the size that holds a texture; the last for larger ones."""
+    longest = max(texture.shape[:2])
+    return next((i for i, edge in enumerate(SIZES_PX) if longest <= edge), len(SIZES_PX) - 1)
+
+
+def _resized(texture: Texture, edge: int) -> NDArray[np.uint8]:
+    """Bring a texture to a square, its bottom row first as OpenGL has it."""
+    flipped = np.ascontiguousarray(texture[::-1])
+    if flipped.shape[:2] == (edge, edge):
+        return flipped
+    shrinks = max(flipped.shape[:2]) > edge
+    method = cv2.INTER_AREA if shrinks else cv2.INTER_CUBIC
+    return np.asarray(cv2.resize(flipped, (edge, edge), interpolation=method), dtype=np.uint8)
