@@ -113,7 +113,7 @@ def test_pip_installs_into_a_new_venv_where_the_node_runs(tmp_path: Path) -> Non
     environment = without(*OURS, *BOOTSTRAPPED, "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
     venv = tmp_path / "venv"
     run(sys.executable, "-m", "venv", venv, folder=tmp_path, environment=environment)
-    # The messages are those that this test itself speaks, so they are only packed, not built anew.
+    # By hand, because pip would fetch all that it needs for this anew.
     run(
         *(sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation"),
         *("--wheel-dir", tmp_path, sources / "sailenv_msgs"),
