@@ -46,7 +46,7 @@ QOS = QoSProfile(depth=3)
 NAMESPACE = f"/bench_{os.getpid()}"
 
 READER = """
-import sys, rclpy
+import sys, threading, rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image
@@ -54,12 +54,12 @@ rclpy.init(args=[])
 node = rclpy.create_node("reader")
 for topic in sys.argv[1:]:
     node.create_subscription(Image, topic, lambda msg: None, QoSProfile(depth=3))
-try:
-    rclpy.spin(node)
-except BaseException:
-    pass
-finally:
-    rclpy.try_shutdown()
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+threading.Thread(target=executor.spin, daemon=True).start()
+sys.stdin.read()  # until the benchmark closes it, or dies
+executor.shutdown()
+rclpy.shutdown()
 """
 
 
@@ -98,7 +98,8 @@ class Topics:
             view: self._node.create_publisher(Image, name, QOS)
             for view, name in zip(FIVE_VIEWS, names, strict=True)
         }
-        self._reader = subprocess.Popen([sys.executable, "-c", READER, *names])
+        command = [sys.executable, "-c", READER, *names]
+        self._reader = subprocess.Popen(command, stdin=subprocess.PIPE)
         await_true(lambda: all(t.get_subscription_count() for t in self._topics.values()))
 
     def publish(self, images: dict[str, Image]) -> None:
@@ -108,8 +109,7 @@ class Topics:
 
     def close(self) -> None:
         """End the reader and the node."""
-        self._reader.terminate()
-        self._reader.wait(10)
+        self._reader.communicate(timeout=10)
         self._node.destroy_node()
         self._context.try_shutdown()
 

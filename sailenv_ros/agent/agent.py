@@ -196,6 +196,8 @@ depth_frame_active : bool
 
         A simulator that was started for this agent ends with the last one that uses it.
         """
+        if self._connection.is_inherited:
+            return  # it is the parent's, who goes on with it
         with self._lock:
             if self._closed:
                 return
@@ -240,6 +242,7 @@ depth_frame_active : bool
             If no complete frame arrived in time; `recaptured` counts the attempts that were
             repeated because images did not arrive.
         """
+        self._connection.check_process()
         limit_s = self._timeout_s if timeout_s is None else timeout_s
         deadline = time.monotonic() + limit_s
         with self._lock:

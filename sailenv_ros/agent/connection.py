@@ -97,6 +97,25 @@ class Connection:
         """Say whether a simulator of this name runs on this host."""
         return simulator_is_present(self.domain_id, self.namespace)
 
+    @property
+    def is_inherited(self) -> bool:
+        """True in a fork of the process that this was made in."""
+        return os.getpid() != self._process_id
+
+    def check_process(self) -> None:
+        """Refuse to work in a fork of the process that this was made in.
+
+        To be called before any lock is taken: in a fork, locks may be held by threads that exist
+        in the parent alone.
+
+        Raises
+        ------
+        SimulationClosed
+            If this is a forked process.
+        """
+        if self.is_inherited:
+            raise SimulationClosed("this process was forked; make an Agent of its own in it")
+
     # -- requests --------------------------------------------------------------------------
 
     def call(self, srv_type: Any, service: str, request: Any, timeout_s: float) -> Any:
@@ -125,6 +144,7 @@ class Connection:
         DeadlineExceeded
             If there was no answer in time.
         """
+        self.check_process()
         deadline = time.monotonic() + timeout_s
         client = self._client(srv_type, service)
         what = f"the service {self.namespace}/{service}"
@@ -195,8 +215,6 @@ class Connection:
     def _wait(
         self, met: Callable[[float], bool], what: str, deadline: float, timeout_s: float
     ) -> None:
-        if os.getpid() != self._process_id:
-            raise SimulationClosed("this process was forked; make an Agent of its own in it")
         while not met(max(0.0, min(LOOK_INTERVAL_S, deadline - time.monotonic()))):
             if self._closed:
                 raise SimulationClosed("the Agent was closed")

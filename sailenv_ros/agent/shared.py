@@ -6,6 +6,7 @@ simulator that was started here ends with the last Agent that is linked to it.
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -45,6 +46,16 @@ class Link:
 
 _links: dict[tuple[int, str], Link] = {}
 _lock = threading.Lock()
+
+
+def _forget_the_parents() -> None:
+    """Begin anew in a fork, where the parent's threads do not exist and its lock may be held."""
+    global _lock
+    _links.clear()
+    _lock = threading.Lock()
+
+
+os.register_at_fork(after_in_child=_forget_the_parents)
 
 
 def acquire(

@@ -107,6 +107,7 @@ def _environment(domain_id: int) -> dict[str, str]:
         **os.environ,
         "ROS_DOMAIN_ID": str(domain_id),
         "PYTHONPATH": os.pathsep.join([package_parent, *([path] if path else [])]),
+        "PYTHONSAFEPATH": "1",  # not a package of this name that lies in the current folder
         "PYTHONUNBUFFERED": "1",
     }
 

@@ -25,6 +25,7 @@ from sailenv_ros.errors import (
 )
 from sailenv_ros.geometry import look_at
 from sailenv_ros.presence import simulator_is_present
+from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
@@ -371,18 +372,29 @@ rclpy.shutdown()
     run_python(code)
 
 
-def run_python(code: str, **environment: str) -> str:
+def run_python(code: str) -> str:
     """Run a program of its own; give what it prints."""
-    result = subprocess.run(
+    with program(code) as running:
+        out, _ = running.communicate(timeout=90)
+    assert running.returncode == 0
+    return out
+
+
+def program(code: str) -> subprocess.Popen[str]:
+    """Start a program of its own that can be talked to."""
+    return subprocess.Popen(
         [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **environment},
-        capture_output=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
         text=True,
-        timeout=90,
-        check=False,
     )
-    assert result.returncode == 0, result.stderr
-    return result.stdout
+
+
+def line_of(running: subprocess.Popen[str]) -> str:
+    """Read the next line that a program prints."""
+    assert running.stdout is not None
+    return running.stdout.readline().strip()
 
 
 # -- simulators that come and go -----------------------------------------------------------
@@ -421,13 +433,7 @@ with Agent(width=64, height=48, namespace="/joined") as agent:
 """
     with (
         Agent(**SMALL, namespace="/joined", simulator=LOCKSTEP) as starter,
-        subprocess.Popen(
-            [sys.executable, "-c", code],
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        ) as joiner,
+        program(code) as joiner,
     ):
         assert joiner.stdout is not None
         assert joiner.stdout.readline() == "joined\n"
@@ -461,17 +467,8 @@ with Agent(width=64, height=48, namespace="/raced", simulator=start) as agent:
     print(agent.simulator_pid, flush=True)
     sys.stdin.readline()
 """
-    programs = [
-        subprocess.Popen(
-            [sys.executable, "-c", code],
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        for _ in range(2)
-    ]
-    pids = [program.stdout.readline().strip() for program in programs if program.stdout]
+    programs = [program(code) for _ in range(2)]
+    pids = [line_of(running) for running in programs]
     started = [number for number, pid in enumerate(pids) if pid != "None"]
     assert sorted(pid == "None" for pid in pids) == [False, True]
     # The one that joined first, as the simulator ends with the one that started it.
@@ -489,28 +486,11 @@ agent = Agent(width=64, height=48, namespace="/orphan", simulator={"agent.name":
 print("up", flush=True)
 sys.stdin.readline()
 """
-    with subprocess.Popen(
-        [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    ) as program:
-        assert program.stdout is not None
-        assert program.stdout.readline() == "up\n"
+    with program(code) as running:
+        assert line_of(running) == "up"
         assert simulator_is_present(domain(), "/orphan")
-        program.kill()
-    assert eventually(lambda: not simulator_is_present(domain(), "/orphan"))
-
-
-def eventually(condition, timeout_s: float = 20.0) -> bool:  # type: ignore[no-untyped-def]
-    """Look at a condition until it holds or the deadline has passed."""
-    done = threading.Event()
-    for _ in range(int(timeout_s / 0.02)):
-        if condition():
-            return True
-        done.wait(0.02)
-    return bool(condition())
+        running.kill()
+    until(lambda: not simulator_is_present(domain(), "/orphan"), "the orphan's end")
 
 
 def test_a_simulator_that_cannot_start_says_why() -> None:
@@ -522,19 +502,39 @@ def test_a_simulator_that_cannot_start_says_why() -> None:
     assert not simulator_is_present(domain(), "/failing")
 
 
-def test_a_forked_process_is_told_to_make_its_own(agent: Agent) -> None:
-    """An Agent that was inherited by a fork raises in the child and still works in the parent."""
-    child = os.fork()
-    if child == 0:
-        status = 1
-        try:
-            agent.get_frame()
-        except SimulationClosed as error:
-            status = 0 if "forked" in str(error) else 2
-        finally:
-            os._exit(status)
-    assert os.waitpid(child, 0)[1] == 0
-    assert agent.get_frame()["sequence"] == 1
+def test_forked_workers_make_agents_of_their_own(simulator: Agent) -> None:
+    """An inherited Agent refuses to work, one of the worker's own works, the parent's goes on."""
+    code = """
+import multiprocessing, warnings
+from sailenv_ros import Agent
+from sailenv_ros.errors import SimulationClosed
+
+def work(inherited, answers):
+    try:
+        inherited.get_frame()
+    except SimulationClosed as error:
+        answers.put(str(error))
+    inherited.close()
+    with Agent(width=64, height=48, namespace="/tested") as own:
+        answers.put(own.get_frame()["sequence"])
+
+warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 on forks beside threads
+forking = multiprocessing.get_context("fork")
+answers = forking.Queue()
+with Agent(width=64, height=48, namespace="/tested") as agent:
+    agent.get_frame()
+    workers = [forking.Process(target=work, args=(agent, answers)) for _ in range(2)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join(60)
+        assert worker.exitcode == 0, worker.exitcode
+    assert agent.get_frame()["sequence"] == 2
+heard = sorted(str(answers.get(timeout=10)) for _ in range(4))
+print(heard)
+"""
+    told = "the simulation has ended: this process was forked; make an Agent of its own in it"
+    assert run_python(code) == f"{['1', '1', told, told]}\n"
 
 
 def test_the_first_example_runs(tmp_path: Path) -> None:
