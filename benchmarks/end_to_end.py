@@ -56,9 +56,12 @@ for topic in sys.argv[1:]:
     node.create_subscription(Image, topic, lambda msg: None, QoSProfile(depth=3))
 executor = SingleThreadedExecutor()
 executor.add_node(node)
-threading.Thread(target=executor.spin, daemon=True).start()
+spinning = threading.Thread(target=executor.spin)
+spinning.start()
 sys.stdin.read()  # until the benchmark closes it, or dies
 executor.shutdown()
+spinning.join()
+node.destroy_node()
 rclpy.shutdown()
 """
 

@@ -95,7 +95,7 @@ def test_segments_of_the_dead_are_removed_and_of_the_living_kept(tmp_path: Path)
     ("name", "segment_mib"), [(PROFILES[0][0], 64), (PROFILES[1][0], 8), (PROFILES[2][0], 0)]
 )
 def test_the_profiles_are_what_they_promise(name: str, segment_mib: int) -> None:
-    """The segment's size, UDP for other hosts, quick mending; all of it for every participant."""
+    """The segment's size, UDP for other hosts, quick finding and mending; for every participant."""
     root = ElementTree.parse(resource_path("config", name)).getroot()
 
     def texts(tag: str) -> list[str | None]:
@@ -104,7 +104,8 @@ def test_the_profiles_are_what_they_promise(name: str, segment_mib: int) -> None
     assert texts("segment_size") == [str(segment_mib << 20)] * bool(segment_mib)
     assert texts("type") == ["SHM"] * bool(segment_mib) + ["UDPv4"]
     assert set(texts("maxInitialPeersRange")) == {"64"}
-    assert texts("nanosec") == ["20000000"]
+    assert texts("leaseAnnouncement/{*}nanosec") == ["250000000"]
+    assert texts("heartbeatPeriod/{*}nanosec") == ["20000000"]
     for kind in ("participant", "data_writer"):
         (entry,) = root.iterfind(f".//{{*}}{kind}")
         assert entry.get("is_default_profile") == "true"
