@@ -32,10 +32,6 @@ _isolate_ros()
 INSTALLED_PREFIX = os.environ.get("SAILENV_INSTALLED_PREFIX", "")
 """Set by scripts/test: where the package under test was installed to; else it is the sources'."""
 
-if INSTALLED_PREFIX:
-    # Programs started by `python -m` look into the current folder first, which must not be ours.
-    os.chdir(INSTALLED_PREFIX)
-
 settings.register_profile("dev", deadline=None)
 # The same examples each time, many of them; a shared machine makes no promise about time.
 settings.register_profile(
@@ -57,3 +53,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.ros)
         elif folders[0] == "render":
             item.add_marker(pytest.mark.gl)
+
+
+def pytest_collection_finish() -> None:
+    """Leave the sources' folder: programs started by `python -m` look there first.
+
+    Not earlier, because pytest and its workers look up their arguments from the current folder.
+    """
+    if INSTALLED_PREFIX:
+        os.chdir(INSTALLED_PREFIX)
