@@ -16,7 +16,7 @@ from pathlib import Path
 
 from sailenv_ros.errors import NameTaken
 
-__all__ = ["SimulatorLock", "simulator_is_present"]
+__all__ = ["SimulatorLock", "present_simulator", "simulator_is_present"]
 
 _FLOCK = "hhqqi4x"
 """`struct flock` of 64-bit Linux: type, whence, start, length, process."""
@@ -45,6 +45,8 @@ class SimulatorLock:
         except OSError:
             self.release()
             raise NameTaken(f"simulator (ROS domain {domain_id})", namespace) from None
+        os.truncate(self._fd, 0)
+        os.pwrite(self._fd, str(os.getpid()).encode(), 0)
 
     def release(self) -> None:
         """Let go of it; a second call does nothing."""
@@ -61,16 +63,26 @@ class SimulatorLock:
 
 def simulator_is_present(domain_id: int, namespace: str) -> bool:
     """Say whether a simulator of that name runs on this host as this user."""
+    return present_simulator(domain_id, namespace) is not None
+
+
+def present_simulator(domain_id: int, namespace: str) -> int | None:
+    """Give the process id of the simulator of that name on this host; None if there is none.
+
+    0 is given for one that has only just begun.
+    """
     try:
         fd = os.open(_path(domain_id, namespace), os.O_RDWR)
     except FileNotFoundError:
-        return False
+        return None
     try:
         # Asks who would be in the way, so that looking gets in nobody's way.
         answer = fcntl.fcntl(fd, fcntl.F_OFD_GETLK, _whole_file(fcntl.F_WRLCK))
+        if struct.unpack(_FLOCK, answer)[0] == fcntl.F_UNLCK:
+            return None
+        return int(os.pread(fd, 32, 0) or b"0")
     finally:
         os.close(fd)
-    return bool(struct.unpack(_FLOCK, answer)[0] != fcntl.F_UNLCK)
 
 
 def _whole_file(kind: int) -> bytes:

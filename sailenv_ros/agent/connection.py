@@ -25,7 +25,7 @@ from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
 from sailenv_msgs.srv import RegisterAgent
 from sailenv_msgs_py.scene_info import scene_info_from_msg
 from sailenv_ros.errors import DeadlineExceeded, RequestRefused, SimulationClosed, SimulatorLost
-from sailenv_ros.presence import simulator_is_present
+from sailenv_ros.presence import present_simulator
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.transport import use_shared_memory_profile
 
@@ -95,7 +95,11 @@ class Connection:
 
     def simulator_is_here(self) -> bool:
         """Say whether a simulator of this name runs on this host."""
-        return simulator_is_present(self.domain_id, self.namespace)
+        return self.simulator_here() is not None
+
+    def simulator_here(self) -> int | None:
+        """Give the process id of the simulator of this name on this host, if there is one."""
+        return present_simulator(self.domain_id, self.namespace)
 
     @property
     def is_inherited(self) -> bool:

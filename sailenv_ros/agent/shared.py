@@ -113,7 +113,14 @@ def _connect(
         try:
             _await_answer(connection, timeout_s)
         except SimulatorLost:
-            _join_the_winner(link)
+            assert link.process is not None
+            if not connection.simulator_is_here():
+                raise link.process.failure() from None
+        if link.process is not None and connection.simulator_here() != link.process.pid:
+            # Another program started one at the same time, and ours gives way to it.
+            link.process.close()
+            link.process = None
+            connection.watch(lambda: True)
             _await_answer(connection, timeout_s)
         if link.process is None and connection.simulator_is_here():
             connection.watch(connection.simulator_is_here)
@@ -121,23 +128,6 @@ def _connect(
         link.close()
         raise
     return link
-
-
-def _join_the_winner(link: Link) -> None:
-    """Go on with the simulator that another process started at the same time, if there is one.
-
-    Raises
-    ------
-    SimulationClosed
-        If ours ended for another reason.
-    """
-    assert link.process is not None
-    failure = link.process.failure()
-    link.process.close()
-    link.process = None
-    if not link.connection.simulator_is_here():
-        raise failure
-    link.connection.watch(lambda: True)
 
 
 def _await_answer(connection: Connection, timeout_s: float) -> None:

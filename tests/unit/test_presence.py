@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.errors import NameTaken
-from sailenv_ros.presence import SimulatorLock, simulator_is_present
+from sailenv_ros.presence import SimulatorLock, present_simulator, simulator_is_present
 
 HOLD = """
 import sys
@@ -43,6 +44,7 @@ def test_presence_is_seen_and_looking_changes_nothing() -> None:
     assert not simulator_is_present(7, "/sailenv")
     lock = SimulatorLock(7, "/sailenv")
     assert simulator_is_present(7, "/sailenv")
+    assert present_simulator(7, "/sailenv") == os.getpid()
     assert not simulator_is_present(7, "/sailenv/room")
     lock.release()
     lock.release()
@@ -56,7 +58,7 @@ def test_the_lock_ends_with_a_process_that_is_killed() -> None:
     ) as holder:
         assert holder.stdout is not None
         assert holder.stdout.readline() == b"held\n"
-        assert simulator_is_present(7, "/sailenv")
+        assert present_simulator(7, "/sailenv") == holder.pid
         holder.kill()
         holder.wait(10)
         assert not simulator_is_present(7, "/sailenv")
