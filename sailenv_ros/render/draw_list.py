@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.model import Material
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.materials import MaterialBuffers
+from sailenv_ros.render.textures import array_of
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 __all__ = ["Batch", "BatchKind", "DrawList"]
@@ -52,31 +53,27 @@ class BatchKind:
 
     Attributes
     ----------
-    textured : bool
-        True if the material has any texture.
+    maps : (3,) tuple of int
+        Array that the base colour, metallic-roughness and normal map lie in, -1 for no map.
     masked : bool
         True if pixels may be dropped by alpha.
     double_sided : bool
         True if back faces are drawn.
     """
 
-    textured: bool
+    maps: tuple[int, int, int]
     masked: bool
     double_sided: bool
 
     @classmethod
     def of(cls, material: Material) -> BatchKind:
         """Classify a material."""
-        textures = (
-            material.base_colour_texture,
-            material.metallic_roughness_texture,
-            material.normal_texture,
+        maps = (
+            array_of(material.base_colour_texture),
+            array_of(material.metallic_roughness_texture),
+            array_of(material.normal_texture),
         )
-        return cls(
-            any(texture is not None for texture in textures),
-            material.alpha == "mask",
-            material.double_sided,
-        )
+        return cls(maps, material.alpha == "mask", material.double_sided)
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,7 +113,7 @@ class GeometryPass:
                 program = self._program(batch.kind, targets)
                 set_uniform(program, "far_m", intrinsics.far_m)
                 set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.0))
-                materials.bind(program)
+                materials.bind(program, batch.kind.maps)
                 if batch.kind.double_sided:
                     context.disable(moderngl.CULL_FACE)
                 else:
@@ -130,10 +130,12 @@ class GeometryPass:
         # Masked materials need their alpha even where no picture is made.
         if shaded or kind.masked or targets.normals is not None:
             switches["SHADED"] = 1
-            if kind.textured:
-                switches["TEXTURED"] = 1
             if kind.masked:
                 switches["MASKED"] = 1
+            needed = ("COLOUR_MAP", "FINISH_MAP", "NORMAL_MAP")[: 3 if shaded else 1]
+            for name, array in zip(needed, kind.maps, strict=False):
+                if array >= 0:
+                    switches[name] = 1
         if targets.normals is not None:
             switches["NORMALS"] = 1
             switches["LOCATION_NORMALS"] = 3 if shaded else 1

@@ -22,7 +22,7 @@ ROW = np.dtype(
         ("metallic", "<f4"),
         ("alpha_cutoff", "<f4"),
         ("emission", "<f4"),
-        ("textures", "<i4", 4),
+        ("layers", "<i4", 4),
     ]
 )
 
@@ -59,10 +59,10 @@ class MaterialBuffers:
         """Give the row of a material that is shown."""
         return self._row_of[id(material)]
 
-    def bind(self, program: moderngl.Program) -> None:
-        """Make rows and textures readable for a program."""
+    def bind(self, program: moderngl.Program, maps: tuple[int, int, int]) -> None:
+        """Make rows and the arrays of a kind's maps readable for a program."""
         self._buffer.bind_to_storage_buffer(1)
-        self._textures.bind(program)
+        self._textures.bind(program, maps)
 
     def close(self) -> None:
         """Free everything on the GPU."""
@@ -79,7 +79,7 @@ class MaterialBuffers:
         row["roughness"], row["metallic"] = material.roughness, material.metallic
         row["alpha_cutoff"] = material.alpha_cutoff
         row["emission"] = min(1.0, glow / EMISSION_SCALE)
-        row["textures"] = [*(self._textures.number(texture) for texture in _textures(material)), -1]
+        row["layers"] = [*(self._textures.layer(texture) for texture in _textures(material)), 0]
 
 
 def _textures(material: Material) -> tuple[Texture | None, Texture | None, Texture | None]:

@@ -1,7 +1,7 @@
 """Textures on the GPU: arrays of layers, one array for each of three sizes.
 
-The textures of a scene come in, numbers that a shader can look them up by go out. Each texture is
-brought to the next size that holds it, with mip-maps and anisotropic filtering. What the present
+The textures of a scene come in, arrays and layers to look them up by go out. Each texture is
+brought to the next size that holds it, with mip-maps. What the present
 scene does not show gives way to what it does, so memory is bounded by the largest scene.
 """
 
@@ -17,17 +17,19 @@ from numpy.typing import NDArray
 from sailenv_ros.model import Texture
 from sailenv_ros.render.programs import set_uniform
 
-__all__ = ["SIZES_PX", "TextureArrays"]
+__all__ = ["SIZES_PX", "TextureArrays", "array_of"]
 
 SIZES_PX = (128, 512, 1024)
 """Edge lengths of the three texture arrays."""
 
-ANISOTROPY = 4.0
+ANISOTROPY = (4.0, 1.0, 1.0)
+"""Of colour, finish and normal maps. On the CPU a second sample costs as much as a map more, and
+only in colours is it seen."""
 
 SPARE = 0.25
 """Share of layers that a new array has in reserve, for what is spawned later."""
 
-_LAYER_BITS = 12
+_UNIFORMS = ("colour_maps", "finish_maps", "normal_maps")
 _FIRST_TEXTURE_UNIT = 8
 
 
@@ -36,32 +38,39 @@ class TextureArrays:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._arrays = tuple(_Layers(context, edge) for edge in SIZES_PX)
+        self._samplers = tuple(
+            context.sampler(
+                filter=(moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR), anisotropy=anisotropy
+            )
+            for anisotropy in ANISOTROPY
+        )
 
     def show(self, textures: Iterable[Texture]) -> None:
         """Make sure that these are there; others may be gone afterwards."""
         by_size: list[list[Texture]] = [[] for _ in SIZES_PX]
         for texture in {id(texture): texture for texture in textures}.values():
-            by_size[_size_of(texture)].append(texture)
+            by_size[array_of(texture)].append(texture)
         for array, wanted in zip(self._arrays, by_size, strict=True):
             array.show(wanted)
 
-    def number(self, texture: Texture | None) -> int:
-        """Give array and layer of a texture that is there as one number; -1 for none."""
-        if texture is None:
-            return -1
-        size = _size_of(texture)
-        return (size << _LAYER_BITS) + self._arrays[size].layer(texture)
+    def layer(self, texture: Texture | None) -> int:
+        """Give the layer of a texture that is there; 0 for none."""
+        return 0 if texture is None else self._arrays[array_of(texture)].layer(texture)
 
-    def bind(self, program: moderngl.Program) -> None:
-        """Make the textures readable for a program."""
-        for number, array in enumerate(self._arrays):
-            array.use(_FIRST_TEXTURE_UNIT + number)
-            set_uniform(program, f"textures_{number}", _FIRST_TEXTURE_UNIT + number)
+    def bind(self, program: moderngl.Program, maps: tuple[int, int, int]) -> None:
+        """Make the arrays that a kind's maps lie in readable for a program."""
+        for unit, (name, array) in enumerate(zip(_UNIFORMS, maps, strict=True)):
+            if array >= 0:
+                self._arrays[array].use(_FIRST_TEXTURE_UNIT + unit)
+                self._samplers[unit].use(_FIRST_TEXTURE_UNIT + unit)
+                set_uniform(program, name, _FIRST_TEXTURE_UNIT + unit)
 
     def close(self) -> None:
         """Free everything on the GPU."""
         for array in self._arrays:
             array.close()
+        for sampler in self._samplers:
+            sampler.release()
 
 
 class _Layers:
@@ -72,7 +81,6 @@ class _Layers:
         self._edge = edge
         self._textures: list[Texture | None] = []
         self._layer_of: dict[int, int] = {}
-        # An array that nothing lies in still has to be bound: the smallest there is.
         self._array = context.texture_array((1, 1, 1), 4)
 
     def layer(self, texture: Texture) -> int:
@@ -103,9 +111,6 @@ class _Layers:
             self._put(layer, texture)
         if new:
             self._array.build_mipmaps()
-            # Building resets the filter.
-            self._array.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-            self._array.anisotropy = ANISOTROPY
 
     def _make(self, count: int) -> None:
         """Begin anew with room for so many textures, and some."""
@@ -127,8 +132,13 @@ class _Layers:
         self._array.write(pixels, viewport=(0, 0, layer, self._edge, self._edge, 1))
 
 
-def _size_of(texture: Texture) -> int:
-    """Give the place in `SIZES_PX` of the size that holds a texture; the last for larger ones."""
+def array_of(texture: Texture | None) -> int:
+    """Give the place in `SIZES_PX` of the size that holds a texture; the last for larger ones.
+
+    No texture lies in array -1.
+    """
+    if texture is None:
+        return -1
     longest = max(texture.shape[:2])
     return next((i for i, edge in enumerate(SIZES_PX) if longest <= edge), len(SIZES_PX) - 1)
 

@@ -43,7 +43,7 @@ void main() {
     out_normal = vec4(normal, 1.0);
 #endif
 #ifndef UNLIT
-#ifdef TEXTURED
+#ifdef NORMAL_MAP
     vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
     normal = mapped_normal(uv, normal, point);
 #endif

@@ -18,8 +18,8 @@ out vec3 optical_normal;
 out vec2 uv;
 flat out vec4 material_colour;
 flat out vec4 material_finish;    // roughness, metallic, alpha cutoff, emission
-#ifdef TEXTURED
-flat out ivec4 material_textures;
+#if defined(COLOUR_MAP) || defined(FINISH_MAP) || defined(NORMAL_MAP)
+flat out ivec4 material_layers;
 #endif
 #endif
 
@@ -34,8 +34,8 @@ void main() {
     Material material = materials[draws[in_draw].material];
     material_colour = material.base_colour;
     material_finish = material.finish;
-#ifdef TEXTURED
-    material_textures = material.textures;
+#if defined(COLOUR_MAP) || defined(FINISH_MAP) || defined(NORMAL_MAP)
+    material_layers = material.layers;
 #endif
     optical_normal = vec3(dot(draws[in_draw].optical_normal_from_object[0].xyz, in_normal),
                           dot(draws[in_draw].optical_normal_from_object[1].xyz, in_normal),
