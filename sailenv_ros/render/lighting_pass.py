@@ -6,6 +6,7 @@ through here.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 
 import moderngl
@@ -19,6 +20,8 @@ from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.shadow_pass import SIZE_PX, ShadowPass
 
 __all__ = ["MAX_LIGHTS", "LightingPass", "main_light"]
+
+_log = logging.getLogger(__name__)
 
 MAX_LIGHTS = 16
 """Lights that are taken into account, the strongest first."""
@@ -52,6 +55,7 @@ class LightingPass:
         self._sky = programs.get("screen.vert", "sky.frag")
         self._light_array = context.vertex_array(self._light, [])
         self._sky_array = context.vertex_array(self._sky, [])
+        self._warned_of: Sequence[Light] | None = None
         self._lights = context.buffer(reserve=MAX_LIGHTS * ROW.itemsize, dynamic=True)
 
     def draw(
@@ -92,6 +96,9 @@ class LightingPass:
         program = self._light
         sun = main_light(lights)
         lamps = [light for light in lights if light is not sun and light.intensity > 0.0]
+        if len(lamps) > MAX_LIGHTS and self._warned_of is not lights:
+            self._warned_of = lights
+            _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, len(lamps))
         self._lights.write(_light_rows(lamps, camera).tobytes())
         self._lights.bind_to_uniform_block(0)
         set_uniform(program, "light_count", min(len(lamps), MAX_LIGHTS))

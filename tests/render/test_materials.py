@@ -199,3 +199,15 @@ def test_an_area_light_shines_forward(render: Render) -> None:
         light = Light(**panel, position_m=(0, 0, 0), direction=direction)
         rgb = render(snapshot_of([grey], lights=(light,), environment=BLACK), camera, "rgb")["rgb"]
         np.testing.assert_allclose(linear(rgb[36, 48]).mean(), expected, rtol=0.08, atol=1e-3)
+
+
+def test_lights_beyond_what_is_drawn_are_told(
+    render: Render, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Of twenty lamps the sixteen strongest shine; one warning says so, not one a frame."""
+    lamps = tuple(Light(name=f"{i}", type="point", intensity=float(i)) for i in range(1, 21))
+    scene = snapshot_of([Thing(model_of(WALL), AHEAD)], lights=lamps)
+    for _ in range(3):
+        render(scene, camera_at(), "rgb")
+    said = [r.getMessage() for r in caplog.records if "lights" in r.getMessage()]
+    assert said == ["only the 16 strongest of 20 lights are drawn"]

@@ -13,6 +13,7 @@ from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.render.renderer import Renderer
 from tests.render.conftest import Render
+from tests.support.picture import linear
 from tests.support.tiny_scenes import (
     SUN,
     Thing,
@@ -32,14 +33,6 @@ DIM = Environment(
     sky_zenith=(0.1, 0.2, 0.4), sky_horizon=(0.3, 0.35, 0.4), sky_ground=(0.1, 0.1, 0.1)
 )
 UNIFORM = Environment(ambient=(0.0, 0.0, 0.0), sky_zenith=GREY, sky_horizon=GREY, sky_ground=GREY)
-
-
-def linear(rgb: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]  # any picture
-    """Undo sRGB and the filmic curve: the radiance that the lighting pass computed."""
-    c = np.asarray(rgb, float) / 255
-    c = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    a, b, d = 2.51 - 2.43 * c, 0.03 - 0.59 * c, -0.14 * c
-    return (-b + np.sqrt(b * b - 4 * a * d)) / (2 * a)
 
 
 @pytest.mark.parametrize("roughness", [0.1, 0.5, 1.0])
