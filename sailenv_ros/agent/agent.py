@@ -36,6 +36,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import (
     DeadlineExceeded,
+    InvalidRequest,
     SailenvError,
     SimulationClosed,
 )
@@ -291,6 +292,8 @@ depth_frame_active : bool
 
     def set_pose(self, pose: Pose, *, teleport: bool = False) -> None:
         """Move and turn the camera."""
+        if not isinstance(pose, Pose):
+            raise InvalidRequest("pose", pose, "a sailenv_ros.geometry.Pose")
         request = SetPose.Request(pose=pose_to_msg(pose), teleport=teleport)
         self._call_own(SetPose, "set_pose", request)
 

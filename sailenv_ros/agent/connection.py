@@ -24,7 +24,13 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
 from sailenv_msgs.srv import RegisterAgent
 from sailenv_msgs_py.scene_info import scene_info_from_msg
-from sailenv_ros.errors import DeadlineExceeded, RequestRefused, SimulationClosed, SimulatorLost
+from sailenv_ros.errors import (
+    DeadlineExceeded,
+    InvalidRequest,
+    RequestRefused,
+    SimulationClosed,
+    SimulatorLost,
+)
 from sailenv_ros.presence import present_simulator
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.transport import use_shared_memory_profile
@@ -141,6 +147,8 @@ class Connection:
 
         Raises
         ------
+        InvalidRequest
+            If a field of the request cannot be sent at all.
         RequestRefused
             With the simulator's own sentence.
         SimulatorLost
@@ -154,7 +162,12 @@ class Connection:
         what = f"the service {self.namespace}/{service}"
         self.wait_until(client.service_is_ready, what, timeout_s)
         answered = threading.Event()
-        future = client.call_async(request)
+        try:
+            future = client.call_async(request)
+        except (SystemError, TypeError, OverflowError, UnicodeError) as error:
+            # The messages' C code tells a wrong type or size in these ways.
+            accepted = "of numbers and texts that the service's fields can hold"
+            raise InvalidRequest(f"request to {service}", request, accepted) from error
         future.add_done_callback(lambda _: answered.set())
         try:
             self._wait(answered.wait, f"an answer of {what}", deadline, timeout_s)

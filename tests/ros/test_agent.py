@@ -304,6 +304,21 @@ def test_refusals_come_in_the_simulators_words(agent: Agent) -> None:
     assert agent.scene == "optical"
 
 
+def test_values_that_no_message_holds_are_refused(agent: Agent) -> None:
+    """A wrong type or a number too big is told like any other wrong argument."""
+    for ask in (
+        lambda: agent.step(1.5),
+        lambda: agent.step(2**70),
+        lambda: agent.reset(seed="a"),
+        lambda: agent.change_scene(None),
+        lambda: agent.change_scene("\ud800"),
+        lambda: agent.set_pose((1.0, 2.0, 3.0)),
+    ):
+        with pytest.raises(InvalidRequest, match="must be"):
+            ask()
+    assert agent.get_frame()["sequence"] == 1
+
+
 def test_a_name_is_given_once(agent: Agent) -> None:
     """A second agent of one name is refused, and the first one is unharmed."""
     with pytest.raises(RequestRefused, match="not in use"):
@@ -467,14 +482,13 @@ with Agent(width=64, height=48, namespace="/raced", simulator=start) as agent:
     print(agent.simulator_pid, flush=True)
     sys.stdin.readline()
 """
-    programs = [program(code) for _ in range(2)]
-    pids = [line_of(running) for running in programs]
-    started = [number for number, pid in enumerate(pids) if pid != "None"]
-    assert sorted(pid == "None" for pid in pids) == [False, True]
-    # The one that joined first, as the simulator ends with the one that started it.
-    for number in sorted(range(2), key=lambda n: n in started):
-        _, _ = programs[number].communicate("\n", timeout=60)
-        assert programs[number].returncode == 0
+    with program(code) as one, program(code) as other:
+        started = {running: line_of(running) != "None" for running in (one, other)}
+        assert sorted(started.values()) == [False, True]
+        # The one that joined goes first, as the simulator ends with the one that started it.
+        for running in sorted(started, key=started.__getitem__):
+            running.communicate("\n", timeout=60)
+            assert running.returncode == 0
 
 
 def test_a_program_that_dies_takes_its_simulator_along() -> None:
