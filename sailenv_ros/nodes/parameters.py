@@ -95,7 +95,7 @@ _PARAMETERS: dict[str, _Parameter] = {
         "Renderer: gl = OpenGL, tiny = slow software fallback, auto = the first that works.",
         choices=("auto", "gl", "tiny"),
     ),
-    "render_device": _Parameter(-1, "Number of the EGL device; -1: a graphics card, if any.", -1, 15),
+    "render_device": _Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
     "publish_clock": _Parameter(True, "True: publish simulated time on /clock."),
     "agent.name": _Parameter("agent", "Name of the first agent; empty: start without one."),
     "agent.width": _Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
