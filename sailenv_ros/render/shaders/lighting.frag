@@ -46,12 +46,11 @@ float shadowed(vec3 point, vec3 normal, float slope) {
     vec3 at = (shadow_from_optical * vec4(lifted, 1.0)).xyz;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
     float r = shadow_texel.y * shadow_texel.z;
-    float lit = texture(shadow_map, at) * 2.0;
-    lit += texture(shadow_map, at + vec3(0.94, 0.34, 0.0) * r);
+    float lit = texture(shadow_map, at + vec3(0.94, 0.34, 0.0) * r);
     lit += texture(shadow_map, at + vec3(-0.34, 0.94, 0.0) * r);
     lit += texture(shadow_map, at + vec3(-0.94, -0.34, 0.0) * r);
     lit += texture(shadow_map, at + vec3(0.34, -0.94, 0.0) * r);
-    return lit / 6.0;
+    return lit / 4.0;
 }
 
 struct Surface {
