@@ -51,7 +51,8 @@ def test_colour_maps_are_srgb(render: Render, value: int) -> None:
         base_colour_texture=plain(value, value, value, 255),
     )
     by_factor = seen(render, base_colour=(factor, factor, factor, 1), roughness=1.0)
-    np.testing.assert_allclose(by_map, by_factor, rtol=0.02)
+    # In the dark one grey level of the picture, 8e-4 of radiance, is more than 2 %.
+    np.testing.assert_allclose(by_map, by_factor, rtol=0.02, atol=8e-4)
 
 
 def test_factors_multiply_maps(render: Render) -> None:
