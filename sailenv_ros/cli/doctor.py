@@ -80,6 +80,9 @@ def run(args: argparse.Namespace) -> int:
     """Print the table; 0 if a frame can be rendered, else 1."""
     console = Console(highlight=False)
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+    table.add_column()
+    table.add_column()
+    table.add_column(overflow="fold")  # paths are told whole
     failed = False
     with console.status("looking around"):
         for finding in diagnose(timeout_s=args.timeout):
@@ -134,7 +137,8 @@ def _ros(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
         yield Finding(
             topic="ROS",
             text=f"missing: {'; '.join(found['missing'])}. The simulator runs without it, its node "
-            "and Agent do not: scripts/setup brings it, or source your ROS 2 Jazzy",
+            "and Agent do not: scripts/setup brings it. Beside your own ROS 2 Jazzy, source that, "
+            "then .venv/bin/activate",
             level="warning",
         )
     if "rclpy" not in found:

@@ -39,8 +39,12 @@ def probe_ros() -> dict[str, Any]:
             module = importlib.import_module(name)
         except ImportError as problem:
             found["missing"].append(f"{name.partition('.')[0]} ({problem})")
+            continue
+        if module.__file__ is None:
+            # In a checkout, the folder of the message definitions passes for a namespace package.
+            found["missing"].append(f"{name.partition('.')[0]} (not on Python's path)")
         else:
-            found[name.partition(".")[0]] = str(module.__file__)
+            found[name.partition(".")[0]] = module.__file__
             if name == "rclpy":
                 found["rmw"] = module.get_rmw_implementation_identifier()
     return found

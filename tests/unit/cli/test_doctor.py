@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ import pytest
 from sailenv_ros.cli import doctor
 from sailenv_ros.cli.doctor import Finding, diagnose
 from sailenv_ros.cli.main import main
-from sailenv_ros.cli.probes import try_probe
+from sailenv_ros.cli.probes import probe_ros, try_probe
 
 Answer = tuple[dict[str, Any] | None, str]
 
@@ -103,6 +104,13 @@ def test_without_ros_the_simulator_still_renders() -> None:
     assert "rclpy" in about("ROS", found, "warning")
     assert "scripts/setup" in about("ROS", found, "warning")
     assert "FAILED" not in {one.level for one in found}
+
+
+def test_a_folder_of_definitions_is_no_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run in a checkout, Python takes its `sailenv_msgs/` for a package; doctor does not."""
+    monkeypatch.setitem(sys.modules, "sailenv_msgs.msg", ModuleType("sailenv_msgs.msg"))
+    monkeypatch.setattr(sys.modules["sailenv_msgs.msg"], "__file__", None, raising=False)
+    assert [text for text in probe_ros()["missing"] if text.startswith("sailenv_msgs")] != []
 
 
 def test_two_ros_at_once_are_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
