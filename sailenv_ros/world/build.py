@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.paint import painted
+from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.model import Asset
-from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, SceneSpec
+from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
@@ -52,13 +54,28 @@ def build_world(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
-        placements=[_placement(entry, assets, table, seed) for entry in spec.objects],
+        placements=[
+            *_room_placements(spec.room, table),
+            *(_placement(entry, assets, table, seed) for entry in spec.objects),
+        ],
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
         environment=spec.environment.to_environment(),
         gravity=spec.gravity,
     )
+
+
+def _room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterator[Placement]:
+    """Yield the parts of a room, none if there is no room."""
+    for part in () if room is None else room_parts(room):
+        yield Placement(
+            name=part.asset.display_name,
+            asset=part.asset,
+            category_id=categories.named(part.asset.category).id,
+            pose=Pose(part.position_m),
+            static=True,
+        )
 
 
 def _placement(
