@@ -105,7 +105,8 @@ class Faces:
     def mesh(self, surface: Surface | None = None) -> Mesh:
         """Make the mesh; texture coordinates are metres, or the surface's where one is given."""
         corners, normals = np.stack(self._corners), np.stack(self._normals)
-        positions = corners.reshape(-1, 3)
+        # Sums in another order differ by a rounding; neighbours must share their vertices.
+        positions = corners.reshape(-1, 3).round(9)
         spread = np.repeat(normals, 4, axis=0)
         places = _places(positions, spread)
         first = 4 * np.arange(len(corners))[:, np.newaxis, np.newaxis]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -43,8 +43,7 @@ def wall_parts(
         side, height = (along[1] - along[0]) * across, np.array([0.0, 0.0, up[1] - up[0]])
         inner.add(frame.point(along[0], 0.0, up[0]), side, height, -outward)
         outer.add(frame.point(along[0], thick, up[0]), side, height, outward)
-    for hole in holes:
-        _add_reveals(inner, frame, hole)
+    _add_reveals(inner, frame, holes)
     _add_ends(outer, frame)
     return (
         ModelPart(mesh=inner.mesh(surface), material=surface.material),
@@ -58,7 +57,7 @@ def wall_collision(frame: WallFrame, holes: Sequence[Hole]) -> tuple[BoxShape, .
     boxes = []
     for along in pairwise(edges):
         middle = sum(along) / 2.0
-        cut = sorted(hole.up for hole in holes if hole.along[0] < middle < hole.along[1])
+        cut = sorted(hole.up for hole in holes if _within(middle, hole.along))
         for up in _rest((0.0, frame.height_m), cut):
             box = frame.box(along, (0.0, frame.thickness_m), up)
             boxes.append(collision_of(box))
@@ -127,28 +126,43 @@ def _extent(frame: WallFrame) -> Interval:
     return -half, half
 
 
-def _solid_cells(frame: WallFrame, holes: Sequence[Hole]) -> Iterator[tuple[Interval, Interval]]:
-    """Yield the cells of the grid of all edges that lie in no hole."""
+def _grid(frame: WallFrame, holes: Sequence[Hole]) -> tuple[list[Interval], list[Interval]]:
+    """Cut a wall's length and height at all edges of holes and at the room's corners."""
     half = frame.length_m / 2.0
     columns = _breaks(_extent(frame), [e for hole in holes for e in hole.along] + [-half, half])
     rows = _breaks((0.0, frame.height_m), [edge for hole in holes for edge in hole.up])
-    for along in pairwise(columns):
-        for up in pairwise(rows):
-            x, z = sum(along) / 2.0, sum(up) / 2.0
-            if not any(h.along[0] < x < h.along[1] and h.up[0] < z < h.up[1] for h in holes):
-                yield along, up
+    return list(pairwise(columns)), list(pairwise(rows))
 
 
-def _add_reveals(faces: Faces, frame: WallFrame, hole: Hole) -> None:
-    along, outward, up = np.asarray(frame.along), np.asarray(frame.outward), np.eye(3)[2]
-    depth = frame.thickness_m * outward
-    width, height = hole.along[1] - hole.along[0], hole.up[1] - hole.up[0]
-    corner = frame.point(hole.along[0], 0.0, hole.up[0])
-    faces.add(corner, depth, height * up, along)
-    faces.add(corner + width * along, depth, height * up, -along)
-    faces.add(corner + height * up, width * along, depth, -up)
-    if hole.up[0] > 0.0:  # a door stands on the floor, which runs on below the walls
-        faces.add(corner, width * along, depth, up)
+def _solid_cells(frame: WallFrame, holes: Sequence[Hole]) -> Iterator[tuple[Interval, Interval]]:
+    """Yield the cells of the grid that lie in no hole."""
+    for along, up in product(*_grid(frame, holes)):
+        x, z = sum(along) / 2.0, sum(up) / 2.0
+        if not any(_within(x, hole.along) and _within(z, hole.up) for hole in holes):
+            yield along, up
+
+
+def _add_reveals(faces: Faces, frame: WallFrame, holes: Sequence[Hole]) -> None:
+    """Add the sides of all holes, cut along the grid as the faces beside them."""
+    columns, rows = _grid(frame, holes)
+    across, above = np.asarray(frame.along), np.eye(3)[2]
+    depth = frame.thickness_m * np.asarray(frame.outward)
+    for hole in holes:
+        for up in rows:
+            if _within(sum(up) / 2.0, hole.up):
+                tall = (up[1] - up[0]) * above
+                faces.add(frame.point(hole.along[0], 0.0, up[0]), depth, tall, across)
+                faces.add(frame.point(hole.along[1], 0.0, up[0]), depth, tall, -across)
+        for along in columns:
+            if _within(sum(along) / 2.0, hole.along):
+                wide = (along[1] - along[0]) * across
+                faces.add(frame.point(along[0], 0.0, hole.up[1]), wide, depth, -above)
+                if hole.up[0] > 0.0:  # a door stands on the floor, which runs on below the walls
+                    faces.add(frame.point(along[0], 0.0, hole.up[0]), wide, depth, above)
+
+
+def _within(place: float, extent: Interval) -> bool:
+    return extent[0] < place < extent[1]
 
 
 def _add_ends(faces: Faces, frame: WallFrame) -> None:
