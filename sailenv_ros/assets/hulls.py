@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from collections.abc import Sequence
 
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from sailenv_ros.assets.meshes import RawMesh, components, simplified
+from sailenv_ros.assets.meshes import RawMesh, components, simplified, welded
 from sailenv_ros.model import ConvexShape
 
 __all__ = ["convex_hull", "convex_parts", "hulls_of_pieces", "merged"]
@@ -71,20 +72,27 @@ def convex_parts(mesh: RawMesh, *, threshold: float = 0.08) -> tuple[ConvexShape
     -----
     CoACD (Wei, Liu, Ling and Su, SIGGRAPH 2022) with its fixed seed.
     """
-    small = simplified(mesh, 4000, max_error=0.05)
+    small = simplified(_closed(mesh), 4000, max_error=0.05)
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     coacd.set_log_level("error")
     parts = coacd.run_coacd(
         coacd.Mesh(small.positions, small.triangles),
         threshold=threshold,
         max_convex_hull=MAX_HULLS,
-        preprocess_resolution=30,
+        preprocess_resolution=50,
         resolution=1000,
         mcts_nodes=10,
         mcts_iterations=40,
         mcts_max_depth=2,
         seed=0,
     )
-    return tuple(convex_hull(np.asarray(points)) for points, _ in parts)
+    # Open meshes are closed by a skin around them, which stands out a little.
+    return tuple(convex_hull(np.clip(np.asarray(points), low, high)) for points, _ in parts)
+
+
+def _closed(mesh: RawMesh) -> RawMesh:
+    """Join what lies at one place, whatever its texture coordinates."""
+    return welded(dataclasses.replace(mesh, uvs=np.zeros_like(mesh.uvs)))
 
 
 def _thickened(points: Floats) -> Floats:

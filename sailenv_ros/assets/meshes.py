@@ -24,6 +24,7 @@ __all__ = [
     "simplified",
     "smooth_mesh",
     "thinned_out",
+    "welded",
 ]
 
 Floats = NDArray[np.float64]
@@ -107,7 +108,7 @@ def simplified(raw: RawMesh, target: int, *, max_error: float = 0.004) -> RawMes
     """
     if len(raw.triangles) <= target:
         return raw
-    raw = _welded(raw)
+    raw = welded(raw)
     indices = raw.triangles.astype(np.uint32).reshape(-1)
     positions = np.ascontiguousarray(raw.positions, dtype=np.float32)
     result = np.zeros_like(indices)
@@ -274,7 +275,8 @@ def _corner_normals(raw: RawMesh, crease_deg: float) -> Floats:
     return _unit(sums)
 
 
-def _welded(raw: RawMesh) -> RawMesh:
+def welded(raw: RawMesh) -> RawMesh:
+    """Give a mesh whose corners of one place and texture coordinate are one; without normals."""
     rows = np.hstack([raw.positions, raw.uvs]).round(6)
     unique, place = np.unique(rows, axis=0, return_inverse=True)
     triangles = place.reshape(-1)[raw.triangles]
