@@ -11,6 +11,7 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.sources import installed_packs, installed_sources
+from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.scene.catalogue import SceneCatalogue
@@ -65,6 +66,7 @@ class SceneLibrary:
             categories=tuple(category.name for category in self.categories.values()),
             behaviour_faults=behaviour_faults,
             object_faults=ObjectFit(self._assets),
+            surfaces=surface_names(),
         )
 
     def load(self, scene: str | Path) -> SceneSpec:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import stat
 import warnings
@@ -55,7 +56,7 @@ def test_an_honest_archive_is_unpacked(tmp_path: Path, folder: Path) -> None:
 def test_paths_that_lead_out_are_refused(tmp_path: Path, folder: Path, name: str) -> None:
     """Nothing is written for an archive with one bad path, not even its good files."""
     archive = made(tmp_path / "a.zip", {"good": b"1", name: b"2"})
-    with pytest.raises(AssetError, match="leads out|malformed"):
+    with pytest.raises(AssetError, match=r"leads out|malformed"):
         unpack_zip(archive, folder)
     assert list(folder.iterdir()) == []
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.zip", "out"]
@@ -131,8 +132,6 @@ def test_damaged_archives_are_an_error_of_ours(
     path = tmp_path_factory.mktemp("damaged")
     (path / "a.zip").write_bytes(data[: max(cut, 40)] if cut % 2 else data)
     (path / "out").mkdir()
-    try:
+    with contextlib.suppress(AssetError):
         unpack_zip(path / "a.zip", path / "out")
-    except AssetError:
-        pass
     assert {p.name for p in path.iterdir()} == {"a.zip", "out"}
