@@ -15,7 +15,13 @@ from sailenv_ros.labels import Category
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
 from sailenv_ros.scene.kinds import Number, Text
 from sailenv_ros.scene.room_rules import names_beside_room
-from sailenv_ros.scene.rules import at_most_one, distinct, movers_exist
+from sailenv_ros.scene.rules import (
+    at_most_one,
+    carriers_exist,
+    distinct,
+    movers_exist,
+    walls_need_a_room,
+)
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_room import RoomSpec
@@ -83,6 +89,8 @@ class SceneSpec(SceneModel):
         distinct("name", "lights", "objects", "movers", "agents", "categories"),
         distinct("id", "categories"),
         movers_exist,
+        carriers_exist,
+        walls_need_a_room,
         names_beside_room,
     )
 

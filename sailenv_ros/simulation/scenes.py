@@ -10,6 +10,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults
 from sailenv_ros.labels import CategoryTable
@@ -35,7 +36,8 @@ class SceneLibrary:
 
     def __init__(self, scene_paths: Sequence[Path] = ()) -> None:
         self._catalogue = SceneCatalogue(scene_paths)
-        self._assets = AssetLibrary()
+        self._packs = installed_packs()
+        self._assets = AssetLibrary(installed_sources(self._packs))
         self._files: dict[str, Path] = {}
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
 
@@ -52,8 +54,9 @@ class SceneLibrary:
 
     @cached_property
     def categories(self) -> CategoryTable:
-        """The fixed table."""
-        return load_categories()
+        """The fixed table, and what the packs add to it."""
+        added = [entry.to_category() for pack in self._packs for entry in pack.content.categories]
+        return CategoryTable([*load_categories().values(), *added])
 
     @cached_property
     def knowledge(self) -> SceneKnowledge:

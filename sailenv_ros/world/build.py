@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
@@ -48,6 +49,8 @@ def build_world(
     UnknownName, AssetError, InvalidRequest, PhysicsError
         If something cannot be built; nothing is left then.
     """
+    stock = {entry.name: assets.get(entry.asset) for entry in spec.objects}
+    poses = arranged(spec.objects, stock, spec.room)
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
     return World(
@@ -56,7 +59,10 @@ def build_world(
         next_revision=next_revision,
         placements=[
             *_room_placements(spec.room, table),
-            *(_placement(entry, assets, table, seed) for entry in spec.objects),
+            *(
+                _placement(entry, stock[entry.name], poses[entry.name], table, seed)
+                for entry in spec.objects
+            ),
         ],
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
@@ -79,9 +85,9 @@ def _room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterat
 
 
 def _placement(
-    entry: ObjectSpec, assets: AssetLibrary, categories: CategoryTable, seed: int
+    entry: ObjectSpec, asset: Asset, pose: Pose, categories: CategoryTable, seed: int
 ) -> Placement:
-    asset = _painted(entry, assets.get(entry.asset))
+    asset = _painted(entry, asset)
     behaviours = [
         start_behaviour(b.type, b.parameters, seed=seed, object_name=entry.name, place=place)
         for place, b in enumerate(entry.behaviours)
@@ -91,7 +97,7 @@ def _placement(
         name=entry.name,
         asset=asset,
         category_id=categories.named(entry.category or asset.category).id,
-        pose=entry.pose,
+        pose=pose,
         scale=entry.scale,
         static=entry.static,
         mass_kg=entry.mass,
