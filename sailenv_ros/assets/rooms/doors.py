@@ -26,12 +26,14 @@ _ARCHITRAVE_DEPTH_M = 0.015
 _COVERS_LINING_M = 0.02
 _GAP_M = 0.003
 _FLOOR_GAP_M = 0.006
+_THRESHOLD_M = 0.008
 _LEAF_M = 0.04
 _LEAF_INNER_M = 0.005
 _HINGE_OUT_M = -0.01
 _STILE_M = 0.115
 _LEAST_BARRIER_M = 0.15
 _HANDLE_UP_M = 1.03
+_SUNK = 0.72
 
 _METAL = Material(name="handle", base_colour=(0.60, 0.59, 0.57, 1.0), metallic=1.0, roughness=0.30)
 
@@ -39,14 +41,21 @@ _METAL = Material(name="handle", base_colour=(0.60, 0.59, 0.57, 1.0), metallic=1
 def door_parts(spec: DoorSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
     """Give frame, leaf and metal fittings."""
     red, green, blue = spec.colour
-    paint = Material(name="door paint", base_colour=(red, green, blue, 1.0), roughness=0.38)
-    wood, fields, metal = _leaf(spec, frame)
-    leaf = _turned(boxes_mesh(wood, chamfer_m=0.003), spec, frame)
-    panels = _turned(boxes_mesh(fields, chamfer_m=0.010), spec, frame)
+    paint = Material(name="door paint", base_colour=(red, green, blue, 1.0), roughness=0.6)
+    # What is sunk in gets less light than the renderer can know.
+    shade = Material(
+        name="door shade",
+        base_colour=(_SUNK * red, _SUNK * green, _SUNK * blue, 1.0),
+        roughness=0.7,
+    )
+    wood, fields, sunk, metal = _leaf(spec, frame)
+    leaf = _turned(boxes_mesh(wood), spec, frame)
+    panels = _turned(boxes_mesh(fields, chamfer_m=0.009), spec, frame)
     return (
-        ModelPart(mesh=boxes_mesh(_frame_boxes(spec, frame), chamfer_m=0.003), material=paint),
+        ModelPart(mesh=boxes_mesh(_frame_boxes(spec, frame)), material=paint),
         ModelPart(mesh=leaf, material=paint),
         ModelPart(mesh=panels, material=paint),
+        ModelPart(mesh=_turned(boxes_mesh(sunk), spec, frame), material=shade),
         ModelPart(mesh=_turned(boxes_mesh(metal), spec, frame), material=_METAL),
     )
 
@@ -76,12 +85,13 @@ def door_collision(spec: DoorSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
 
 
 def _frame_boxes(spec: DoorSpec, frame: WallFrame) -> list[Box]:
-    """Give the lining in the wall, the stops behind the leaf and architraves on both faces."""
+    """Give lining, stops and threshold behind the leaf, and architraves on both faces."""
     half, top, thick = spec.width / 2.0, spec.height, frame.thickness_m
     lining, stop = (0.0, thick), (_LEAF_INNER_M + _LEAF_M + 0.002, thick)
     inside, clear = half - _LINING_M, top - _LINING_M
     boxes = [frame.box((-inside, inside), lining, (clear, top))]
     boxes.append(frame.box((-inside, inside), stop, (clear - 0.014, clear + 0.004)))
+    boxes.append(frame.box((-inside, inside), stop, (0.0, _THRESHOLD_M)))
     for sign in (-1.0, 1.0):
         boxes.append(frame.box((sign * inside, sign * half), lining, (0.0, top)))
         boxes.append(
@@ -116,8 +126,8 @@ def _extent_box(spec: DoorSpec, frame: WallFrame) -> Box:
     return frame.box((-half, half), (_LEAF_INNER_M, _LEAF_INNER_M + _LEAF_M), (low, high))
 
 
-def _leaf(spec: DoorSpec, frame: WallFrame) -> tuple[list[Box], list[Box], list[Box]]:
-    """Give the closed leaf's stiles, rails and panels, the raised fields, and the fittings."""
+def _leaf(spec: DoorSpec, frame: WallFrame) -> tuple[list[Box], list[Box], list[Box], list[Box]]:
+    """Give the closed leaf's stiles and rails, raised fields, sunk panels, and the fittings."""
     half, low, high = _leaf_extent(spec)
     out = (_LEAF_INNER_M, _LEAF_INNER_M + _LEAF_M)
     stile = min(_STILE_M, half / 2.0)
@@ -131,17 +141,17 @@ def _leaf(spec: DoorSpec, frame: WallFrame) -> tuple[list[Box], list[Box], list[
     wood = [frame.box((sign * inner, sign * half), out, (low, high)) for sign in (-1.0, 1.0)]
     wood += [frame.box((-inner, inner), out, rail) for rail in rails]
     thin, field = (out[0] + 0.013, out[1] - 0.013), (out[0] + 0.004, out[1] - 0.004)
-    fields = []
+    fields, sunk = [], []
     for below, above in pairwise(rails):
         up = (below[1], above[0])
-        wood.append(
+        sunk.append(
             frame.box((-inner - 0.005, inner + 0.005), thin, (up[0] - 0.005, up[1] + 0.005))
         )
         margin = 0.035
         fields.append(
             frame.box((-inner + margin, inner - margin), field, (up[0] + margin, up[1] - margin))
         )
-    return wood, fields, _fittings(spec, frame, half, out)
+    return wood, fields, sunk, _fittings(spec, frame, half, out)
 
 
 def _fittings(spec: DoorSpec, frame: WallFrame, half: float, out: tuple[float, float]) -> list[Box]:

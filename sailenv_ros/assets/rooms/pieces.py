@@ -121,8 +121,10 @@ class Faces:
         )
 
 
-def boxes_mesh(boxes: Iterable[Box], *, chamfer_m: float = 0.0015) -> Mesh:
-    """Make boxes whose edges are broken, as those of real ones are: they catch the light.
+def boxes_mesh(boxes: Iterable[Box], *, chamfer_m: float = 0.0) -> Mesh:
+    """Make boxes, with broken edges if asked for.
+
+    Edges that are narrower than a pixel glitter: only what is a feature of its own is broken.
 
     Parameters
     ----------
@@ -162,12 +164,12 @@ def _add_box(faces: Faces, box: Box, chamfer_m: float) -> None:
             around = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
             signs = [_signs({axis: sign, second: s, third: t}) for s, t in around]
             faces.polygon([corner(axis, s) for s in signs], sign * axes[axis])
-        for one, two in product((-1.0, 1.0), repeat=2):
+        for one, two in product((-1.0, 1.0), repeat=2) if cut else ():
             ends = [_signs({axis: one, second: two, third: s}) for s in (-1.0, 1.0)]
             edge = [corner(axis, ends[0]), corner(axis, ends[1])]
             edge += [corner(second, ends[1]), corner(second, ends[0])]
             faces.polygon(edge, (one * axes[axis] + two * axes[second]) / np.sqrt(2.0))
-    for tip in product((-1.0, 1.0), repeat=3):
+    for tip in product((-1.0, 1.0), repeat=3) if cut else ():
         faces.polygon([corner(axis, tip) for axis in range(3)], np.asarray(tip) / np.sqrt(3.0))
 
 

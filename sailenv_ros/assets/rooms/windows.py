@@ -50,9 +50,9 @@ def window_parts(spec: WindowSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
         handles += _handle(spec, frame, left, right)
     wood += _sill_boards(spec, frame)
     red, green, blue = spec.colour
-    paint = Material(name="window paint", base_colour=(red, green, blue, 1.0), roughness=0.35)
+    paint = Material(name="window paint", base_colour=(red, green, blue, 1.0), roughness=0.55)
     return (
-        ModelPart(mesh=boxes_mesh(wood, chamfer_m=0.003), material=paint),
+        ModelPart(mesh=boxes_mesh(wood), material=paint),
         ModelPart(mesh=boxes_mesh(handles), material=_METAL),
         ModelPart(mesh=boxes_mesh(panes), material=_GLASS),
     )

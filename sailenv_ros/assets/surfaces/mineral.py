@@ -29,7 +29,7 @@ def roughcast(rng: np.random.Generator, colour: Floats) -> SurfaceMaps:
     rubbed = np.minimum(grains, np.float32(1.0)) + 0.5 * np.maximum(grains - 1.0, 0.0)
     wide = cloudy(rng, 1.6)
     hollow = ramp(grains, -0.4, -2.2)
-    light = (1.0 + 0.025 * wide) * (1.0 - 0.22 * hollow)
+    light = (1.0 + 0.012 * wide) * (1.0 - 0.22 * hollow)
     return SurfaceMaps(
         albedo=(colour * light[..., np.newaxis]).astype(np.float32),
         height_m=(0.00045 * rubbed).astype(np.float32),
@@ -40,11 +40,11 @@ def roughcast(rng: np.random.Generator, colour: Floats) -> SurfaceMaps:
 
 def concrete(rng: np.random.Generator, colour: Floats) -> SurfaceMaps:
     """Cast concrete, ground: clouds of grey, fine sand, a few blow holes."""
-    clouds = cloudy(rng, 1.9)
+    clouds = cloudy(rng, 1.45)
     sand = banded(rng, 1.2, 4.0)
     spots = banded(rng, 4.0, 9.0)
     holes = ramp(spots + 0.25 * clouds, 3.4, 3.9)
-    light = (1.0 + 0.085 * clouds + 0.03 * sand) * (1.0 - 0.55 * holes)
+    light = (1.0 + 0.06 * clouds + 0.03 * sand) * (1.0 - 0.55 * holes)
     tint = np.stack([0.010 * clouds, np.zeros_like(clouds), -0.014 * clouds], axis=-1)
     return SurfaceMaps(
         albedo=(colour * (light[..., np.newaxis] + tint)).astype(np.float32),

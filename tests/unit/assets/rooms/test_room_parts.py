@@ -158,7 +158,7 @@ def test_a_pane_is_a_part_of_its_own_and_see_through() -> None:
 
 @pytest.mark.parametrize(("width", "casements"), [(0.6, 1), (0.8, 1), (1.4, 2), (2.5, 4)])
 def test_wide_windows_have_more_casements(width: float, casements: int) -> None:
-    """One for each 0.8 m; each has a pane of 12 triangles and its bevels."""
+    """One for each 0.8 m; each has a pane."""
     one, many = (
         room(openings=[{**WINDOW, "at": 0.0, "width": w}])["window 1"].asset.model.parts[2]
         for w in (0.6, width)
