@@ -30,9 +30,13 @@ ROOM = {
 @pytest.fixture(scope="module")
 def room() -> WorldSnapshot:
     """The room, with a window to the north and a closed door to the east."""
+    return snapshot_of({"room": ROOM})
+
+
+def snapshot_of(scene: dict[str, Any]) -> WorldSnapshot:
     counter = itertools.count(1)
     world = build_world(
-        SceneSpec.model_validate({"version": 1, "room": ROOM}),
+        SceneSpec.model_validate({"version": 1, **scene}),
         assets=AssetLibrary(),
         categories=load_categories(),
         seed=0,
@@ -135,3 +139,17 @@ def test_surfaces_are_seen_in_the_picture(render: Render, room: WorldSnapshot) -
     harmonic = period_px / peak
     assert harmonic == pytest.approx(round(harmonic), abs=0.06)
     assert round(harmonic) >= 1
+
+
+def test_no_sun_shines_through_the_ceiling_of_a_hall(render: Render) -> None:
+    """A hall of 16 by 14 m without windows is as dark with the sun as without it."""
+    lights = [{"name": "sun", "type": "directional", "direction": [0.3, 0.2, -1], "intensity": 4}]
+    shot = camera(look_at((0.0, 0.0, 2.0), (4.0, 3.0, 0.0)))
+    hall = {"size": [16, 14, 4], "skirting": False}
+    dark, sunny = (
+        render(snapshot_of({"room": hall, "lights": shining}), shot, "rgb")["rgb"]
+        for shining in ([], lights)
+    )
+    np.testing.assert_array_equal(sunny, dark)
+    roofless = snapshot_of({"room": {**hall, "ceiling": False}, "lights": lights})
+    assert render(roofless, shot, "rgb")["rgb"].mean() > dark.mean() + 20

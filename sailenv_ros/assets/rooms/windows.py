@@ -71,26 +71,29 @@ def curtain_parts(window: WindowSpec, frame: WallFrame) -> tuple[ModelPart, ...]
     """Give a pair of curtains beside a window, and their rod."""
     spec = window.curtains or CurtainSpec()
     rod_up = min(_top(window) + 0.12, frame.height_m - 0.05)
+    # Beside a corner there is less room for them.
+    free = frame.length_m / 2.0 - 0.03
     reach = window.width / 2.0 + 0.28
+    left, right = max(-reach, -free - window.at), min(reach, free - window.at)
     hung = 0.34 + spec.drawn * (window.width / 2.0)
     low = 0.02 if window.sill > 0.05 else 0.005
     sheets = [
-        _cloth(frame, (-reach + 0.03, -reach + 0.03 + hung), (low, rod_up - 0.02), 0.3),
-        _cloth(frame, (reach - 0.03 - hung, reach - 0.03), (low, rod_up - 0.02), 1.7),
+        _cloth(frame, (left + 0.03, left + 0.03 + hung), (low, rod_up - 0.02), 0.3),
+        _cloth(frame, (right - 0.03 - hung, right - 0.03), (low, rod_up - 0.02), 1.7),
     ]
     red, green, blue = spec.colour
     cloth = Material(
         name="curtain", base_colour=(red, green, blue, 1.0), roughness=0.95, double_sided=True
     )
     rod = [
-        frame.box((-reach, reach), (-0.109, -0.091), (rod_up - 0.009, rod_up + 0.009)),
+        frame.box((left, right), (-0.109, -0.091), (rod_up - 0.009, rod_up + 0.009)),
         *(
             frame.box((at - 0.02, at + 0.02), (-0.12, -0.08), (rod_up - 0.02, rod_up + 0.02))
-            for at in (-reach, reach)
+            for at in (left, right)
         ),
         *(
             frame.box((at - 0.006, at + 0.006), (-0.1, 0.0), (rod_up - 0.006, rod_up + 0.006))
-            for at in (-reach + 0.05, reach - 0.05)
+            for at in (left + 0.05, right - 0.05)
         ),
     ]
     return (

@@ -250,3 +250,12 @@ def test_skirting_stops_at_doors_and_runs_below_windows() -> None:
     assert below_window.all(axis=1).any()
     in_door = (found[:, 0] < (2.195, -0.8, 0.05)) & (found[:, 1] > (2.195, -0.8, 0.05))
     assert not in_door.all(axis=1).any()
+
+
+def test_curtains_stay_in_a_corner() -> None:
+    """Those of a window at the wall's end do not reach through the wall beside it."""
+    window = {**WINDOW, "at": 1.5, "curtains": {"drawn": 0.5}}
+    corners = triangles(room(openings=[window])["curtains 1"]).reshape(-1, 3)
+    assert corners[:, 0].max() < 2.2
+    assert corners[:, 1].max() <= 1.8
+    assert corners[:, 2].min() > 0.0
