@@ -44,7 +44,7 @@ def convex_hull(points: Floats) -> ConvexShape:
     points = np.unique(np.asarray(points, dtype=np.float64).round(5), axis=0)
     corners = _corners(_thickened(points))
     if len(corners) > MAX_HULL_POINTS:
-        corners = corners[_farthest(corners, MAX_HULL_POINTS)]
+        corners = _fewer(corners)
     return ConvexShape(points=corners)
 
 
@@ -114,6 +114,15 @@ def _corners(points: Floats) -> Floats:
         low, high = points.min(axis=0), points.max(axis=0)
         grid = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T
         return _thickened(grid)
+
+
+def _fewer(corners: Floats) -> Floats:
+    """Keep what it stands on, so that it stands, and of the rest what is far apart."""
+    depth = max(1e-4, 0.01 * float(np.ptp(corners[:, 2])))
+    base = corners[corners[:, 2] < corners[:, 2].min() + depth]
+    base = base[_farthest(base, min(len(base), MAX_HULL_POINTS // 3))]
+    rest = corners[_farthest(corners, MAX_HULL_POINTS - len(base))]
+    return np.unique(np.concatenate([base, rest]), axis=0)
 
 
 def _farthest(points: Floats, count: int) -> NDArray[np.int64]:
