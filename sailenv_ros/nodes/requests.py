@@ -36,11 +36,11 @@ class Requests:
         self._simulation = simulation
         self._executor = executor
 
-    async def __call__(self, name: str, *args: Any, **kwargs: Any) -> Any:
+    async def __call__(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
         """Ask for something by its name and await the result; raises what the request raised."""
         return await self.settled(self.begin(name, *args, **kwargs))
 
-    def begin(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+    def begin(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a request now; the order of these calls is the order of execution."""
         return self._simulation.request(name, *args, **kwargs)
 

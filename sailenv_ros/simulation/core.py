@@ -20,6 +20,7 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.world_requests import Entries, WorldRequests
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.world import World
 
@@ -32,7 +33,7 @@ SLICE_STEPS = 24
 """Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
 
 
-class SimulationCore:
+class SimulationCore(WorldRequests):
     """World, renderer and agents of one simulation.
 
     Parameters
@@ -64,6 +65,7 @@ class SimulationCore:
         self._mode: TimeMode = mode
         self._real_time_factor = real_time_factor
         self._seed = seed
+        self._more: Entries = ()
         self._paused = paused
         self._should_end = should_end
         self._agents = AgentTable()
@@ -178,7 +180,7 @@ class SimulationCore:
         chosen = self._seed if seed is None else seed
         if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
             raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
-        self._begin(self._world.scene, chosen, as_registered=True)
+        self._begin(self._world.scene, chosen, as_registered=True, more=self._more)
         return self._epoch
 
     def pause(self) -> None:
@@ -318,10 +320,10 @@ class SimulationCore:
                 if stream.views:
                     stream.put(frame)
 
-    def _begin(self, scene: str, seed: int, *, as_registered: bool) -> None:
-        world = self._library.build(scene, seed, self._epoch + 1, self._next_revision)
+    def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
+        world = self._library.build(scene, seed, self._epoch + 1, self._next_revision, more=more)
         self._world.close()
-        self._world, self._seed = world, seed
+        self._world, self._seed, self._more = world, seed, more
         self._epoch += 1
         self._agents.begin_epoch(world, as_registered=as_registered)
         self._announce()

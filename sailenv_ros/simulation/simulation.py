@@ -141,7 +141,7 @@ class Simulation(Requests):
 
     # -- requests --------------------------------------------------------------------------
 
-    def request(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+    def request(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a request by its name; the future gives its result or raises its error.
 
         Raises

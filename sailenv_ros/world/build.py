@@ -16,7 +16,7 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
 
-__all__ = ["build_world"]
+__all__ = ["build_world", "make_placement"]
 
 
 def build_world(
@@ -52,7 +52,7 @@ def build_world(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
-        placements=[_placement(entry, assets, table, seed) for entry in spec.objects],
+        placements=[make_placement(entry, assets, table, seed) for entry in spec.objects],
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
@@ -61,12 +61,36 @@ def build_world(
     )
 
 
-def _placement(
-    entry: ObjectSpec, assets: AssetLibrary, categories: CategoryTable, seed: int
+def make_placement(
+    entry: ObjectSpec,
+    assets: AssetLibrary,
+    categories: CategoryTable,
+    seed: int,
+    *,
+    start_s: float = 0.0,
 ) -> Placement:
+    """Turn an object's description into what `World.spawn` takes.
+
+    Parameters
+    ----------
+    start_s : float
+        Simulated time at which its behaviours start [s].
+
+    Raises
+    ------
+    UnknownName, AssetError, InvalidRequest
+        If something does not exist or does not fit.
+    """
     asset = _painted(entry, assets.get(entry.asset))
     behaviours = [
-        start_behaviour(b.type, b.parameters, seed=seed, object_name=entry.name, place=place)
+        start_behaviour(
+            b.type,
+            b.parameters,
+            seed=seed,
+            object_name=entry.name,
+            place=place,
+            start_s=start_s,
+        )
         for place, b in enumerate(entry.behaviours)
     ]
     x, y, z = (math.radians(rate) for rate in entry.angular_velocity)
