@@ -5,7 +5,7 @@ Colours are linear RGB. Positions and directions are in the world frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from numbers import Real
 from typing import Literal, get_args
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import vector
 
-__all__ = ["Environment", "Light", "LightType"]
+__all__ = ["Environment", "Light", "LightType", "light_named"]
 
 LightType = Literal["directional", "point", "spot", "area"]
 
@@ -89,6 +89,20 @@ class Light:
         if not is_number or not holds(float(value)):
             raise InvalidRequest(f"{name} of light {self.name!r}", value, accepted)
         object.__setattr__(self, name, float(value))
+
+
+def light_named(name: str, lights: Iterable[Light]) -> Light:
+    """Find a light by its name.
+
+    Raises
+    ------
+    UnknownName
+        If there is none of that name.
+    """
+    by_name = {light.name: light for light in lights}
+    if name not in by_name:
+        raise UnknownName("light", name, by_name)
+    return by_name[name]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,8 @@ from std_srvs.srv import Trigger
 
 from sailenv_msgs.srv import ChangeScene, Reset, Step
 from sailenv_msgs_py.stamps import ns_from_stamp
+from sailenv_ros.agent.light_requests import LightRequests
+from sailenv_ros.agent.object_requests import ObjectRequests
 from sailenv_ros.agent.shared import acquire, release
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import Instance as LabelledInstance
@@ -49,7 +51,7 @@ class Instance:
     moving: bool
 
 
-class SimulatorClient:
+class SimulatorClient(ObjectRequests, LightRequests):
     """Requests to a simulator, and what it announces.
 
     Parameters
@@ -106,15 +108,9 @@ class SimulatorClient:
         info = self._info
         return {i.id: _instance(i, i.id in info.moving) for i in info.instances}
 
-    @property
-    def spawnable_objects_names(self) -> list[str]:
-        """Names of the catalogue that may be spawned."""
-        return list(self._info.spawnables)
-
-    @property
-    def lights_names(self) -> list[str]:
-        """Names of the scene's lights."""
-        return [light.name for light in self._info.lights]
+    def get_categories(self) -> dict[int, str]:
+        """Give `categories`, as the original's method of that name did."""
+        return self.categories
 
     def change_scene(self, scene_name: str) -> None:
         """Leave the present scene for another one of `scenes`, for all agents."""

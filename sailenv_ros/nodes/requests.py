@@ -15,6 +15,7 @@ from rclpy.executors import Executor
 from rclpy.task import Future as RosFuture
 
 from sailenv_ros.errors import SailenvError
+from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["Requests", "answered"]
@@ -35,6 +36,11 @@ class Requests:
     def __init__(self, simulation: Simulation, executor: Executor) -> None:
         self._simulation = simulation
         self._executor = executor
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last."""
+        return self._simulation.info
 
     async def __call__(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
         """Ask for something by its name and await the result; raises what the request raised."""

@@ -17,14 +17,16 @@ from sailenv_ros.scene.checks import findings
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.scene.spec_objects import ObjectSpec
-from sailenv_ros.scene.yaml_nodes import Loc
+from sailenv_ros.scene.yaml_nodes import Loc, compose
 
-__all__ = ["checked_object", "checked_objects", "free_name", "plain_value"]
+__all__ = ["checked_object", "checked_objects", "free_name", "plain_value", "read_document"]
 
 MAX_FAULTS = 20
 """So many are told at most; a hostile description must not cost minutes."""
 
 MAX_OBJECTS = 10000
+
+MAX_CHARACTERS = 4_000_000
 
 
 def checked_object(entry: Mapping[str, Any], knowledge: SceneKnowledge) -> ObjectSpec:
@@ -71,6 +73,23 @@ def _checked(
             faults = [(field.removeprefix("[0]").lstrip("."), text) for field, text in faults]
         raise InvalidEntry(what, entries, dict.fromkeys(faults))
     return spec.objects
+
+
+def read_document(text: str) -> Any:
+    """Read YAML, of which JSON is a part.
+
+    Raises
+    ------
+    InvalidEntry
+        If it cannot be read, with the places.
+    """
+    if len(text) > MAX_CHARACTERS:
+        raise InvalidRequest("length of the document", len(text), f"at most {MAX_CHARACTERS}")
+    node, faults = compose(text)
+    if node is None or faults:
+        told = [(f"line {fault.mark.line}", fault.message) for fault in faults[:MAX_FAULTS]]
+        raise InvalidEntry("document", text, told or [("", "is empty")])
+    return node.plain()
 
 
 def free_name(asset: str, taken: Iterable[str]) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light
+from sailenv_ros.lights import Light, light_named
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.entries import free_name, plain_value
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -96,13 +96,11 @@ class WorldRequests:
     def set_light(self, name: str, **changes: Any) -> Light:
         """Change attributes of a light, by their names in `Light`; give the light as it is then."""
         lights = self.lights()
-        names = [light.name for light in lights]
-        if name not in names:
-            raise UnknownName("light", name, names)
+        present = light_named(name, lights)
         for key in changes:
             if key not in _LIGHT_FIELDS:
                 raise UnknownName("attribute of a light", key, _LIGHT_FIELDS)
-        changed = replace(lights[names.index(name)], **changes)
+        changed = replace(present, **changes)
         if changes:
             self._world.set_lights([changed if light.name == name else light for light in lights])
             self._announce()
