@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from std_srvs.srv import Trigger
@@ -77,7 +78,10 @@ class SimulatorClient(ObjectRequests, LightRequests):
     ) -> None:
         name = "/" + namespace.strip("/")
         self._timeout_s = timeout_s
-        self._link = acquire(_domain(domain_id), name, dict(simulator or {}), start_timeout_s)
+        self._acquire = partial(
+            acquire, _domain(domain_id), name, dict(simulator or {}), start_timeout_s
+        )
+        self._link = self._acquire()
         self._connection = self._link.connection
 
     @property
@@ -107,6 +111,11 @@ class SimulatorClient(ObjectRequests, LightRequests):
         """The objects of the scene by their ids, the values of the instance view."""
         info = self._info
         return {i.id: _instance(i, i.id in info.moving) for i in info.instances}
+
+    @property
+    def category_colours(self) -> dict[int, tuple[int, int, int]]:
+        """Red, green, blue of the categories' pictures by their ids."""
+        return {category.id: category.colour for category in self._info.categories.values()}
 
     def get_categories(self) -> dict[int, str]:
         """Give `categories`, as the original's method of that name did."""
@@ -150,6 +159,11 @@ class SimulatorClient(ObjectRequests, LightRequests):
 
     def _call(self, srv_type: Any, service: str, request: Any) -> Any:
         return self._connection.call(srv_type, service, request, self._timeout_s)
+
+    def _reconnect(self) -> None:
+        old, self._link = self._link, self._acquire()
+        self._connection = self._link.connection
+        release(old)
 
     def _release(self) -> None:
         release(self._link)

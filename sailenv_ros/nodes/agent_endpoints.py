@@ -48,11 +48,20 @@ class AgentEndpoints:
         for name, spec in specs.items():
             if name not in self._endpoints:
                 self._add(spec)
+            elif self._endpoints[name].spec.rate_hz != spec.rate_hz:
+                self._set_rate(self._endpoints[name], spec)
 
     def close(self) -> None:
         """Remove all of them."""
         while self._endpoints:
             self._endpoints.popitem()[1].close()
+
+    def _set_rate(self, endpoint: _Endpoint, spec: AgentSpec) -> None:
+        try:
+            endpoint.publisher.set_rate(spec.rate_hz)
+        except SailenvError:
+            return  # deleted meanwhile; the next scene_info says so
+        endpoint.spec = spec
 
     def _add(self, spec: AgentSpec) -> None:
         try:
@@ -64,10 +73,9 @@ class AgentEndpoints:
 
 
 def _same_topics(one: AgentSpec, other: AgentSpec) -> bool:
-    """Say whether two specs differ at most in what their topics do not show."""
-    return (one.intrinsics, one.rate_hz, one.depth_range_m, one.views) == (
+    """Say whether two specs differ at most in what topics and services need not be made for."""
+    return (one.intrinsics, one.depth_range_m, one.views) == (
         other.intrinsics,
-        other.rate_hz,
         other.depth_range_m,
         other.views,
     )

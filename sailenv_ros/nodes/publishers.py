@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import threading
 from copy import copy
+from dataclasses import replace
 
 from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
@@ -65,11 +66,13 @@ class AgentPublisher:
         self._thread: threading.Thread | None = None
         self.overtaken = 0
         if spec.rate_hz:
-            self._stream = simulation.stream(spec.name, ())
-            self._thread = threading.Thread(
-                target=self._follow, args=(self._stream,), name=f"{spec.name}-frames", daemon=True
-            )
-            self._thread.start()
+            self._begin_stream()
+
+    def set_rate(self, rate_hz: float) -> None:
+        """Take note of a changed rate; 0 ends the stream."""
+        self._spec = replace(self._spec, rate_hz=rate_hz)
+        if rate_hz and self._stream is None:
+            self._begin_stream()
 
     @property
     def ended(self) -> bool:
@@ -124,12 +127,19 @@ class AgentPublisher:
 
     # -- the thread ------------------------------------------------------------------------
 
+    def _begin_stream(self) -> None:
+        self._stream = self._simulation.stream(self._spec.name, ())
+        self._thread = threading.Thread(
+            target=self._follow, args=(self._stream,), name=f"{self._spec.name}-frames", daemon=True
+        )
+        self._thread.start()
+
     def _follow(self, stream: FrameStream) -> None:
-        interval_s = min(LOOK_INTERVAL_S, 1.0 / self._spec.rate_hz)
         while not self._closing.is_set():
+            rate_hz = self._spec.rate_hz
             try:
-                stream.set_views(self._wanted_views())
-                frame = stream.get(interval_s)
+                stream.set_views(self._wanted_views() if rate_hz else ())
+                frame = stream.get(min(LOOK_INTERVAL_S, 1.0 / rate_hz if rate_hz else 1.0))
             except DeadlineExceeded:
                 self._pose_alone()
             except SimulationClosed:

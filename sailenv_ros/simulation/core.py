@@ -9,14 +9,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
-from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame, checked_views
-from sailenv_ros.geometry import Pose
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.simulation.agent_requests import AgentRequests
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
@@ -33,7 +31,7 @@ SLICE_STEPS = 24
 """Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
 
 
-class SimulationCore(WorldRequests):
+class SimulationCore(AgentRequests, WorldRequests):
     """World, renderer and agents of one simulation.
 
     Parameters
@@ -122,52 +120,6 @@ class SimulationCore(WorldRequests):
             ),
             renderer=self._renderer.description,
         )
-
-    # -- agents ----------------------------------------------------------------------------
-
-    def register_agent(self, spec: AgentSpec) -> AgentSpec:
-        """Add an agent; give its spec as accepted."""
-        accepted = self._agents.add(spec, self._world)
-        self._announce()
-        return accepted
-
-    def delete_agent(self, name: str) -> None:
-        """Remove an agent and end its streams."""
-        self._agents.remove(name)
-        self._announce()
-
-    def get_pose(self, agent: str) -> AgentPose:
-        """Say where an agent is."""
-        return self._agents.pose(agent, self._world)
-
-    def set_pose(self, agent: str, pose: Pose, *, teleport: bool = False) -> None:
-        """Move an agent, or the mover that it follows."""
-        before = self._agents[agent].spec
-        was_driven = before.following and self._world.mover(before.mover).controller == "waypoint"
-        self._agents.put(agent, pose, self._world, teleport=teleport)
-        if was_driven:
-            self._announce()
-
-    def set_position(self, agent: str, position_m: Any, *, teleport: bool = False) -> None:
-        """Move an agent and leave its orientation."""
-        here = self.get_pose(agent).pose
-        moved = Pose(position_m, here.orientation_xyzw)
-        self.set_pose(agent, moved, teleport=teleport)
-
-    def set_rotation(self, agent: str, rpy_deg: Any, *, teleport: bool = False) -> None:
-        """Turn an agent to roll, pitch, yaw [deg] and leave its position."""
-        here = self.get_pose(agent).pose
-        self.set_pose(agent, Pose.from_rpy_deg(here.position_m, rpy_deg), teleport=teleport)
-
-    def set_follow(self, agent: str, following: bool) -> bool:
-        """Follow the mover or stop; give the new state."""
-        result = self._agents.set_follow(agent, bool(following), self._world)
-        self._announce()
-        return result
-
-    def toggle_follow(self, agent: str) -> bool:
-        """Change between following and not; give the new state."""
-        return self.set_follow(agent, not self._agents[agent].spec.following)
 
     # -- scene and time --------------------------------------------------------------------
 

@@ -45,6 +45,7 @@ REQUESTS = frozenset(
         "set_light",
         "set_pose",
         "set_position",
+        "set_rate",
         "set_rotation",
         "spawn_object",
         "step",
@@ -105,6 +106,10 @@ class Requests:
         """Change between following and not; give the new state."""
         result: bool = self._ask("toggle_follow", timeout_s, agent)
         return result
+
+    def set_rate(self, agent: str, rate_hz: float, *, timeout_s: float = 30.0) -> None:
+        """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
+        self._ask("set_rate", timeout_s, agent, rate_hz)
 
     def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
         """Leave the present world for another scene, at simulated time 0."""
