@@ -100,8 +100,8 @@ def light_named(name: str, lights: Iterable[Light]) -> Light:
         If there is none of that name.
     """
     by_name = {light.name: light for light in lights}
-    if name not in by_name:
-        raise UnknownName("light", name, by_name)
+    if not isinstance(name, str) or name not in by_name:
+        raise UnknownName("light", str(name), by_name)
     return by_name[name]
 
 

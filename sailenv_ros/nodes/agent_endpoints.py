@@ -9,6 +9,7 @@ from rclpy.node import Node
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.nodes.agent_services import AgentServices
+from sailenv_ros.nodes.diagnostics import AgentCounts
 from sailenv_ros.nodes.publishers import AgentPublisher
 from sailenv_ros.nodes.requests import Requests
 from sailenv_ros.scene_info import SceneInfo
@@ -50,6 +51,10 @@ class AgentEndpoints:
                 self._add(spec)
             elif self._endpoints[name].spec.rate_hz != spec.rate_hz:
                 self._set_rate(self._endpoints[name], spec)
+
+    def counts(self) -> list[AgentCounts]:
+        """Give what each agent's publisher did since this was asked before."""
+        return [endpoint.publisher.counts() for endpoint in self._endpoints.values()]
 
     def close(self) -> None:
         """Remove all of them."""

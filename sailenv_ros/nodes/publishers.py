@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from copy import copy
 from dataclasses import replace
 
@@ -25,6 +26,8 @@ from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
 from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.nodes.companions import Companions
+from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
 from sailenv_ros.simulation import FrameStream, Simulation
 
@@ -58,6 +61,12 @@ class AgentPublisher:
         self._camera_info = self._publisher(CameraInfo, "camera_info")
         self._frame_info = self._publisher(FrameInfo, "frame_info")
         self._pose = self._publisher(PoseStamped, "pose")
+        self._companions = Companions(
+            self._publisher,
+            depth_range_m=spec.depth_range_m,
+            categories=lambda: simulation.info.categories,
+        )
+        self._counter = FrameCounter()
         self._publishing = threading.Lock()
         self._closing = threading.Event()
         self._last_sequence = 0
@@ -73,6 +82,11 @@ class AgentPublisher:
         self._spec = replace(self._spec, rate_hz=rate_hz)
         if rate_hz and self._stream is None:
             self._begin_stream()
+
+    def counts(self) -> AgentCounts:
+        """Give what was published since this was asked before."""
+        dropped = self.overtaken + (0 if self._stream is None else self._stream.dropped)
+        return self._counter.take(self._spec.name, dropped)
 
     @property
     def ended(self) -> bool:
@@ -121,8 +135,8 @@ class AgentPublisher:
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join(1.0)
         with self._publishing:
-            everything = [*self._images.values(), self._camera_info, self._frame_info, self._pose]
-            for publisher in everything:
+            infos = (self._camera_info, self._frame_info, self._pose)
+            for publisher in (*self._images.values(), *infos, *self._companions.publishers):
                 self._node.destroy_publisher(publisher)
 
     # -- the thread ------------------------------------------------------------------------
@@ -148,7 +162,10 @@ class AgentPublisher:
                 self._publish_streamed(frame)
 
     def _wanted_views(self) -> tuple[str, ...]:
-        wanted = tuple(view for view, topic in self._images.items() if _is_subscribed(topic))
+        shown = self._companions.wanted_views()
+        wanted = tuple(
+            view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
+        )
         infos = _is_subscribed(self._camera_info) or _is_subscribed(self._frame_info)
         return wanted or ((CHEAPEST_VIEW,) if infos else ())
 
@@ -180,6 +197,7 @@ class AgentPublisher:
     # -- messages --------------------------------------------------------------------------
 
     def _publish(self, frame: Frame) -> tuple[str, ...]:
+        began = time.perf_counter()
         header = header_of_frame(frame)
         sent = []
         for view, topic in self._images.items():
@@ -197,6 +215,9 @@ class AgentPublisher:
         if _is_subscribed(self._pose):
             pose = frame.camera.pose
             self._pose.publish(pose_stamped_to_msg(pose, header.stamp, WORLD_FRAME_ID))
+        # Last, as they take time and nobody waits for them.
+        self._companions.publish(frame, header)
+        self._counter.add(frame, time.perf_counter() - began)
         return tuple(sent)
 
     def _publisher(self, kind: type, topic: str) -> Publisher:

@@ -105,8 +105,8 @@ class AgentTable:
         return iter(self._records.values())
 
     def __getitem__(self, name: str) -> AgentRecord:
-        if name not in self._records:
-            raise UnknownName("agent", name, self._records)
+        if not isinstance(name, str) or name not in self._records:
+            raise UnknownName("agent", str(name), self._records)
         return self._records[name]
 
     @property

@@ -31,6 +31,15 @@ SLICE_STEPS = 24
 """Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
 
 
+def checked_real_time_factor(factor: float) -> float:
+    """Give the factor as it was given, or raise `InvalidRequest`."""
+    value: object = factor
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_number or not 0.1 <= factor <= 10.0:
+        raise InvalidRequest("real_time_factor", factor, "a number from 0.1 to 10")
+    return factor
+
+
 class SimulationCore(AgentRequests, WorldRequests):
     """World, renderer and agents of one simulation.
 
@@ -61,7 +70,7 @@ class SimulationCore(AgentRequests, WorldRequests):
         self._library = library
         self._renderer = renderer
         self._mode: TimeMode = mode
-        self._real_time_factor = real_time_factor
+        self._real_time_factor = checked_real_time_factor(real_time_factor)
         self._seed = seed
         self._more: Entries = ()
         self._paused = paused
@@ -142,6 +151,11 @@ class SimulationCore(AgentRequests, WorldRequests):
     def resume(self) -> None:
         """Let simulated time run on; a second call does nothing."""
         self._set_paused(False)
+
+    def set_real_time_factor(self, factor: float) -> None:
+        """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
+        self._real_time_factor = checked_real_time_factor(factor)
+        self._announce()
 
     def step(self, count: int = 1) -> int:
         """Advance by physics steps of 1/240 s, with every streamed frame that falls due.

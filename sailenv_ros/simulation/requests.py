@@ -46,6 +46,7 @@ REQUESTS = frozenset(
         "set_pose",
         "set_position",
         "set_rate",
+        "set_real_time_factor",
         "set_rotation",
         "spawn_object",
         "step",
@@ -127,6 +128,10 @@ class Requests:
     def resume(self, *, timeout_s: float = 30.0) -> None:
         """Let simulated time run on."""
         self._ask("resume", timeout_s)
+
+    def set_real_time_factor(self, factor: float, *, timeout_s: float = 30.0) -> None:
+        """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
+        self._ask("set_real_time_factor", timeout_s, factor)
 
     def step(self, count: int = 1, *, timeout_s: float = 600.0) -> int:
         """Advance by physics steps of 1/240 s; give the simulated time afterwards [ns]."""

@@ -142,8 +142,8 @@ class World:
         """
         if not name:
             return next(iter(self._movers.values()))
-        if name not in self._movers:
-            raise UnknownName("mover", name, self._movers)
+        if not isinstance(name, str) or name not in self._movers:
+            raise UnknownName("mover", str(name), self._movers)
         return self._movers[name]
 
     def body(self, instance_id: int) -> Body:

@@ -334,7 +334,7 @@ REQUESTS = st.one_of(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(requests=st.lists(REQUESTS, min_size=10, max_size=30))
 def test_whatever_is_asked_the_world_stays_whole(requests: list[Any]) -> None:
     """Random and hostile requests: done or refused with a typed error; never half of either."""
