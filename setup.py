@@ -10,7 +10,11 @@ PACKAGE = "sailenv_ros"
 
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
+    "coacd>=1.0.7",
     "glcontext>=3.0",
+    "mapbox-earcut>=1.0.3",
+    # Has no final release yet; compiled where it is installed, in some seconds.
+    "meshoptimizer>=0.2.30a0",
     "moderngl>=5.10",
     "numba>=0.59",
     "numpy>=1.26",
@@ -23,6 +27,7 @@ REQUIREMENTS = [
     "PyYAML>=6.0",
     "rich>=13.0",
     "scipy>=1.11",
+    "trimesh>=4.5",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.
 ROS = [

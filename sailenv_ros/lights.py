@@ -119,6 +119,8 @@ class Environment:
         Linear colour for ``background = 'colour'``.
     sky_zenith, sky_horizon, sky_ground : (3,) tuple of float
         Linear radiance of the analytic sky, used while no picture of a sky is named.
+    sky_share : float
+        Share of the sky's light that reaches the objects: 1 outdoors, less in a room.
     sky_map : str
         Name of a sky picture, empty for the analytic sky.
     exposure : float
@@ -131,6 +133,7 @@ class Environment:
     sky_zenith: tuple[float, float, float] = (0.22, 0.38, 0.72)
     sky_horizon: tuple[float, float, float] = (0.75, 0.82, 0.90)
     sky_ground: tuple[float, float, float] = (0.30, 0.28, 0.26)
+    sky_share: float = 1.0
     sky_map: str = ""
     exposure: float = 0.0
 

@@ -22,7 +22,9 @@ class Asking:
         """The scene as it was announced last."""
         raise NotImplementedError
 
-    def _call(self, srv_type: Any, service: str, request: Any) -> Any:
+    def _call(
+        self, srv_type: Any, service: str, request: Any, timeout_s: float | None = None
+    ) -> Any:
         """Ask a service; give its answer, which says success."""
         raise NotImplementedError
 

@@ -157,8 +157,11 @@ class SimulatorClient(ObjectRequests, LightRequests):
     def _await_info(self, condition: Callable[[SceneInfo], bool], what: str) -> None:
         self._connection.await_info(condition, f"the announcement of {what}", self._timeout_s)
 
-    def _call(self, srv_type: Any, service: str, request: Any) -> Any:
-        return self._connection.call(srv_type, service, request, self._timeout_s)
+    def _call(
+        self, srv_type: Any, service: str, request: Any, timeout_s: float | None = None
+    ) -> Any:
+        limit_s = self._timeout_s if timeout_s is None else timeout_s
+        return self._connection.call(srv_type, service, request, limit_s)
 
     def _reconnect(self) -> None:
         old, self._link = self._link, self._acquire()

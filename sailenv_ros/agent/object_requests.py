@@ -1,4 +1,4 @@
-"""What a user asks about objects and scenarios, by the original client's names.
+"""What a user asks about objects, models and scenarios, by the original client's names.
 
 Part of `SimulatorClient`. Positions are in metres, rotations in degrees about fixed axes; ids are
 the values of pixels.
@@ -6,16 +6,24 @@ the values of pixels.
 
 from __future__ import annotations
 
+import array
 import json
 import operator
 from collections.abc import Mapping, Sequence
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from numpy.typing import ArrayLike
 
-from sailenv_msgs.srv import DespawnObject, GetObject, LoadScenario, MoveObject, SpawnObject
+from sailenv_msgs.srv import (
+    DespawnObject,
+    GetObject,
+    LoadScenario,
+    MoveObject,
+    SpawnObject,
+    UploadModel,
+)
 from sailenv_msgs_py.objects import behaviour_to_msg, object_state_from_response
 from sailenv_msgs_py.transforms import pose_to_msg, vector_to_msg
 from sailenv_ros.agent.asking import Asking, text_of
@@ -26,6 +34,9 @@ from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.entries import plain_value
 
 __all__ = ["ObjectRequests"]
+
+UPLOAD_S = 120.0
+"""How long an upload may take unless told otherwise [s]."""
 
 
 class ObjectRequests(Asking):
@@ -143,6 +154,50 @@ class ObjectRequests(Asking):
         request = GetObject.Request(id=self._object_id(obj))
         return object_state_from_response(self._call(GetObject, "get_object", request))
 
+    def send_obj_zip(
+        self,
+        file: str | Path | BinaryIO,
+        filename: str | None = None,
+        *,
+        name: str = "",
+        category: str = "",
+        height_m: float = 0.0,
+        timeout_s: float = UPLOAD_S,
+    ) -> str:
+        """Upload a model, so that it can be spawned.
+
+        Parameters
+        ----------
+        file : str, Path or binary file
+            A zip archive of one obj with its mtl and textures, or a glb; at most 64 MB.
+        filename : str or None
+            Its name, of which the ending counts; needed where an open file is given.
+        name : str
+            Name in the catalogue; empty makes one of the file's name.
+        category : str
+            Name of its category; empty leaves it unlabelled.
+        height_m : float
+            Height that it is scaled to [m]; 0 takes its unit for the metre.
+        timeout_s : float
+            Deadline [s]; finding its collision pieces takes time.
+
+        Returns
+        -------
+        name : str
+            What `spawn_object` takes.
+        """
+        data, filename = _content(file, filename)
+        request = UploadModel.Request(
+            filename=filename,
+            name=text_of("name", name),
+            category=text_of("category", category),
+            height_m=_number("height_m", height_m),
+        )
+        request.data = array.array("B", data)
+        asset = str(self._call(UploadModel, "upload_model", request, timeout_s).asset)
+        self._await_info(lambda info: asset in info.spawnables, f"the model {asset!r}")
+        return asset
+
     def load_scenario(self, scenario: Mapping[str, Any] | str | Path) -> list[int]:
         """Begin a scene with more objects than its own, for all agents.
 
@@ -197,6 +252,21 @@ def _number(what: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InvalidRequest(what, value, "a number")
     return float(value)
+
+
+def _content(file: Any, filename: str | None) -> tuple[bytes, str]:
+    """Read an uploaded file; give its bytes and its name."""
+    if isinstance(file, str | Path):
+        try:
+            return Path(file).read_bytes(), filename or Path(file).name
+        except OSError as problem:
+            raise InvalidRequest("file", str(file), f"one that can be read ({problem})") from None
+    if filename is None or not hasattr(file, "read"):
+        raise InvalidRequest("file", file, "a path, or an open binary file with its filename")
+    data = file.read()
+    if not isinstance(data, bytes):
+        raise InvalidRequest("file", file, "open for bytes, not for text")
+    return data, text_of("filename", filename)
 
 
 def _document(scenario: object) -> str:

@@ -18,8 +18,9 @@ from sailenv_ros.errors import SailenvError
 __all__ = ["COMMANDS", "main"]
 
 COMMANDS = {
+    "assets": "build the furniture, list and picture objects, add one's own",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
-    "scene": "check scene files, list scenes, export the schema of the format",
+    "scene": "check, render, list and begin scenes, export the schema of the format",
 }
 """What each subcommand does, by its name, which is its module's too."""
 

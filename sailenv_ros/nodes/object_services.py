@@ -1,4 +1,4 @@
-"""The services about objects and scenarios, each a few lines around one request."""
+"""The services about objects, models and scenarios, each a few lines around one request."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from sailenv_msgs.srv import (
     LoadScenario,
     MoveObject,
     SpawnObject,
+    UploadModel,
 )
 from sailenv_msgs_py.objects import behaviour_from_msg, object_state_to_response, scale_from_msg
 from sailenv_msgs_py.transforms import pose_from_msg
@@ -25,7 +26,7 @@ __all__ = ["ObjectServices"]
 
 
 class ObjectServices:
-    """Serves objects and scenarios.
+    """Serves objects, models and scenarios.
 
     Parameters
     ----------
@@ -46,6 +47,7 @@ class ObjectServices:
             ("despawn_object", DespawnObject, self._despawn_object),
             ("move_object", MoveObject, self._move_object),
             ("get_object", GetObject, self._get_object),
+            ("upload_model", UploadModel, self._upload_model),
             ("load_scenario", LoadScenario, self._load_scenario),
         )
 
@@ -83,6 +85,18 @@ class ObjectServices:
 
     async def _get_object(self, request: GetObject.Request, response: GetObject.Response) -> None:
         object_state_to_response(await self._ask("get_object", request.id), response)
+
+    async def _upload_model(
+        self, request: UploadModel.Request, response: UploadModel.Response
+    ) -> None:
+        response.asset = await self._ask(
+            "upload_model",
+            bytes(request.data),
+            name=request.name,
+            filename=request.filename,
+            category=request.category or None,
+            height_m=request.height_m or None,
+        )
 
     async def _load_scenario(
         self, request: LoadScenario.Request, response: LoadScenario.Response

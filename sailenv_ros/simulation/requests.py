@@ -51,6 +51,7 @@ REQUESTS = frozenset(
         "spawn_object",
         "step",
         "toggle_follow",
+        "upload_model",
     }
 )
 """Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
@@ -240,6 +241,37 @@ class Requests:
     ) -> None:
         """Show the sky or a linear colour where nothing is hit; no colour keeps the last one."""
         self._ask("set_background", timeout_s, kind, colour)
+
+    def upload_model(
+        self,
+        data: bytes,
+        *,
+        name: str,
+        filename: str,
+        category: str | None = None,
+        height_m: float | None = None,
+        timeout_s: float = 120.0,
+    ) -> str:
+        """Add a model to the catalogue; give the name that it is spawned by.
+
+        The simulation goes on meanwhile. See `sailenv_ros.simulation.uploads` for the arguments;
+        an empty name is made from the file's, with a number where it is in use.
+
+        Raises
+        ------
+        NameTaken, UnknownName, InvalidRequest, AssetError
+            If it cannot be used; the catalogue is as it was then.
+        """
+        result: str = self._ask(
+            "upload_model",
+            timeout_s,
+            data,
+            name=name,
+            filename=filename,
+            category=category,
+            height_m=height_m,
+        )
+        return result
 
     def load_scenario(
         self, scenario: str | Mapping[str, Any], *, timeout_s: float = 120.0

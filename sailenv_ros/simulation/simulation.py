@@ -24,6 +24,7 @@ from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.requests import REQUESTS, Requests, wait_for
 from sailenv_ros.simulation.scenes import DEFAULT_SCENE, SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.upload_queue import UploadQueue
 from sailenv_ros.world.world import World
 
 __all__ = ["Simulation"]
@@ -95,6 +96,9 @@ class Simulation(Requests):
         self._info_listeners: list[Callable[[SceneInfo], None]] = []
         self._step_listeners: list[Callable[[int], None]] = []
         self._pacer = Pacer(real_time_factor)
+        self._uploads = UploadQueue(
+            lambda asset, rename: self._submit(lambda core: core.add_model(asset, rename=rename))
+        )
         started: Future[None] = Future()
 
         def make_core() -> SimulationCore:
@@ -159,6 +163,8 @@ class Simulation(Requests):
         """
         if name not in REQUESTS:
             raise UnknownName("request", name, sorted(REQUESTS))
+        if name == "upload_model":
+            return self._uploads.begin(*args, **kwargs)
         return self._submit(lambda core: getattr(core, name)(*args, **kwargs))
 
     # -- streams and listeners -------------------------------------------------------------
@@ -190,6 +196,7 @@ class Simulation(Requests):
     def close(self) -> None:
         """End the simulation: break off what runs, free everything; a second call does nothing."""
         self._closing = True
+        self._uploads.close()
         self._nudge()
         atexit.unregister(self.close)
         if threading.current_thread() is not self._thread:

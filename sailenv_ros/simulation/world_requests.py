@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light, light_named
+from sailenv_ros.model import Asset
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.entries import free_name, plain_value
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -86,6 +87,19 @@ class WorldRequests:
     def get_object(self, obj: int | str) -> ObjectState:
         """Say what and where an object is."""
         return self._world.object_state(self._world.find(obj))
+
+    def add_model(self, asset: Asset, *, rename: bool) -> str:
+        """Put an imported model into the catalogue; give the name that it is spawned by.
+
+        Parameters
+        ----------
+        rename : bool
+            True appends a number where the name is in use; False refuses it then.
+        """
+        self._world.categories.named(asset.category)
+        name = self._library.add_upload(asset, rename=rename)
+        self._announce()
+        return name
 
     # -- lights and surroundings -----------------------------------------------------------
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.paint import painted
+from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.model import Asset
-from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, SceneSpec
+from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
@@ -46,13 +49,21 @@ def build_world(
     UnknownName, AssetError, InvalidRequest, PhysicsError
         If something cannot be built; nothing is left then.
     """
+    stock = {entry.name: assets.get(entry.asset) for entry in spec.objects}
+    poses = arranged(spec.objects, stock, spec.room)
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
     return World(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
-        placements=[make_placement(entry, assets, table, seed) for entry in spec.objects],
+        placements=[
+            *_room_placements(spec.room, table),
+            *(
+                make_placement(entry, stock[entry.name], poses[entry.name], table, seed)
+                for entry in spec.objects
+            ),
+        ],
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
@@ -61,9 +72,22 @@ def build_world(
     )
 
 
+def _room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterator[Placement]:
+    """Yield the parts of a room, none if there is no room."""
+    for part in () if room is None else room_parts(room):
+        yield Placement(
+            name=part.asset.display_name,
+            asset=part.asset,
+            category_id=categories.named(part.asset.category).id,
+            pose=Pose(part.position_m),
+            static=True,
+        )
+
+
 def make_placement(
     entry: ObjectSpec,
-    assets: AssetLibrary,
+    asset: Asset,
+    pose: Pose,
     categories: CategoryTable,
     seed: int,
     *,
@@ -73,15 +97,23 @@ def make_placement(
 
     Parameters
     ----------
+    entry : ObjectSpec
+    asset : Asset
+        What it is, as the library has it.
+    pose : Pose
+        Where it stands.
+    categories : CategoryTable
+    seed : int
+        Of its behaviours' generators.
     start_s : float
-        Simulated time at which its behaviours start [s].
+        Simulated time at which they start [s].
 
     Raises
     ------
-    UnknownName, AssetError, InvalidRequest
+    UnknownName, InvalidRequest
         If something does not exist or does not fit.
     """
-    asset = _painted(entry, assets.get(entry.asset))
+    asset = _painted(entry, asset)
     behaviours = [
         start_behaviour(
             b.type,
@@ -98,7 +130,7 @@ def make_placement(
         name=entry.name,
         asset=asset,
         category_id=categories.named(entry.category or asset.category).id,
-        pose=entry.pose,
+        pose=pose,
         scale=entry.scale,
         static=entry.static,
         mass_kg=entry.mass,

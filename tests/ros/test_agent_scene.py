@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 
 from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest, RequestRefused, SailenvError, UnknownName
+from tests.support.uploads import box_zip
 
 pytestmark = pytest.mark.ros
 
@@ -176,3 +178,27 @@ def test_refusals_say_what_is_accepted(
         ask(agent)
     assert agent.instances == instances
     assert [agent.get_light(name) for name in agent.lights_names] == lights
+
+
+def test_an_uploaded_model_is_seen(agent: Agent, tmp_path: Path) -> None:
+    """A zip goes to the simulator; its model is spawned by the name given, and is in the image."""
+    file = tmp_path / "old crate.zip"
+    file.write_bytes(box_zip())
+    name = agent.send_obj_zip(str(file), category="chair", height_m=0.5)
+    assert name in agent.spawnable_objects_names
+    id_ = agent.spawn_object(name, (1.5, 0.0, 0.75))
+    frame = agent.get_frame()
+    seen = frame["instance"] == id_
+    assert seen[60, 80]
+    assert agent.instances[id_].category == "chair"
+    blue, green, red = frame["main"][60, 80].tolist()
+    assert red > 2 * max(blue, green)
+    with file.open("rb") as opened:
+        again = agent.send_obj_zip(opened, "old crate.zip", category="chair", height_m=0.5)
+    assert again == f"{name}_2"
+    with file.open("rb") as opened, pytest.raises(InvalidRequest, match="with its filename"):
+        agent.send_obj_zip(opened)
+    with pytest.raises(InvalidRequest, match="one that can be read"):
+        agent.send_obj_zip(tmp_path / "none.zip")
+    with pytest.raises(RequestRefused, match="zip"):
+        agent.send_obj_zip(io.BytesIO(b"no zip at all"), "a.zip")
