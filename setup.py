@@ -33,6 +33,7 @@ REQUIREMENTS = [
 ROS = [
     "sailenv-msgs",
     "ros-jazzy-builtin-interfaces",
+    "ros-jazzy-diagnostic-msgs",
     "ros-jazzy-geometry-msgs",
     "ros-jazzy-rcl-interfaces",
     "ros-jazzy-rclpy",

@@ -82,7 +82,8 @@ def only_beside(key: str, *others: str) -> Rule:
 def carriers_exist(scene: Entry) -> Faults:
     """Refuse objects upon what is not there, or that carry themselves in the end."""
     objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
-    carrier = {entry.get("name"): entry.get("on") for entry in objects}
+    named = [entry for entry in objects if isinstance(entry.get("name"), str)]
+    carrier = {entry["name"]: entry.get("on") for entry in named}
     for index, entry in enumerate(_listed(scene, "objects")):
         on = entry.get("on") if isinstance(entry, Mapping) else None
         if not isinstance(on, str):
@@ -91,11 +92,12 @@ def carriers_exist(scene: Entry) -> Faults:
             known = suggestion(on, [str(name) for name in carrier], listing="its objects")
             yield ("objects", index, "on"), f"the scene has no object {on!r}; {known}"
             continue
-        seen = {entry.get("name")}
+        name = entry.get("name")
+        seen = {name} if isinstance(name, str) else set()
         while isinstance(on, str) and on not in seen:
             seen.add(on)
             on = carrier.get(on)
-        if on == entry.get("name"):
+        if on == name:
             yield ("objects", index, "on"), "must not be an object that this one carries"
 
 

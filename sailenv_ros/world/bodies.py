@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import Action, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, PhysicsError
 from sailenv_ros.geometry import Pose
+from sailenv_ros.labels import Instance
 from sailenv_ros.model import Asset, TriangleShape
+from sailenv_ros.objects import ObjectState
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
 
@@ -144,6 +146,31 @@ class Body:
         linear, angular = self._client.getBaseVelocity(self._id)
         return np.asarray(linear), np.asarray(angular)
 
+    def state(self, instance: Instance, sim_time_ns: int) -> ObjectState:
+        """Give all that clients may know of it now."""
+        placement = self.placement
+        low, high = placement.asset.model.bounds()
+        linear, angular = self.velocity()
+        return ObjectState(
+            id=instance.id,
+            name=instance.name,
+            asset=instance.asset,
+            category_id=instance.category_id,
+            category=instance.category,
+            pose=self.pose(),
+            scale=placement.scale,
+            size_m=_three((high - low) * np.asarray(placement.scale)),
+            static=placement.static,
+            mass_kg=self.mass_kg,
+            linear_velocity=_three(linear),
+            angular_velocity=_three(angular),
+            behaviours=tuple(
+                {"type": running.kind.type, **running.parameters.model_dump()}
+                for running in placement.behaviours
+            ),
+            sim_time_ns=sim_time_ns,
+        )
+
     def act(self, time_s: float) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""
         for running in self.placement.behaviours:
@@ -246,6 +273,10 @@ class Body:
         matrix = Pose((0.0, 0.0, 0.0), quat).matrix()
         matrix[:3, 3] = np.asarray(position) - matrix[:3, :3] @ np.asarray(self._centre)
         return matrix
+
+
+def _three(values: NDArray[np.float64]) -> Vector3:
+    return float(values[0]), float(values[1]), float(values[2])
 
 
 def _mass_kg(placement: Placement) -> float:

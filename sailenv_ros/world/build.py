@@ -19,7 +19,7 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
 
-__all__ = ["build_world"]
+__all__ = ["build_world", "make_placement"]
 
 
 def build_world(
@@ -60,7 +60,7 @@ def build_world(
         placements=[
             *_room_placements(spec.room, table),
             *(
-                _placement(entry, stock[entry.name], poses[entry.name], table, seed)
+                make_placement(entry, stock[entry.name], poses[entry.name], table, seed)
                 for entry in spec.objects
             ),
         ],
@@ -84,12 +84,45 @@ def _room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterat
         )
 
 
-def _placement(
-    entry: ObjectSpec, asset: Asset, pose: Pose, categories: CategoryTable, seed: int
+def make_placement(
+    entry: ObjectSpec,
+    asset: Asset,
+    pose: Pose,
+    categories: CategoryTable,
+    seed: int,
+    *,
+    start_s: float = 0.0,
 ) -> Placement:
+    """Turn an object's description into what `World.spawn` takes.
+
+    Parameters
+    ----------
+    entry : ObjectSpec
+    asset : Asset
+        What it is, as the library has it.
+    pose : Pose
+        Where it stands.
+    categories : CategoryTable
+    seed : int
+        Of its behaviours' generators.
+    start_s : float
+        Simulated time at which they start [s].
+
+    Raises
+    ------
+    UnknownName, InvalidRequest
+        If something does not exist or does not fit.
+    """
     asset = _painted(entry, asset)
     behaviours = [
-        start_behaviour(b.type, b.parameters, seed=seed, object_name=entry.name, place=place)
+        start_behaviour(
+            b.type,
+            b.parameters,
+            seed=seed,
+            object_name=entry.name,
+            place=place,
+            start_s=start_s,
+        )
         for place, b in enumerate(entry.behaviours)
     ]
     x, y, z = (math.radians(rate) for rate in entry.angular_velocity)
