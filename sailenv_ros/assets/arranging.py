@@ -149,24 +149,29 @@ def _box_of(asset: Asset) -> tuple[CollisionShape, ...]:
 
 
 def _points(shapes: Sequence[CollisionShape], scale: tuple[float, float, float]) -> Floats:
-    return np.concatenate([_corners(shape) for shape in shapes]) * np.asarray(scale)
+    corners = np.concatenate([_corners(shape) for shape in shapes])
+    return np.asarray(corners * np.asarray(scale))
 
 
 def _corners(shape: CollisionShape) -> Floats:
     """Give points whose convex hull is a shape, or nearly so for round ones; triangles' own."""
     if isinstance(shape, BoxShape):
         signs = np.stack(np.meshgrid((-1, 1), (-1, 1), (-1, 1)), axis=-1).reshape(-1, 3)
-        return signs * np.asarray(shape.half_extents_m) + np.asarray(shape.centre_m)
+        return _moved(signs * np.asarray(shape.half_extents_m), shape.centre_m)
     if isinstance(shape, SphereShape):
         signs = np.concatenate([np.eye(3), -np.eye(3)])
-        return signs * shape.radius_m + np.asarray(shape.centre_m)
+        return _moved(signs * shape.radius_m, shape.centre_m)
     if isinstance(shape, CylinderShape):
         turns = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
         ring = np.stack([np.cos(turns), np.sin(turns)], axis=1) * shape.radius_m
         halves = (-shape.height_m / 2.0, shape.height_m / 2.0)
         rings = [np.insert(ring, 2, z, axis=1) for z in halves]
-        return np.concatenate(rings) + np.asarray(shape.centre_m)
+        return _moved(np.concatenate(rings), shape.centre_m)
     return shape.positions if isinstance(shape, TriangleShape) else shape.points
+
+
+def _moved(points: Floats, centre_m: tuple[float, float, float]) -> Floats:
+    return np.asarray(points + np.asarray(centre_m))
 
 
 def _height(shape: CollisionShape, scale: tuple[float, float, float], under: Floats) -> float:

@@ -126,15 +126,17 @@ class AssetPack:
         parts, hulls = read_glb(path)
         if entry.collision == "hulls" and not hulls:
             raise AssetError(name, f"{path} holds no collision pieces")
-        _, _, height = entry.size
+        model = Model(name=name, parts=parts)
+        low, high = model.bounds()
+        x, y, z = ((low + high) / 2.0).tolist()
         return Asset(
             name=name,
             display_name=entry.display_name,
             category=entry.category,
-            model=Model(name=name, parts=parts),
-            collision=_shapes(entry, hulls),
+            model=model,
+            collision=_shapes(entry, (x, y, z), hulls),
             mass_kg=entry.mass,
-            centre_of_mass_m=(0.0, 0.0, height / 2.0),
+            centre_of_mass_m=(x, y, z),
             tags=entry.tags,
         )
 
@@ -146,10 +148,10 @@ def _read(path: Path) -> PackContent:
         raise AssetError(str(path), " ".join(str(problem).split())) from None
 
 
-def _shapes(entry: PackEntry, hulls: tuple[ConvexShape, ...]) -> tuple[CollisionShape, ...]:
-    """Give the collision shapes; the origin is at the centre of the base."""
+def _shapes(
+    entry: PackEntry, middle: tuple[float, float, float], hulls: tuple[ConvexShape, ...]
+) -> tuple[CollisionShape, ...]:
     x, y, z = entry.size
-    middle = (0.0, 0.0, z / 2.0)
     if entry.collision == "box":
         return (BoxShape(half_extents_m=(x / 2.0, y / 2.0, z / 2.0), centre_m=middle),)
     if entry.collision == "cylinder":

@@ -7,6 +7,7 @@ inside it and a sentence. Rules keep silent about values that are wrong in thems
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
@@ -20,6 +21,7 @@ __all__ = [
     "carriers_exist",
     "distinct",
     "distinct_values",
+    "is_number",
     "movers_exist",
     "only_beside",
     "static_never_moves",
@@ -51,7 +53,7 @@ def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool 
 
     def rule(entry: Entry) -> Faults:
         low, high = (entry.get(key, defaults[key]) for key in (lower, upper))
-        if not (_is_number(low) and _is_number(high)):
+        if not (is_number(low) and is_number(high)):
             return
         if low > high or (low == high and not equal):
             accepted = "at most" if equal else "less than"
@@ -210,12 +212,14 @@ def _repeated(values: Sequence[Any]) -> Iterator[tuple[int, int]]:
             yield index, first[value]
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+def is_number(value: object) -> bool:
+    """Tell if a value is a finite number; integers may be beyond all floats, which is not."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and -sys.float_info.max <= value <= sys.float_info.max  # type: ignore[operator]
 
 
 def _numbers(values: Any, count: int) -> list[float] | None:
     """Give the numbers of a list of so many; ``None`` if it is anything else."""
     if not isinstance(values, list | tuple) or len(values) != count:
         return None
-    return list(values) if all(_is_number(value) for value in values) else None
+    return list(values) if all(is_number(value) for value in values) else None

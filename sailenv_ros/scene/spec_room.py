@@ -80,6 +80,9 @@ class SurfaceSpec(SceneModel):
         default=None, description="of the paint, wood or tiles, instead of the material's own"
     )
     seed: _Seed = Field(default=0, description="others give other grain, clouds and tones")
+    turn: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
+        default=0.0, description="by which it is laid counter-clockwise, e.g. 90 for boards along y"
+    )
 
     @model_validator(mode="wrap")
     @classmethod

@@ -133,6 +133,13 @@ class Body:
         )
         if not self.placement.static:
             self._client.resetBaseVelocity(self._id, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            self.wake()
+
+    def wake(self) -> None:
+        """Let physics move it again, if it has come to rest and sleeps."""
+        if not self.placement.static:
+            state = self._client.constants.ACTIVATION_STATE_WAKE_UP
+            self._client.changeDynamics(self._id, _LINK_OF_BASE, activationState=state)
 
     def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
@@ -179,6 +186,11 @@ class Body:
             self._push(self._lift)
 
     @property
+    def collides(self) -> bool:
+        """True if it has a collision shape."""
+        return bool(self.placement.asset.collision)
+
+    @property
     def acts(self) -> bool:
         """True if `act` has anything to do."""
         return self._lift is not None or bool(self.placement.behaviours)
@@ -214,12 +226,19 @@ class Body:
             spinningFriction=0.002 if self.mass_kg else 0.0,
         )
         if not placement.static:
+            # What has come to rest sleeps: it keeps the very same pose, and costs nothing.
+            states = self._client.constants
+            self._client.changeDynamics(
+                body, _LINK_OF_BASE, activationState=states.ACTIVATION_STATE_ENABLE_SLEEPING
+            )
             self._client.resetBaseVelocity(
                 body, placement.linear_velocity, placement.angular_velocity
             )
         return int(body)
 
     def _apply(self, action: Action) -> None:
+        if action != Action():
+            self.wake()
         if action.linear_velocity is not None or action.angular_velocity is not None:
             linear, angular = self.velocity()
             self._client.resetBaseVelocity(

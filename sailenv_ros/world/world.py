@@ -111,6 +111,16 @@ class World:
         return self._contents
 
     @property
+    def client(self) -> BulletClient:
+        """The physics engine; for what lies in this package."""
+        return self._client
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """All bodies, in the order of their ids."""
+        return tuple(self._bodies.values())
+
+    @property
     def movers(self) -> Mapping[str, Mover]:
         """The movers by name, in the scene's order; read-only."""
         return MappingProxyType(self._movers)

@@ -180,7 +180,8 @@ def _openings(spec: RoomSpec, frames: _Frames) -> Iterator[RoomPart]:
 
 
 def _surface(spec: SurfaceSpec) -> Surface:
-    return surface(spec.material, colour=spec.colour, seed=spec.seed)
+    found = surface(spec.material, colour=spec.colour, seed=spec.seed)
+    return replace(found, turn_deg=found.turn_deg + spec.turn)
 
 
 def _part(

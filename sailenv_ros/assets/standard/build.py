@@ -119,7 +119,7 @@ def _make(name: str, furniture: Path, scratch: Path) -> PackEntry:
     recipe = standard_recipe()
     entry = recipe.assets[name]
     made = prepare(name, entry, _catalogues(furniture))
-    hulled = entry.collision in ("pieces", "hull", "convex")
+    hulled = entry.collision in ("pieces", "hull", "convex", "base")
     return packed(
         scratch,
         name,

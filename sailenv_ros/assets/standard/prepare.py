@@ -37,6 +37,8 @@ from sailenv_ros.model import ConvexShape, Material, ModelPart
 
 __all__ = ["PreparedAsset", "prepare"]
 
+BASE_SHARE = 0.2
+
 FEWEST_TRIANGLES = 64
 """No part is simplified below this."""
 
@@ -207,6 +209,9 @@ def _hulls(parts: Sequence[RawPart], entry: RecipeEntry) -> tuple[ConvexShape, .
         return hulls_of_pieces(mesh)
     if entry.collision == "convex":
         return convex_parts(mesh)
+    points = mesh.positions[np.unique(mesh.triangles)]
     if entry.collision == "hull":
-        return (convex_hull(mesh.positions[np.unique(mesh.triangles)]),)
+        return (convex_hull(points),)
+    if entry.collision == "base":
+        return (convex_hull(points[points[:, 2] < BASE_SHARE * points[:, 2].max()]),)
     return ()

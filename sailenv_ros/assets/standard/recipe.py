@@ -44,7 +44,8 @@ class RecipeEntry(_Strict):
         ``library/model`` of the catalogues, or ``made/<what>`` for what code makes.
     collision : str
         ``box``, ``cylinder``, ``sphere``; ``pieces`` for a hull around each connected piece,
-        ``hull`` around all, ``convex`` for a decomposition of what is hollow or branched.
+        ``hull`` around all, ``convex`` for a decomposition of what is hollow or branched, ``base``
+        for a hull around the lowest fifth (plants, whose leaves give way), ``none``.
     turn : float
         About the vertical, where a catalogue's front is not the object's [deg].
     """
@@ -53,7 +54,9 @@ class RecipeEntry(_Strict):
     source: str
     display_name: str | None = None
     mass: Annotated[float, Field(gt=0.0, le=2000.0)]
-    collision: Literal["box", "cylinder", "sphere", "hull", "pieces", "convex"] = "pieces"
+    collision: Literal["box", "cylinder", "sphere", "hull", "pieces", "convex", "base", "none"] = (
+        "pieces"
+    )
     turn: float = 0.0
     tags: tuple[str, ...] = ()
     triangles: Annotated[int, Field(ge=100, lt=20000)] = 12000

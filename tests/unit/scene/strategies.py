@@ -72,7 +72,10 @@ waypoints: Entries = st.tuples(
 ).map(_merged)
 
 surfaces = st.sampled_from(["plaster", "oak_planks"]) | some(
-    material=st.just("white_tiles"), colour=st.none() | colours, seed=st.integers(0, 99)
+    material=st.just("white_tiles"),
+    colour=st.none() | colours,
+    seed=st.integers(0, 99),
+    turn=st.floats(-360, 360),
 )
 
 # Openings that fit every room of this size, each in a wall of its own.

@@ -171,3 +171,13 @@ def test_openings_on_different_walls_never_overlap(tmp_path: Path) -> None:
 def test_editors_accept_what_the_loader_accepts(text: str, fits: bool) -> None:
     validator = jsonschema.Draft7Validator(scene_schema({}))
     assert validator.is_valid(yaml.safe_load(HEAD + text)) == fits
+
+
+def test_numbers_beyond_all_floats_are_faults_like_others(tmp_path: Path) -> None:
+    """Integers may have any length in YAML; rules between keys keep silent about them."""
+    endless = "9" * 400
+    opening = f"  openings:\n    - {{type: door, wall: north, at: {endless}}}\n"
+    cone = f"lights:\n  - {{name: a, type: spot, inner_cone: {endless}}}"
+    at, inner = faults(tmp_path, HEAD + opening + cone)
+    assert at.startswith("5:37: room.openings[0].at: must be a number from -50 to 50 [m], got 999")
+    assert inner.startswith("7:39: lights[0].inner_cone: must be a number from 0 to 89 [deg]")

@@ -149,6 +149,15 @@ def test_a_pattern_has_its_real_size_on_a_wall() -> None:
         np.testing.assert_allclose(mesh.uvs[:, 1], mesh.positions[:, 2] / 1.2, atol=1e-6)
 
 
+def test_boards_may_be_turned() -> None:
+    """Turned by 90 degrees, the pattern's own x runs along the room's y."""
+    parts = room(floor={"material": "oak_planks", "turn": 90}, openings=[])
+    mesh = parts["floor"].asset.model.parts[0].mesh
+    top = mesh.normals[:, 2] > 0.5
+    np.testing.assert_allclose(mesh.uvs[top, 0], mesh.positions[top, 1] / 2.4, atol=1e-6)
+    np.testing.assert_allclose(mesh.uvs[top, 1], -mesh.positions[top, 0] / 1.2, atol=1e-6)
+
+
 def test_a_pane_is_a_part_of_its_own_and_see_through() -> None:
     window = room()["window 1"].asset.model
     glass = [part for part in window.parts if part.material.alpha == "blend"]
