@@ -12,7 +12,9 @@ objects:
   - {asset: sphere, position: [2, 0, 8], scale: 0.5}
 """
 
-with Agent(width=320, height=240, namespace="/example", simulator={"mode": "lockstep"}) as agent:
+LOCKSTEP = {"scene": "optical", "mode": "lockstep"}
+
+with Agent(width=320, height=240, namespace="/example", simulator=LOCKSTEP) as agent:
     ids = agent.load_scenario(SCENARIO)
     for _ in range(3):
         for id_ in ids:
