@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import Action, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, PhysicsError
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.objects import ObjectState
@@ -119,10 +119,12 @@ class Body:
         return self._matrix_of(position, quat)
 
     def pose(self) -> Pose:
-        """Give the pose of the body frame now."""
+        """Give the pose of the body frame now; what has fallen out of the world is at its edge."""
         if self.placement.static:
             return self._static_pose
-        return Pose.from_matrix(self.world_from_body())
+        matrix = self.world_from_body().copy()
+        np.clip(matrix[:3, 3], -POSITION_LIMIT_M, POSITION_LIMIT_M, out=matrix[:3, 3])
+        return Pose.from_matrix(matrix)
 
     def put(self, pose: Pose) -> None:
         """Set the pose and stop the body."""
