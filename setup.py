@@ -11,6 +11,8 @@ PACKAGE = "sailenv_ros"
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
     "glcontext>=3.0",
+    "lz4>=4.3",
+    "mcap>=1.2",
     "moderngl>=5.10",
     "numba>=0.59",
     "numpy>=1.26",
@@ -23,6 +25,7 @@ REQUIREMENTS = [
     "PyYAML>=6.0",
     "rich>=13.0",
     "scipy>=1.11",
+    "zstandard>=0.22",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.
 ROS = [
@@ -42,10 +45,13 @@ DEV = [
     "hypothesis",
     "import-linter",
     "jsonschema",
+    "mcap-ros2-support",
     "mypy",
+    "pycocotools",
     "pytest>=8.0",
     "pytest-timeout",
     "pytest-xdist",
+    "rosbags",
     "ruff",
     "types-jsonschema",
     "types-PyYAML",

@@ -19,6 +19,7 @@ __all__ = ["COMMANDS", "main"]
 
 COMMANDS = {
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "record": "record what agents see in an MCAP bag",
     "scene": "check scene files, list scenes, export the schema of the format",
 }
 """What each subcommand does, by its name, which is its module's too."""
