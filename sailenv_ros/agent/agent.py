@@ -31,6 +31,7 @@ from sailenv_msgs_py.transforms import point_to_msg, pose_from_msg, pose_to_msg
 from sailenv_ros.agent.client import SimulatorClient
 from sailenv_ros.agent.frame_pictures import frame_pictures
 from sailenv_ros.agent.received import frame_of_bundle
+from sailenv_ros.agent.recorded import RecordedAgent
 from sailenv_ros.agent.topics import AgentTopics
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
@@ -157,6 +158,24 @@ depth_frame_active : bool
         except BaseException:
             self.close()
             raise
+
+    @staticmethod
+    def from_recording(path: str | Path, agent: str = "") -> RecordedAgent:
+        """Open a recording as an agent whose `get_frame` gives what was seen then.
+
+        Parameters
+        ----------
+        path : str or Path
+            A bag folder, or one MCAP file.
+        agent : str
+            Name of the agent; empty if there is only one.
+
+        Raises
+        ------
+        RecordingError, UnknownName
+            If it cannot be read, or has no such agent.
+        """
+        return RecordedAgent(path, agent)
 
     # -- life ------------------------------------------------------------------------------
 

@@ -10,11 +10,13 @@ import struct
 import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from typing import Any
 
 import lz4.frame
 import zstandard
-from mcap.data_stream import RecordBuilder
+from mcap.data_stream import ReadDataStream, RecordBuilder
+from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Chunk, MessageIndex
 
@@ -191,14 +193,23 @@ def records_in(data: Buffer) -> Iterator[ChunkRecord]:
         at = end
 
 
-def unpacked(chunk: Chunk) -> bytes:
-    """Give a chunk's records, checked by their sum.
+def unpacked(body: bytes) -> bytes:
+    """Give the records of a chunk, checked by their sum.
+
+    Parameters
+    ----------
+    body : bytes
+        The chunk record behind its opcode and length.
 
     Raises
     ------
     RecordingError
         If they cannot be unpacked or the sum is wrong.
     """
+    try:
+        chunk = Chunk.read(ReadDataStream(BytesIO(body)))
+    except (McapError, struct.error, ValueError, OverflowError) as problem:
+        raise RecordingError(f"a chunk cannot be read: {problem}") from None
     unpack = _DECOMPRESSORS.get(chunk.compression)
     if unpack is None:
         known = ", ".join(repr(name) for name in _DECOMPRESSORS)
