@@ -18,6 +18,7 @@ from sailenv_ros.errors import SailenvError
 __all__ = ["COMMANDS", "main"]
 
 COMMANDS = {
+    "bag": "say what a recording holds, restore a damaged one",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
     "record": "record what agents see in an MCAP bag",
     "scene": "check scene files, list scenes, export the schema of the format",

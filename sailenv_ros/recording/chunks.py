@@ -30,6 +30,7 @@ __all__ = [
     "ChunkRecord",
     "SealedChunk",
     "records_in",
+    "resealed",
     "seal_records",
     "unpacked",
 ]
@@ -206,10 +207,60 @@ def unpacked(body: bytes) -> bytes:
     RecordingError
         If they cannot be unpacked or the sum is wrong.
     """
+    return _unpacked(_chunk(body))
+
+
+def resealed(body: bytes) -> tuple[SealedChunk, bytes]:
+    """Take a chunk out of a file as it is, with indexes made from its messages.
+
+    Parameters
+    ----------
+    body : bytes
+        The chunk record behind its opcode and length.
+
+    Returns
+    -------
+    sealed : SealedChunk
+    data : bytes
+        Its records, unpacked.
+
+    Raises
+    ------
+    RecordingError
+        If it is damaged.
+    """
+    chunk = _chunk(body)
+    data = _unpacked(chunk)
+    indexes: dict[int, list[tuple[int, int]]] = {}
+    for record in records_in(data):
+        if record.opcode == Opcode.MESSAGE:
+            if record.end - record.start < MESSAGE_HEAD.size:
+                raise RecordingError("a message within a chunk is cut off")
+            _, _, channel, _, log_ns, _ = MESSAGE_HEAD.unpack_from(data, record.start)
+            indexes.setdefault(channel, []).append((log_ns, record.start))
+    packed = len(chunk.data)
+    sealed = SealedChunk(
+        head=_RECORD_HEAD.pack(Opcode.CHUNK, len(body)) + body[: len(body) - packed],
+        data=(body[len(body) - packed :],),
+        indexes=tuple((channel, _index_record(channel, e)) for channel, e in indexes.items()),
+        compression=chunk.compression,
+        start_ns=chunk.message_start_time,
+        end_ns=chunk.message_end_time,
+        uncompressed_bytes=chunk.uncompressed_size,
+        compressed_bytes=packed,
+        counts={channel: len(entries) for channel, entries in indexes.items()},
+    )
+    return sealed, data
+
+
+def _chunk(body: bytes) -> Chunk:
     try:
-        chunk = Chunk.read(ReadDataStream(BytesIO(body)))
+        return Chunk.read(ReadDataStream(BytesIO(body)))
     except (McapError, struct.error, ValueError, OverflowError) as problem:
         raise RecordingError(f"a chunk cannot be read: {problem}") from None
+
+
+def _unpacked(chunk: Chunk) -> bytes:
     unpack = _DECOMPRESSORS.get(chunk.compression)
     if unpack is None:
         known = ", ".join(repr(name) for name in _DECOMPRESSORS)

@@ -165,6 +165,11 @@ class McapFile:
                 lost += self._drop_last_chunk()
         return lost
 
+    def abandon(self) -> None:
+        """Close and remove the file."""
+        self._file.close()
+        self.path.unlink(missing_ok=True)
+
     # -- inside ----------------------------------------------------------------------------
 
     def _drop_last_chunk(self) -> int:
