@@ -70,7 +70,8 @@ def data_files() -> list[tuple[str, list[str]]]:
     ]
     # pip ignores setup.cfg's install_scripts, colcon does not.
     if "bdist_wheel" in sys.argv:
-        files.append((f"lib/{PACKAGE}", ["resource/sim_node"]))
+        programs = ["resource/sim_node", "resource/recorder", "resource/player"]
+        files.append((f"lib/{PACKAGE}", programs))
     return files
 
 
@@ -97,6 +98,8 @@ setup(
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",
             "sim_node = sailenv_ros.nodes.sim_node:main",
+            "recorder = sailenv_ros.nodes.recorder:main",
+            "player = sailenv_ros.nodes.player:main",
         ]
     },
     zip_safe=False,
