@@ -20,6 +20,7 @@ __all__ = ["COMMANDS", "main"]
 COMMANDS = {
     "bag": "say what a recording holds, restore a damaged one",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "play": "publish a recording on the topics it was recorded from",
     "record": "record what agents see in an MCAP bag",
     "scene": "check scene files, list scenes, export the schema of the format",
 }

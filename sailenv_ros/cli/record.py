@@ -7,13 +7,13 @@ it becomes the recorder node, which listens to a simulator.
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from sailenv_ros.cli.node_process import become_node
 from sailenv_ros.recording.progress import progress_line, size_in_bytes
 from sailenv_ros.recording.topics import RecordingOptions
 
@@ -117,20 +117,7 @@ def _become_the_node(args: argparse.Namespace, output: Path, options: RecordingO
         parameters["agents"] = args.agents
     if args.views:
         parameters["views"] = args.views
-    words = [sys.executable, "-m", "sailenv_ros.nodes.recorder", "--ros-args"]
-    words += ["-r", f"__ns:=/{args.namespace.strip('/')}"]
-    for name, value in parameters.items():
-        words += ["-p", f"{name}:={_yaml(value)}"]
-    sys.stdout.flush()
-    os.execv(sys.executable, words)
-
-
-def _yaml(value: object) -> str:
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_yaml, value)) + "]"
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else str(value)
+    become_node("recorder", parameters, namespace=args.namespace)
 
 
 class _Progress:

@@ -35,9 +35,11 @@ __all__ = [
     "IMAGE",
     "SCENE_INFO",
     "agent_topics",
+    "clock_message",
     "frame_messages",
     "message_of",
     "scene_info_message",
+    "stamp_of",
     "topic",
 ]
 
@@ -59,6 +61,9 @@ _QOS = {
     CLOCK: OfferedQos(depth=1, reliability="best_effort"),
 }
 _BULKY = (IMAGE, "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2")
+
+_STAMPED = frozenset(AGENT_TOPICS.values())
+"""Types that begin with a header, and so with their stamp."""
 
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
 
@@ -208,3 +213,17 @@ class _CdrReader:
             raise ValueError("a text does not end where it says")
         self.at += length
         return raw[:-1].decode()
+
+
+def stamp_of(type_name: str, data: Buffer) -> int | None:
+    """Give the simulated time of a serialized message of an agent [ns]; None of other types."""
+    if type_name not in _STAMPED or bytes(data[:2]) != _LITTLE_ENDIAN_CDR or len(data) < 12:
+        return None
+    seconds, rest = struct.unpack_from("<iI", data, 4)
+    return int(seconds) * 1_000_000_000 + int(rest)
+
+
+def clock_message(time_ns: int) -> bytes:
+    """Give a serialized message that says what time it is [ns]."""
+    seconds, rest = divmod(time_ns, 1_000_000_000)
+    return _LITTLE_ENDIAN_CDR + b"\0\0" + struct.pack("<iI", seconds, rest)
