@@ -20,6 +20,7 @@ __all__ = ["COMMANDS", "main"]
 COMMANDS = {
     "bag": "say what a recording holds, restore a damaged one",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "export": "write a recording as a data set: png, coco, kitti, flo, mp4",
     "play": "publish a recording on the topics it was recorded from",
     "record": "record what agents see in an MCAP bag",
     "scene": "check scene files, list scenes, export the schema of the format",

@@ -64,7 +64,7 @@ def _noise(view: str, intrinsics: CameraIntrinsics, noise: np.random.Generator) 
     if spec.dtype == np.uint8:
         return noise.integers(0, 256, shape).astype(np.uint8)
     values = noise.normal(3.0, 50.0, shape).astype(np.float32)
-    values.reshape(-1)[:4] = [np.nan, np.inf, -0.0, 1e-42]
+    values.reshape(-1)[:4] = [np.nan, np.nan if view == "flow" else np.inf, -0.0, 1e-42]
     return values
 
 
