@@ -56,6 +56,7 @@ DEV = [
     "types-jsonschema",
     "types-PyYAML",
 ]
+CONFIG = ["yaml", "xml", "json", "rviz"]
 
 
 def data_files() -> list[tuple[str, list[str]]]:
@@ -64,7 +65,7 @@ def data_files() -> list[tuple[str, list[str]]]:
     files = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
-        (f"{share}/config", sorted(glob("config/*.yaml") + glob("config/*.xml"))),
+        (f"{share}/config", sorted(path for kind in CONFIG for path in glob(f"config/*.{kind}"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
         (f"{share}/scenes", sorted(glob("scenes/*.yaml") + glob("scenes/*.json"))),
     ]
