@@ -10,8 +10,12 @@ PACKAGE = "sailenv_ros"
 
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
+    "coacd>=1.0.7",
     "glcontext>=3.0",
     "lz4>=4.3",
+    "mapbox-earcut>=1.0.3",
+    # Has no final release yet; compiled where it is installed, in some seconds.
+    "meshoptimizer>=0.2.30a0",
     "mcap>=1.2",
     "moderngl>=5.10",
     "numba>=0.59",
@@ -25,12 +29,14 @@ REQUIREMENTS = [
     "PyYAML>=6.0",
     "rich>=13.0",
     "scipy>=1.11",
+    "trimesh>=4.5",
     "zstandard>=0.22",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.
 ROS = [
     "sailenv-msgs",
     "ros-jazzy-builtin-interfaces",
+    "ros-jazzy-diagnostic-msgs",
     "ros-jazzy-geometry-msgs",
     "ros-jazzy-rcl-interfaces",
     "ros-jazzy-rclpy",

@@ -63,7 +63,8 @@ class AgentSpec:
                 "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
             )
         object.__setattr__(self, "views", checked_views(self.views))
-        if not 0.0 <= self.rate_hz <= MAX_RATE_HZ:
+        rate_hz: object = self.rate_hz
+        if not isinstance(rate_hz, int | float) or not 0.0 <= rate_hz <= MAX_RATE_HZ:
             raise InvalidRequest(
                 "rate_hz", self.rate_hz, f"a number from 0 to {MAX_RATE_HZ:g} [Hz]"
             )

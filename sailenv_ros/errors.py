@@ -5,7 +5,8 @@ Every sentence says what was wrong and what would be accepted, in the user's own
     SailenvError
     ├── InvalidRequest          an argument that cannot be accepted
     │   ├── UnknownName         a name that is not in a list of names
-    │   └── NameTaken           a name that must be unique is in use
+    │   ├── NameTaken           a name that must be unique is in use
+    │   └── InvalidEntry        something described by several values, some of them wrong
     ├── SceneError              one or more faults in a scene file, each with file:line:column
     ├── AssetError              a model, texture or pack that cannot be used
     ├── PhysicsError            the physics engine refused or diverged
@@ -29,6 +30,7 @@ __all__ = [
     "AssetError",
     "ContextError",
     "DeadlineExceeded",
+    "InvalidEntry",
     "InvalidRequest",
     "NameTaken",
     "PhysicsError",
@@ -102,6 +104,27 @@ class NameTaken(InvalidRequest):
         self.kind = kind
         self.name = name
         super().__init__(f"{kind} name", name, "a name that is not in use yet")
+
+
+class InvalidEntry(InvalidRequest):
+    """Something described by several values of which some cannot be accepted.
+
+    Parameters
+    ----------
+    what : str
+        What was described, e.g. ``"object 'chair_1'"``.
+    got : object
+        The description.
+    faults : iterable of (str, str)
+        The name of each value that is wrong, with what is wrong and what is accepted.
+    """
+
+    def __init__(self, what: str, got: object, faults: Iterable[tuple[str, str]]) -> None:
+        self.what = what
+        self.got = got
+        self.faults = tuple(faults)
+        self.accepted = "; ".join(f"{field} {fault}".strip() for field, fault in self.faults)
+        SailenvError.__init__(self, f"{what}: {self.accepted}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,13 +5,17 @@ Colours are linear RGB. Positions and directions are in the world frame.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Literal
+from numbers import Real
+from typing import Literal, get_args
 
-from sailenv_ros.errors import InvalidRequest
+from numpy.typing import ArrayLike
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import vector
 
-__all__ = ["Environment", "Light", "LightType"]
+__all__ = ["Environment", "Light", "LightType", "light_named"]
 
 LightType = Literal["directional", "point", "spot", "area"]
 
@@ -59,13 +63,17 @@ class Light:
     height_m: float = 1.0
 
     def __post_init__(self) -> None:
-        colour = vector(f"colour of light {self.name!r}", self.colour, limit=1e6)
-        if min(colour) < 0.0:
-            raise InvalidRequest(f"colour of light {self.name!r}", colour, "three numbers ≥ 0")
-        for name in ("intensity", "indirect_multiplier", "range_m", "width_m", "height_m"):
-            value = getattr(self, name)
-            if not 0.0 <= value < 1e9:
-                raise InvalidRequest(f"{name} of light {self.name!r}", value, "a finite number ≥ 0")
+        if self.type not in get_args(LightType):
+            raise UnknownName(f"type of light {self.name!r}", str(self.type), get_args(LightType))
+        colour = _radiance(f"colour of light {self.name!r}", self.colour)
+        for name in ("intensity", "indirect_multiplier"):
+            self._check(name, "a number from 0 to 1e+06", lambda value: 0.0 <= value <= 1e6)
+        for name in ("range_m", "width_m", "height_m"):
+            self._check(name, "a number from 0 to 1000 [m]", lambda value: 0.0 <= value <= 1e3)
+        self._check("outer_cone_deg", "an angle from 0 to 89 [deg]", lambda v: 0.0 <= v <= 89.0)
+        wide = float(self.outer_cone_deg)
+        accepted = f"an angle from 0 to outer_cone_deg = {wide:g} [deg]"
+        self._check("inner_cone_deg", accepted, lambda value: 0.0 <= value <= wide)
         x, y, z = vector(f"direction of light {self.name!r}", self.direction, limit=1e6)
         length = (x * x + y * y + z * z) ** 0.5
         if length < 1e-9:
@@ -74,6 +82,27 @@ class Light:
         object.__setattr__(self, "colour", colour)
         object.__setattr__(self, "direction", (x / length, y / length, z / length))
         object.__setattr__(self, "position_m", position)
+
+    def _check(self, name: str, accepted: str, holds: Callable[[float], bool]) -> None:
+        value = getattr(self, name)
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        if not is_number or not holds(float(value)):
+            raise InvalidRequest(f"{name} of light {self.name!r}", value, accepted)
+        object.__setattr__(self, name, float(value))
+
+
+def light_named(name: str, lights: Iterable[Light]) -> Light:
+    """Find a light by its name.
+
+    Raises
+    ------
+    UnknownName
+        If there is none of that name.
+    """
+    by_name = {light.name: light for light in lights}
+    if not isinstance(name, str) or name not in by_name:
+        raise UnknownName("light", str(name), by_name)
+    return by_name[name]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +119,8 @@ class Environment:
         Linear colour for ``background = 'colour'``.
     sky_zenith, sky_horizon, sky_ground : (3,) tuple of float
         Linear radiance of the analytic sky, used while no picture of a sky is named.
+    sky_share : float
+        Share of the sky's light that reaches the objects: 1 outdoors, less in a room.
     sky_map : str
         Name of a sky picture, empty for the analytic sky.
     exposure : float
@@ -102,5 +133,19 @@ class Environment:
     sky_zenith: tuple[float, float, float] = (0.22, 0.38, 0.72)
     sky_horizon: tuple[float, float, float] = (0.75, 0.82, 0.90)
     sky_ground: tuple[float, float, float] = (0.30, 0.28, 0.26)
+    sky_share: float = 1.0
     sky_map: str = ""
     exposure: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.background not in ("sky", "colour"):
+            raise UnknownName("background", str(self.background), ("sky", "colour"))
+        for name in ("ambient", "background_colour", "sky_zenith", "sky_horizon", "sky_ground"):
+            object.__setattr__(self, name, _radiance(name, getattr(self, name)))
+
+
+def _radiance(what: str, colour: ArrayLike) -> tuple[float, float, float]:
+    checked = vector(what, colour, limit=1e6)
+    if min(checked) < 0.0:
+        raise InvalidRequest(what, checked, "three numbers from 0 to 1e+06")
+    return checked

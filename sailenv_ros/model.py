@@ -141,10 +141,11 @@ class Model:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxShape:
-    """A box; `centre_m` in the body frame."""
+    """A box; `centre_m` and `orientation_xyzw` in the body frame."""
 
     half_extents_m: tuple[float, float, float]
     centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    orientation_xyzw: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

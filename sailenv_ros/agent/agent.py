@@ -10,30 +10,26 @@ import atexit
 import threading
 import time
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
-
-from numpy.typing import ArrayLike
-from std_srvs.srv import SetBool, Trigger
 
 from sailenv_msgs.srv import (
     Capture,
     DeleteAgent,
-    GetPose,
     RegisterAgent,
-    SetPose,
-    SetPosition,
-    SetRotation,
+    SetRate,
 )
 from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
-from sailenv_msgs_py.transforms import point_to_msg, pose_from_msg, pose_to_msg
 from sailenv_ros.agent.client import SimulatorClient
-from sailenv_ros.agent.frame_pictures import frame_pictures
+from sailenv_ros.agent.frame_pictures import FramePictures
+from sailenv_ros.agent.frame_sync import Bundle
+from sailenv_ros.agent.pose_requests import PoseRequests
 from sailenv_ros.agent.received import frame_of_bundle
 from sailenv_ros.agent.recorded import RecordedAgent
 from sailenv_ros.agent.topics import AgentTopics
-from sailenv_ros.agents import AgentSpec
+from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import (
     DeadlineExceeded,
@@ -42,8 +38,6 @@ from sailenv_ros.errors import (
     SimulationClosed,
 )
 from sailenv_ros.frame import checked_views
-from sailenv_ros.geometry import Pose, vector
-from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 
 __all__ = ["Agent"]
 
@@ -57,7 +51,7 @@ END_S = 2.0
 """How long the simulator may take to take note of an Agent's end [s]."""
 
 
-class Agent(SimulatorClient):
+class Agent(SimulatorClient, PoseRequests, FramePictures):
     """A camera of its own in the simulator; a context manager.
 
     Parameters
@@ -211,6 +205,21 @@ depth_frame_active : bool
                 self._connection.forget_services(self.id)
                 self._call(DeleteAgent, "delete_agent", DeleteAgent.Request(name=self.id))
 
+    def rejoin(self) -> None:
+        """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.
+
+        The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
+        """
+        self._connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            # Where the old simulator lives after all, it shall not keep the name.
+            with suppress(SailenvError):
+                self.delete()
+            self._reconnect()
+            self.register()
+
     def close(self) -> None:
         """Remove the agent and disconnect; a second call does nothing.
 
@@ -239,13 +248,18 @@ depth_frame_active : bool
 
     # -- frames ----------------------------------------------------------------------------
 
-    def get_frame(self, *, timeout_s: float | None = None) -> dict[str, Any]:
+    def get_frame(
+        self, views: Sequence[str] = (), *, timeout_s: float | None = None
+    ) -> dict[str, Any]:
         """Have one frame rendered now and give it.
 
         It shows the world after everything that this agent asked for before.
 
         Parameters
         ----------
+        views : sequence of str
+            More views than the agent's own, by their names in `sailenv_ros.frame.VIEWS`; rendered
+            for this frame alone.
         timeout_s : float or None
             Deadline [s]; None means the agent's own.
 
@@ -263,88 +277,89 @@ depth_frame_active : bool
             repeated because images did not arrive.
         """
         self._connection.check_process()
+        wanted = checked_views([*self._spec.views, *views]) if views else self._spec.views
         limit_s = self._timeout_s if timeout_s is None else timeout_s
         deadline = time.monotonic() + limit_s
         with self._lock:
             while (left_s := deadline - time.monotonic()) > 0.0:
-                frame = self._capture(left_s)
+                frame = self._capture(wanted, left_s)
                 if frame is not None:
                     return frame
                 self.recaptured += 1
         raise DeadlineExceeded(f"the images of a frame of agent {self.id!r}", limit_s)
 
-    def save_contact_sheet(self, path: str | Path, frame: Mapping[str, Any]) -> Path:
-        """Write all views of a frame as one labelled PNG file; give its path."""
-        table, range_m = self._info.categories, self._spec.depth_range_m
-        return save_contact_sheet(path, frame_pictures(frame, table, depth_range_m=range_m))
+    def frames(
+        self, rate_hz: float = 30.0, *, timeout_s: float | None = None
+    ) -> Iterator[dict[str, Any]]:
+        """Give frame after frame at a rate of simulated time, the newest each time.
 
-    # -- where the agent is ----------------------------------------------------------------
+        Whoever is slower than the rate passes frames over, which shows in their `sequence`. The
+        rate ends with the iteration; a view asked of `get_frame` before is in these frames too.
 
-    def get_position(self) -> tuple[float, float, float]:
-        """Give the camera's world coordinates [m]."""
-        return self.get_pose().position_m
+        Parameters
+        ----------
+        rate_hz : float
+            Frames per simulated second, above 0 and up to 240.
+        timeout_s : float or None
+            Deadline of each frame [s]; None means the agent's own.
 
-    def set_position(self, position: ArrayLike, *, teleport: bool = False) -> None:
-        """Move the camera to world coordinates [m].
+        Yields
+        ------
+        frame : dict
+            As of `get_frame`.
 
-        A set pose is motion, which flow shows; `teleport` cuts the past off instead.
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If no frame came in time.
         """
-        point = point_to_msg(vector("position", position))
-        request = SetPosition.Request(position=point, teleport=teleport)
-        self._call_own(SetPosition, "set_position", request)
-
-    def get_rotation(self) -> tuple[float, float, float]:
-        """Give the camera's roll, pitch, yaw about fixed axes [deg]."""
-        return self.get_pose().rpy_deg
-
-    def set_rotation(self, rotation: ArrayLike, *, teleport: bool = False) -> None:
-        """Turn the camera to roll, pitch, yaw about fixed axes [deg]."""
-        roll, pitch, yaw = vector("rotation (roll, pitch, yaw)", rotation)
-        request = SetRotation.Request(
-            roll_deg=roll, pitch_deg=pitch, yaw_deg=yaw, teleport=teleport
-        )
-        self._call_own(SetRotation, "set_rotation", request)
-
-    def get_pose(self) -> Pose:
-        """Give the pose of the camera's body (x forward, y left, z up) in the world."""
-        return pose_from_msg(self._call_own(GetPose, "get_pose", GetPose.Request()).pose.pose)
-
-    def set_pose(self, pose: Pose, *, teleport: bool = False) -> None:
-        """Move and turn the camera."""
-        if not isinstance(pose, Pose):
-            raise InvalidRequest("pose", pose, "a sailenv_ros.geometry.Pose")
-        request = SetPose.Request(pose=pose_to_msg(pose), teleport=teleport)
-        self._call_own(SetPose, "set_pose", request)
-
-    def toggle_follow(self) -> bool:
-        """Begin or end to follow the scene's mover; give the new state."""
-        self._call_own(Trigger, "toggle_follow", Trigger.Request())
-        return bool(self._call_own(GetPose, "get_pose", GetPose.Request()).following)
-
-    def set_follow(self, following: bool) -> None:
-        """Follow the scene's mover or stop."""
-        self._call_own(SetBool, "set_follow", SetBool.Request(data=following))
+        if isinstance(rate_hz, bool) or not isinstance(rate_hz, int | float) or not rate_hz > 0.0:
+            raise InvalidRequest("rate_hz", rate_hz, f"above 0 and at most {MAX_RATE_HZ:g} [Hz]")
+        limit_s = self._timeout_s if timeout_s is None else timeout_s
+        self._set_rate(float(rate_hz))
+        try:
+            sequence = 0
+            while True:
+                bundle = self._own_topics.take_newer(sequence, self._spec.views, limit_s)
+                sequence = bundle.sequence
+                yield self._frame_of(bundle)
+        finally:
+            if self._topics is not None and self._connection.simulator_lives():
+                self._set_rate(0.0)
 
     # -- inside ----------------------------------------------------------------------------
+
+    @property
+    def _own_topics(self) -> AgentTopics:
+        if self._topics is None:
+            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
+        return self._topics
+
+    def _set_rate(self, rate_hz: float) -> None:
+        self._call_own(SetRate, "set_rate", SetRate.Request(rate_hz=rate_hz))
 
     def _call_own(self, srv_type: Any, service: str, request: Any) -> Any:
         if self._topics is None:
             raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
         return self._call(srv_type, f"{self.id}/{service}", request)
 
-    def _capture(self, timeout_s: float) -> dict[str, Any] | None:
+    def _capture(self, views: tuple[str, ...], timeout_s: float) -> dict[str, Any] | None:
         """Have a frame rendered and sent; give None if images of it were lost."""
         deadline = time.monotonic() + timeout_s
-        if self._topics is None:
-            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
-        self._topics.clear()
-        request = Capture.Request(views=list(self._spec.views))
+        topics = self._own_topics
+        if topics.add_views(views):
+            topics.await_publishers(timeout_s)
+        topics.clear()
+        request = Capture.Request(views=list(views))
         service = f"{self.id}/capture"
         answer = self._connection.call(Capture, service, request, timeout_s)
         left_s = max(0.0, deadline - time.monotonic())
-        bundle = self._topics.take(answer.sequence, left_s, QUIET_S)
-        if bundle is None or set(bundle.images) != set(self._spec.views):
+        bundle = topics.take(answer.sequence, left_s, QUIET_S)
+        if bundle is None or set(bundle.images) != set(views):
             return None
+        return self._frame_of(bundle)
+
+    def _frame_of(self, bundle: Bundle) -> dict[str, Any]:
         # The ids of a frame are to be found in `instances` from now on.
         revision = bundle.info.revision
         self._await_info(lambda info: info.revision >= revision, "what the frame shows")

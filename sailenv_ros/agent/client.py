@@ -9,12 +9,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from std_srvs.srv import Trigger
 
 from sailenv_msgs.srv import ChangeScene, Reset, Step
 from sailenv_msgs_py.stamps import ns_from_stamp
+from sailenv_ros.agent.light_requests import LightRequests
+from sailenv_ros.agent.object_requests import ObjectRequests
 from sailenv_ros.agent.shared import acquire, release
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import Instance as LabelledInstance
@@ -49,7 +52,7 @@ class Instance:
     moving: bool
 
 
-class SimulatorClient:
+class SimulatorClient(ObjectRequests, LightRequests):
     """Requests to a simulator, and what it announces.
 
     Parameters
@@ -75,7 +78,10 @@ class SimulatorClient:
     ) -> None:
         name = "/" + namespace.strip("/")
         self._timeout_s = timeout_s
-        self._link = acquire(_domain(domain_id), name, dict(simulator or {}), start_timeout_s)
+        self._acquire = partial(
+            acquire, _domain(domain_id), name, dict(simulator or {}), start_timeout_s
+        )
+        self._link = self._acquire()
         self._connection = self._link.connection
 
     @property
@@ -107,14 +113,13 @@ class SimulatorClient:
         return {i.id: instance_of(i, i.id in info.moving) for i in info.instances}
 
     @property
-    def spawnable_objects_names(self) -> list[str]:
-        """Names of the catalogue that may be spawned."""
-        return list(self._info.spawnables)
+    def category_colours(self) -> dict[int, tuple[int, int, int]]:
+        """Red, green, blue of the categories' pictures by their ids."""
+        return {category.id: category.colour for category in self._info.categories.values()}
 
-    @property
-    def lights_names(self) -> list[str]:
-        """Names of the scene's lights."""
-        return [light.name for light in self._info.lights]
+    def get_categories(self) -> dict[int, str]:
+        """Give `categories`, as the original's method of that name did."""
+        return self.categories
 
     def change_scene(self, scene_name: str) -> None:
         """Leave the present scene for another one of `scenes`, for all agents."""
@@ -152,8 +157,16 @@ class SimulatorClient:
     def _await_info(self, condition: Callable[[SceneInfo], bool], what: str) -> None:
         self._connection.await_info(condition, f"the announcement of {what}", self._timeout_s)
 
-    def _call(self, srv_type: Any, service: str, request: Any) -> Any:
-        return self._connection.call(srv_type, service, request, self._timeout_s)
+    def _call(
+        self, srv_type: Any, service: str, request: Any, timeout_s: float | None = None
+    ) -> Any:
+        limit_s = self._timeout_s if timeout_s is None else timeout_s
+        return self._connection.call(srv_type, service, request, limit_s)
+
+    def _reconnect(self) -> None:
+        old, self._link = self._link, self._acquire()
+        self._connection = self._link.connection
+        release(old)
 
     def _release(self) -> None:
         release(self._link)

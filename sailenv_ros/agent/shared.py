@@ -122,8 +122,10 @@ def _connect(
             link.process = None
             connection.watch(lambda: True)
             _await_answer(connection, timeout_s)
-        if link.process is None and connection.simulator_is_here():
-            connection.watch(connection.simulator_is_here)
+        pid = connection.simulator_here()
+        if link.process is None and pid is not None:
+            # A simulator that comes after it under its name is another one: it has no such agents.
+            connection.watch(lambda: connection.simulator_here() == pid)
     except BaseException:
         link.close()
         raise

@@ -51,11 +51,12 @@ class AgentTopics:
         """How many frames were given up because an image of theirs never came."""
         return self._sync.incomplete
 
-    def add_views(self, views: tuple[str, ...]) -> None:
-        """Subscribe to more views."""
-        for view in views:
-            if view not in self._subscriptions:
-                self._subscribe(view, Image, self._taker(view))
+    def add_views(self, views: tuple[str, ...]) -> bool:
+        """Subscribe to more views; say whether there were any."""
+        more = [view for view in views if view not in self._subscriptions]
+        for view in more:
+            self._subscribe(view, Image, self._taker(view))
+        return bool(more)
 
     def await_publishers(self, timeout_s: float) -> None:
         """Wait until every topic has a publisher."""
@@ -104,6 +105,35 @@ class AgentTopics:
 
         self._connection.wait_for(met, f"frame {sequence} of agent {self._agent!r}", timeout_s)
         return taken[0]
+
+    def take_newer(self, sequence: int, views: tuple[str, ...], timeout_s: float) -> Bundle:
+        """Wait for the newest frame with all of these views and a number above the given one.
+
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If none came.
+        """
+        taken: list[Bundle] = []
+
+        def met(interval_s: float) -> bool:
+            with self._changed:
+                if not self._has_newer(sequence, views):
+                    self._changed.wait(interval_s)
+                if self._newest is not None and self._has_newer(sequence, views):
+                    taken.append(self._newest)
+                    self._newest = None
+            return bool(taken)
+
+        what = f"a frame of agent {self._agent!r} (none is made while simulated time stands still)"
+        self._connection.wait_for(met, what, timeout_s)
+        return taken[0]
+
+    def _has_newer(self, sequence: int, views: tuple[str, ...]) -> bool:
+        newest = self._newest
+        return (
+            newest is not None and newest.sequence > sequence and newest.images.keys() >= {*views}
+        )
 
     def close(self) -> None:
         """End the subscriptions."""

@@ -76,7 +76,7 @@ class AssetLibrary:
         UnknownName
             If no asset has that name.
         """
-        if name not in self._name_of:
+        if not isinstance(name, str) or name not in self._name_of:
             raise UnknownName("asset", name, self._name_of)
         return self._name_of[name]
 
@@ -101,9 +101,35 @@ class AssetLibrary:
                 self._loaded[name] = self._source_of[name].load(name)
             return self._loaded[name]
 
+    def add(self, asset: Asset) -> None:
+        """Add an asset that is there already, e.g. one that a user uploaded.
+
+        Raises
+        ------
+        NameTaken
+            If its catalogue or display name is in use.
+        """
+        with self._lock:
+            self._add(asset.name, asset.display_name, _Ready(asset))
+
     def _add(self, name: str, display_name: str, source: AssetSource) -> None:
-        for alias in dict.fromkeys((name, display_name)):
+        aliases = dict.fromkeys((name, display_name))
+        for alias in aliases:
             if alias in self._name_of:
                 raise NameTaken("asset", alias)
-            self._name_of[alias] = name
+        self._name_of.update(dict.fromkeys(aliases, name))
         self._source_of[name] = source
+
+
+class _Ready:
+    """A source of one asset that needs no loading."""
+
+    def __init__(self, asset: Asset) -> None:
+        self._asset = asset
+
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        return {self._asset.name: self._asset.display_name}
+
+    def load(self, name: str) -> Asset:
+        return self._asset

@@ -1,4 +1,4 @@
-"""`sailenv scene`: check scene files, list scenes, export the JSON Schema of the format."""
+"""`sailenv scene`: check, list, render and begin scene files, export the format's JSON Schema."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.behaviours import behaviour_kinds
-from sailenv_ros.errors import AssetError, SceneError, UnknownName
+from sailenv_ros.cli import scene_render
+from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownName
+from sailenv_ros.resources import resource_path
 from sailenv_ros.scene.catalogue import SUFFIXES, SceneCatalogue
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, schema_text, write_schema
@@ -21,13 +23,18 @@ __all__ = ["add_parser", "run"]
 def add_parser(subparsers: Any) -> None:
     """Add the command to those of `sailenv`."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "scene", help="check scene files, list scenes, export the schema of the format"
+        "scene", help="check, render, list and begin scenes, export the schema of the format"
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     check = actions.add_parser("check", help="report every fault of scene files, with its place")
     check.add_argument("scenes", nargs="+", metavar="FILE", help="a YAML file, or a scene's name")
     actions.add_parser("list", help="list the scenes that come with the package")
+    scene_render.add_arguments(
+        actions.add_parser("render", help="render a scene from a viewpoint into a picture file")
+    )
+    new = actions.add_parser("new", help="write a commented scene to begin with")
+    new.add_argument("file", type=Path, metavar="FILE", help="where to; must not exist")
     schema = actions.add_parser("schema", help="write the JSON Schema that editors complete by")
     schema.add_argument(
         "--check", action="store_true", help="only tell if the file is not up to date"
@@ -46,7 +53,27 @@ def run(args: argparse.Namespace) -> int:
         return _check(args.scenes)
     if args.action == "list":
         return _list()
+    if args.action == "render":
+        return scene_render.render_scene(args)
+    if args.action == "new":
+        return _new(args.file)
     return _schema(args.output, check=args.check)
+
+
+def _new(file: Path) -> int:
+    if file.suffix not in SUFFIXES:
+        raise InvalidRequest("name of the scene file", file.name, f"one that ends in {SUFFIXES[0]}")
+    try:
+        with file.open("x", encoding="utf-8") as new:
+            new.write(resource_path("config", "new_scene.yaml").read_text(encoding="utf-8"))
+    except FileExistsError:
+        raise InvalidRequest("scene file", str(file), "one that does not exist yet") from None
+    except OSError as problem:
+        raise InvalidRequest(
+            "scene file", str(file), f"one that can be written ({problem.strerror})"
+        ) from None
+    print(f"{file}\nLook at it: sailenv scene render {file} -o {file.stem}.png")
+    return 0
 
 
 def _check(scenes: list[str]) -> int:

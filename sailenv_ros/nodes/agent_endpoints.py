@@ -9,6 +9,7 @@ from rclpy.node import Node
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.nodes.agent_services import AgentServices
+from sailenv_ros.nodes.diagnostics import AgentCounts
 from sailenv_ros.nodes.publishers import AgentPublisher
 from sailenv_ros.nodes.requests import Requests
 from sailenv_ros.scene_info import SceneInfo
@@ -48,11 +49,24 @@ class AgentEndpoints:
         for name, spec in specs.items():
             if name not in self._endpoints:
                 self._add(spec)
+            elif self._endpoints[name].spec.rate_hz != spec.rate_hz:
+                self._set_rate(self._endpoints[name], spec)
+
+    def counts(self) -> list[AgentCounts]:
+        """Give what each agent's publisher did since this was asked before."""
+        return [endpoint.publisher.counts() for endpoint in self._endpoints.values()]
 
     def close(self) -> None:
         """Remove all of them."""
         while self._endpoints:
             self._endpoints.popitem()[1].close()
+
+    def _set_rate(self, endpoint: _Endpoint, spec: AgentSpec) -> None:
+        try:
+            endpoint.publisher.set_rate(spec.rate_hz)
+        except SailenvError:
+            return  # deleted meanwhile; the next scene_info says so
+        endpoint.spec = spec
 
     def _add(self, spec: AgentSpec) -> None:
         try:
@@ -64,10 +78,9 @@ class AgentEndpoints:
 
 
 def _same_topics(one: AgentSpec, other: AgentSpec) -> bool:
-    """Say whether two specs differ at most in what their topics do not show."""
-    return (one.intrinsics, one.rate_hz, one.depth_range_m, one.views) == (
+    """Say whether two specs differ at most in what topics and services need not be made for."""
+    return (one.intrinsics, one.depth_range_m, one.views) == (
         other.intrinsics,
-        other.rate_hz,
         other.depth_range_m,
         other.views,
     )

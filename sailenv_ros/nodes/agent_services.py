@@ -10,7 +10,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
-from sailenv_msgs.srv import Capture, GetPose, SetPose, SetPosition, SetRotation
+from sailenv_msgs.srv import Capture, GetPose, SetPose, SetPosition, SetRate, SetRotation
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, xyz_from_msg
@@ -64,6 +64,7 @@ class AgentServices:
             ("get_pose", GetPose, self._get_pose),
             ("toggle_follow", Trigger, self._toggle_follow),
             ("set_follow", SetBool, self._set_follow),
+            ("set_rate", SetRate, self._set_rate),
             ("capture", Capture, self._capture),
         )
 
@@ -105,6 +106,9 @@ class AgentServices:
     async def _set_follow(self, request: SetBool.Request, response: SetBool.Response) -> None:
         following = await self._ask("set_follow", self._spec.name, request.data)
         response.message = _follow_state(following)
+
+    async def _set_rate(self, request: SetRate.Request, response: SetRate.Response) -> None:
+        await self._ask("set_rate", self._spec.name, request.rate_hz)
 
     async def _capture(self, request: Capture.Request, response: Capture.Response) -> None:
         views = checked_views(request.views) if request.views else self._spec.views

@@ -1,7 +1,7 @@
 """The parameters of sim_node: declared with description, unit and range, read into a dataclass.
 
-They say how to run, never what a scene is. All are read once at the start; a later change is
-refused by ROS with a reason. Knows no simulation.
+They say how to run, never what a scene is. Those in `LIVE` may be changed while the node runs (see
+`live_parameters`); a change of another is refused by ROS, and its description says what to use.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from sailenv_ros.frame import FIVE_VIEWS, VIEWS
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import TimeMode
 
-__all__ = ["Parameter", "SimParameters", "declare_parameters", "declare_table"]
+__all__ = ["LIVE", "Parameter", "SimParameters", "declare_parameters", "declare_table"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,8 +64,8 @@ class _Parameter:
     high: float | None = None
     choices: tuple[str, ...] = ()
 
-    def descriptor(self) -> ParameterDescriptor:
-        result = ParameterDescriptor(description=self.description, read_only=True)
+    def descriptor(self, *, live: bool) -> ParameterDescriptor:
+        result = ParameterDescriptor(description=self.description, read_only=not live)
         if self.choices:
             result.additional_constraints = "one of: " + ", ".join(self.choices)
         if self.low is not None and self.high is not None:
@@ -78,8 +78,14 @@ class _Parameter:
         return result
 
 
+LIVE = ("real_time_factor", "agent.rate_hz")
+"""Parameters that take effect while the node runs."""
+
 _PARAMETERS: dict[str, _Parameter] = {
-    "scene": _Parameter("optical", "Name of the first scene, or the path of a scene file."),
+    "scene": _Parameter(
+        "optical",
+        "Name of the first scene, or the path of a scene file; later: the service change_scene.",
+    ),
     "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
     "mode": _Parameter(
         "realtime",
@@ -89,8 +95,13 @@ _PARAMETERS: dict[str, _Parameter] = {
     "real_time_factor": _Parameter(
         1.0, "Simulated seconds per wall second, in realtime mode.", 0.1, 10.0
     ),
-    "seed": _Parameter(0, "Seed of every random number of the scene.", 0, 2**63 - 1),
-    "paused": _Parameter(False, "True: start with simulated time standing still."),
+    "seed": _Parameter(
+        0, "Seed of every random number of the scene; later: the service reset.", 0, 2**63 - 1
+    ),
+    "paused": _Parameter(
+        False,
+        "True: start with simulated time standing still; later: the services pause and resume.",
+    ),
     "backend": _Parameter(
         "auto",
         "Renderer: gl = OpenGL, tiny = slow software fallback, auto = the first that works.",
@@ -160,7 +171,8 @@ def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
 
 def _declare(node: Node, name: str, entry: _Parameter) -> Any:
     try:
-        value = node.declare_parameter(name, entry.default, entry.descriptor()).value
+        descriptor = entry.descriptor(live=name in LIVE)
+        value = node.declare_parameter(name, entry.default, descriptor).value
     except InvalidParameterTypeException:
         wanted = f"of the type of {entry.default!r}"
         raise InvalidRequest(f"parameter {name}", _given(node, name), wanted) from None

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from copy import copy
+from dataclasses import replace
 
 from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
@@ -24,6 +26,8 @@ from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
 from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.nodes.companions import Companions
+from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
 from sailenv_ros.simulation import FrameStream, Simulation
 
@@ -57,6 +61,12 @@ class AgentPublisher:
         self._camera_info = self._publisher(CameraInfo, "camera_info")
         self._frame_info = self._publisher(FrameInfo, "frame_info")
         self._pose = self._publisher(PoseStamped, "pose")
+        self._companions = Companions(
+            self._publisher,
+            depth_range_m=spec.depth_range_m,
+            categories=lambda: simulation.info.categories,
+        )
+        self._counter = FrameCounter()
         self._publishing = threading.Lock()
         self._closing = threading.Event()
         self._last_sequence = 0
@@ -65,11 +75,18 @@ class AgentPublisher:
         self._thread: threading.Thread | None = None
         self.overtaken = 0
         if spec.rate_hz:
-            self._stream = simulation.stream(spec.name, ())
-            self._thread = threading.Thread(
-                target=self._follow, args=(self._stream,), name=f"{spec.name}-frames", daemon=True
-            )
-            self._thread.start()
+            self._begin_stream()
+
+    def set_rate(self, rate_hz: float) -> None:
+        """Take note of a changed rate; 0 ends the stream."""
+        self._spec = replace(self._spec, rate_hz=rate_hz)
+        if rate_hz and self._stream is None:
+            self._begin_stream()
+
+    def counts(self) -> AgentCounts:
+        """Give what was published since this was asked before."""
+        dropped = self.overtaken + (0 if self._stream is None else self._stream.dropped)
+        return self._counter.take(self._spec.name, dropped)
 
     @property
     def ended(self) -> bool:
@@ -118,18 +135,25 @@ class AgentPublisher:
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join(1.0)
         with self._publishing:
-            everything = [*self._images.values(), self._camera_info, self._frame_info, self._pose]
-            for publisher in everything:
+            infos = (self._camera_info, self._frame_info, self._pose)
+            for publisher in (*self._images.values(), *infos, *self._companions.publishers):
                 self._node.destroy_publisher(publisher)
 
     # -- the thread ------------------------------------------------------------------------
 
+    def _begin_stream(self) -> None:
+        self._stream = self._simulation.stream(self._spec.name, ())
+        self._thread = threading.Thread(
+            target=self._follow, args=(self._stream,), name=f"{self._spec.name}-frames", daemon=True
+        )
+        self._thread.start()
+
     def _follow(self, stream: FrameStream) -> None:
-        interval_s = min(LOOK_INTERVAL_S, 1.0 / self._spec.rate_hz)
         while not self._closing.is_set():
+            rate_hz = self._spec.rate_hz
             try:
-                stream.set_views(self._wanted_views())
-                frame = stream.get(interval_s)
+                stream.set_views(self._wanted_views() if rate_hz else ())
+                frame = stream.get(min(LOOK_INTERVAL_S, 1.0 / rate_hz if rate_hz else 1.0))
             except DeadlineExceeded:
                 self._pose_alone()
             except SimulationClosed:
@@ -138,7 +162,10 @@ class AgentPublisher:
                 self._publish_streamed(frame)
 
     def _wanted_views(self) -> tuple[str, ...]:
-        wanted = tuple(view for view, topic in self._images.items() if _is_subscribed(topic))
+        shown = self._companions.wanted_views()
+        wanted = tuple(
+            view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
+        )
         infos = _is_subscribed(self._camera_info) or _is_subscribed(self._frame_info)
         return wanted or ((CHEAPEST_VIEW,) if infos else ())
 
@@ -170,6 +197,7 @@ class AgentPublisher:
     # -- messages --------------------------------------------------------------------------
 
     def _publish(self, frame: Frame) -> tuple[str, ...]:
+        began = time.perf_counter()
         header = header_of_frame(frame)
         sent = []
         for view, topic in self._images.items():
@@ -187,6 +215,9 @@ class AgentPublisher:
         if _is_subscribed(self._pose):
             pose = frame.camera.pose
             self._pose.publish(pose_stamped_to_msg(pose, header.stamp, WORLD_FRAME_ID))
+        # Last, as they take time and nobody waits for them.
+        self._companions.publish(frame, header)
+        self._counter.add(frame, time.perf_counter() - began)
         return tuple(sent)
 
     def _publisher(self, kind: type, topic: str) -> Publisher:

@@ -6,7 +6,7 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-__all__ = ["clock_qos", "frame_qos", "latched_qos", "no_events", "overridable"]
+__all__ = ["clock_qos", "diagnostics_qos", "frame_qos", "latched_qos", "no_events", "overridable"]
 
 
 def frame_qos() -> QoSProfile:
@@ -36,6 +36,16 @@ def clock_qos() -> QoSProfile:
     """/clock: best effort and the latest alone, as every node's time source subscribes."""
     return QoSProfile(
         reliability=ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.VOLATILE,
+        history=HistoryPolicy.KEEP_LAST,
+        depth=1,
+    )
+
+
+def diagnostics_qos() -> QoSProfile:
+    """/diagnostics: reliable, as its aggregators and viewers subscribe."""
+    return QoSProfile(
+        reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.VOLATILE,
         history=HistoryPolicy.KEEP_LAST,
         depth=1,

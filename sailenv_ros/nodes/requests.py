@@ -15,6 +15,7 @@ from rclpy.executors import Executor
 from rclpy.task import Future as RosFuture
 
 from sailenv_ros.errors import SailenvError
+from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["Requests", "answered"]
@@ -36,11 +37,16 @@ class Requests:
         self._simulation = simulation
         self._executor = executor
 
-    async def __call__(self, name: str, *args: Any, **kwargs: Any) -> Any:
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last."""
+        return self._simulation.info
+
+    async def __call__(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
         """Ask for something by its name and await the result; raises what the request raised."""
         return await self.settled(self.begin(name, *args, **kwargs))
 
-    def begin(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+    def begin(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a request now; the order of these calls is the order of execution."""
         return self._simulation.request(name, *args, **kwargs)
 

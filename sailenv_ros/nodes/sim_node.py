@@ -25,9 +25,13 @@ from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, Simulati
 from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
+from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
+from sailenv_ros.nodes.light_services import LightServices
+from sailenv_ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.nodes.log_bridge import LogBridge
+from sailenv_ros.nodes.object_services import ObjectServices
 from sailenv_ros.nodes.parameters import SimParameters, declare_parameters
 from sailenv_ros.nodes.requests import Requests
 from sailenv_ros.nodes.services import SimulatorServices
@@ -78,6 +82,10 @@ class SimNode:
             node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
         )
         self._services = SimulatorServices(node, requests, self._reconcile)
+        self._more_services = (ObjectServices(node, requests), LightServices(node, requests))
+        self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
+        agent = "" if parameters.agent is None else parameters.agent.name
+        self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
 
     @property

@@ -1,4 +1,4 @@
-"""Several pictures on one sheet, each with its label, as an array or a PNG file."""
+"""Several pictures on one sheet, each with its label, as an array or a picture file."""
 
 from __future__ import annotations
 
@@ -71,18 +71,19 @@ def save_contact_sheet(
     columns: int = 3,
     tile_width: int | None = None,
 ) -> Path:
-    """Write a `contact_sheet` as a PNG file; give its path.
+    """Write a `contact_sheet` as a PNG or JPEG file; give its path.
 
     Raises
     ------
     InvalidRequest
-        If a picture is none, or the file's name does not end in ``.png``.
+        If a picture is none, or the file's name ends in neither ``.png`` nor ``.jpg``.
     """
     file = Path(path)
-    if file.suffix.lower() != ".png":
-        raise InvalidRequest("path of the contact sheet", str(path), "a name that ends in .png")
+    if file.suffix.lower() not in (".png", ".jpg"):
+        accepted = "a name that ends in .png or .jpg"
+        raise InvalidRequest("path of the contact sheet", str(path), accepted)
     sheet = contact_sheet(pictures, columns=columns, tile_width=tile_width)
-    Image.fromarray(sheet).save(file, optimize=True)
+    Image.fromarray(sheet).save(file, optimize=True, quality=88)
     return file
 
 

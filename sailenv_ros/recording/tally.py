@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 __all__ = ["SLACK", "FrameTally"]
 
 SLACK = 8
-"""How many frames later an image may still come."""
+"""A frame is judged once so many later ones were announced; by then its images have come."""
 
 
 @dataclass(slots=True)

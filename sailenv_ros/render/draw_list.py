@@ -20,11 +20,12 @@ from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.textures import array_of
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
-__all__ = ["Batch", "BatchKind", "DrawList"]
+__all__ = ["Batch", "BatchKind", "DrawList", "casts"]
 
-LARGEST_CASTER_M = 12.0
-"""Bodies with a longer diagonal (grounds) receive shadows and cast none: they would stretch the
-shadow map to their own size."""
+LARGEST_SHEET_M = 12.0
+LARGEST_CASTER_M = 40.0
+"""Bodies with a longer diagonal (sheets without thickness: grounds; and still larger solids)
+receive shadows and cast none: they would stretch the shadow map to their own size."""
 
 ROW = np.dtype(
     [
@@ -122,7 +123,7 @@ class DrawList:
         self.draw_numbers = context.buffer(np.arange(max(1, len(parts)), dtype=np.int32).tobytes())
         kinds = [kind for kind, *_ in parts]
         self.batches = tuple(_batches(context, kinds, commands))
-        casting = np.array([_casts(contents.instances[row]) for row in self._instance_rows], bool)
+        casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
         shadows = [kind for kind, casts in zip(kinds, casting, strict=True) if casts]
         self.caster_batches = tuple(_batches(context, shadows, commands[casting]))
 
@@ -159,9 +160,11 @@ class DrawList:
             buffer.release()
 
 
-def _casts(drawn: DrawnInstance) -> bool:
+def casts(drawn: DrawnInstance) -> bool:
+    """Tell if a body casts a shadow: walls and ceilings of halls do, grounds do not."""
     low, high = drawn.model.bounds() * np.asarray(drawn.scale)
-    return float(np.linalg.norm(high - low)) <= LARGEST_CASTER_M
+    largest = LARGEST_SHEET_M if (high - low).min() < 1e-3 else LARGEST_CASTER_M
+    return float(np.linalg.norm(high - low)) <= largest
 
 
 def _batches(

@@ -130,6 +130,7 @@ def _set_camera(program: moderngl.Program, camera: Camera, environment: Environm
     set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))
     set_uniform(program, "world_from_optical", _columns(camera.world_from_camera[:3, :3]))
     set_uniform(program, "ambient", environment.ambient)
+    set_uniform(program, "sky_share", environment.sky_share)
     for name in ("sky_zenith", "sky_horizon", "sky_ground"):
         set_uniform(program, name, getattr(environment, name))
     plain = 1.0 if environment.background == "colour" else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.lights import Light
-from sailenv_ros.render.draw_list import LARGEST_CASTER_M, DrawList
+from sailenv_ros.render.draw_list import DrawList, casts
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import issue
 from sailenv_ros.render.programs import ProgramCache
@@ -104,8 +104,10 @@ def _caster_bounds(
             drawn.model.bounds() * np.asarray(drawn.scale) for drawn in snapshot.contents.instances
         )
     ]
-    for matrix, (middle, radius) in zip(snapshot.world_from_body, spheres, strict=True):
-        if 2.0 * radius > LARGEST_CASTER_M:
+    instances = snapshot.contents.instances
+    placed = zip(snapshot.world_from_body, spheres, instances, strict=True)
+    for matrix, (middle, radius), drawn in placed:
+        if not casts(drawn):
             continue
         world = matrix[:3, :3] @ middle + matrix[:3, 3]
         centre = light_from_world[:3, :3] @ world

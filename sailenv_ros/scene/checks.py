@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -18,6 +18,7 @@ from sailenv_ros.scene.kinds import FAULT
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.spec import CategorySpec, SceneSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
+from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
 from sailenv_ros.scene.tree import Entry, entries
 from sailenv_ros.scene.wording import nearest, shown, suggestion
 from sailenv_ros.scene.yaml_nodes import Loc
@@ -88,6 +89,8 @@ def _unknown_names(
             yield from _unknown(loc, entry, "category", categories)
             for place, sentence in knowledge.object_faults(entry):
                 yield Finding((*loc, *place), sentence)
+        elif issubclass(model, RoomSpec | WallMaterialsSpec):
+            yield from _unknown_surfaces(loc, model, entry, knowledge.surfaces)
         elif issubclass(model, CategorySpec):
             if entry.get("name") in knowledge.categories:
                 yield Finding(
@@ -106,6 +109,21 @@ def _unknown(
     name = entry.get(key)
     if isinstance(name, str) and name not in known:
         yield Finding((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
+
+
+def _unknown_surfaces(
+    loc: Loc, model: type[SceneModel], entry: Mapping[str, Any], known: Iterable[str]
+) -> Iterator[Finding]:
+    """Check the materials of a room, each a name or a mapping with it."""
+    for key, field in model.model_fields.items():
+        value = entry.get(key)
+        if SurfaceSpec not in (field.annotation, *get_args(field.annotation)):
+            continue
+        if isinstance(value, str):
+            for finding in _unknown((), {"material": value}, "material", known):
+                yield Finding((*loc, key), finding.message)
+        elif isinstance(value, Mapping):
+            yield from _unknown((*loc, key), value, "material", known)
 
 
 def _translated(details: ErrorDetails, data: Mapping[str, Any], models: Models) -> Finding:

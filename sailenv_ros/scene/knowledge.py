@@ -18,7 +18,7 @@ def _no_faults(entry: Mapping[str, Any]) -> Faults:
 
 @dataclass(frozen=True, kw_only=True)
 class SceneKnowledge:
-    """Names of assets, categories and behaviours.
+    """Names of assets, categories, behaviours and materials of rooms.
 
     Attributes
     ----------
@@ -31,9 +31,12 @@ class SceneKnowledge:
     object_faults : callable
         ``object_faults(entry)`` yields why an object's asset cannot be placed as its entry says.
         The entry is plain data; nothing in it is certain.
+    surfaces : tuple of str
+        Every name that the material of a room's walls, floor or ceiling may have.
     """
 
     assets: tuple[str, ...]
     categories: tuple[str, ...]
     behaviour_faults: Callable[[str, Mapping[str, Any]], Faults]
     object_faults: Callable[[Mapping[str, Any]], Faults] = _no_faults
+    surfaces: tuple[str, ...] = ()

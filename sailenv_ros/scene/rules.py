@@ -7,6 +7,7 @@ inside it and a sentence. Rules keep silent about values that are wrong in thems
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
@@ -17,12 +18,16 @@ __all__ = [
     "at_most_one",
     "away_from_position",
     "below",
+    "carriers_exist",
     "distinct",
     "distinct_values",
+    "is_number",
     "movers_exist",
+    "only_beside",
     "static_never_moves",
     "turned_where_placed",
     "unit_quaternion",
+    "walls_need_a_room",
     "without_zero_length",
 ]
 
@@ -48,7 +53,7 @@ def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool 
 
     def rule(entry: Entry) -> Faults:
         low, high = (entry.get(key, defaults[key]) for key in (lower, upper))
-        if not (_is_number(low) and _is_number(high)):
+        if not (is_number(low) and is_number(high)):
             return
         if low > high or (low == high and not equal):
             accepted = "at most" if equal else "less than"
@@ -60,6 +65,49 @@ def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool 
             )
 
     return rule
+
+
+def only_beside(key: str, *others: str) -> Rule:
+    """Make the rule that some keys are given only where another one is."""
+
+    def rule(entry: Entry) -> Faults:
+        if entry.get(key) is None:
+            for other in others:
+                if entry.get(other) is not None:
+                    yield (other,), f"means something only beside {key}"
+
+    return rule
+
+
+def carriers_exist(scene: Entry) -> Faults:
+    """Refuse objects upon what is not there, or that carry themselves in the end."""
+    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
+    named = [entry for entry in objects if isinstance(entry.get("name"), str)]
+    carrier = {entry["name"]: entry.get("on") for entry in named}
+    for index, entry in enumerate(_listed(scene, "objects")):
+        on = entry.get("on") if isinstance(entry, Mapping) else None
+        if not isinstance(on, str):
+            continue
+        if on not in carrier:
+            known = suggestion(on, [str(name) for name in carrier], listing="its objects")
+            yield ("objects", index, "on"), f"the scene has no object {on!r}; {known}"
+            continue
+        name = entry.get("name")
+        seen = {name} if isinstance(name, str) else set()
+        while isinstance(on, str) and on not in seen:
+            seen.add(on)
+            on = carrier.get(on)
+        if on == name:
+            yield ("objects", index, "on"), "must not be an object that this one carries"
+
+
+def walls_need_a_room(scene: Entry) -> Faults:
+    """Refuse objects at a wall where there is no room."""
+    if scene.get("room") is not None:
+        return
+    for index, entry in enumerate(_listed(scene, "objects")):
+        if isinstance(entry, Mapping) and entry.get("wall") is not None:
+            yield ("objects", index, "wall"), "needs a room; the scene has none"
 
 
 def unit_quaternion(entry: Entry) -> Faults:
@@ -164,12 +212,14 @@ def _repeated(values: Sequence[Any]) -> Iterator[tuple[int, int]]:
             yield index, first[value]
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+def is_number(value: object) -> bool:
+    """Tell if a value is a finite number; integers may be beyond all floats, which is not."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and -sys.float_info.max <= value <= sys.float_info.max  # type: ignore[operator]
 
 
 def _numbers(values: Any, count: int) -> list[float] | None:
     """Give the numbers of a list of so many; ``None`` if it is anything else."""
     if not isinstance(values, list | tuple) or len(values) != count:
         return None
-    return list(values) if all(_is_number(value) for value in values) else None
+    return list(values) if all(is_number(value) for value in values) else None

@@ -14,9 +14,17 @@ from pydantic import Field
 from sailenv_ros.labels import Category
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
 from sailenv_ros.scene.kinds import Number, Text
-from sailenv_ros.scene.rules import at_most_one, distinct, movers_exist
+from sailenv_ros.scene.room_rules import names_beside_room
+from sailenv_ros.scene.rules import (
+    at_most_one,
+    carriers_exist,
+    distinct,
+    movers_exist,
+    walls_need_a_room,
+)
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
+from sailenv_ros.scene.spec_room import RoomSpec
 from sailenv_ros.scene.spec_surroundings import (
     AreaLightSpec,
     DirectionalLightSpec,
@@ -38,6 +46,7 @@ __all__ = [
     "MoverSpec",
     "ObjectSpec",
     "PointLightSpec",
+    "RoomSpec",
     "SceneSpec",
     "SpotLightSpec",
     "WaypointSpec",
@@ -80,6 +89,9 @@ class SceneSpec(SceneModel):
         distinct("name", "lights", "objects", "movers", "agents", "categories"),
         distinct("id", "categories"),
         movers_exist,
+        carriers_exist,
+        walls_need_a_room,
+        names_beside_room,
     )
 
     version: Annotated[Literal[1], Number(least=1, most=1, whole=True)] = Field(
@@ -98,6 +110,9 @@ class SceneSpec(SceneModel):
     )
     lights: tuple[LightSpec, ...] = Field(
         default=(), max_length=64, description="what shines, besides the environment"
+    )
+    room: RoomSpec | None = Field(
+        default=None, description="walls, floor and ceiling around the origin, with openings"
     )
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), max_length=10000, description="what the scene holds"

@@ -20,9 +20,11 @@ from sailenv_ros.scene.fields import (
     Scale,
     SceneModel,
 )
-from sailenv_ros.scene.kinds import Number, Switch, Text
+from sailenv_ros.scene.kinds import Choice, Number, Switch, Text
 from sailenv_ros.scene.placing import Turned
-from sailenv_ros.scene.rules import static_never_moves
+from sailenv_ros.scene.room_rules import WALLS
+from sailenv_ros.scene.rules import at_most_one, only_beside, static_never_moves
+from sailenv_ros.scene.spec_room import WallName
 
 __all__ = ["BehaviourSpec", "ObjectSpec"]
 
@@ -51,13 +53,39 @@ class BehaviourSpec(SceneModel):
 class ObjectSpec(Turned):
     """One object: what it is, where it stands, how it behaves in physics."""
 
-    rules: ClassVar[tuple[Rule, ...]] = (*Turned.rules, static_never_moves)
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *Turned.rules,
+        at_most_one("position", "wall"),
+        at_most_one("on", "wall"),
+        only_beside("wall", "at", "height", "gap"),
+        static_never_moves,
+    )
 
     name: Name = Field(description="unique among the objects of the scene")
     asset: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of an asset")] = Field(
         description="what it is: a name of the catalogue, e.g. cube or Chair 01"
     )
     position: Position = Field(default=(0.0, 0.0, 0.0), description="of the asset's origin [m]")
+    on: Name | None = Field(
+        default=None,
+        description="name of the object that carries it: position and turn then count from that "
+        "object's, and z from its upper side",
+    )
+    wall: Annotated[WallName, Choice(WALLS)] | None = Field(
+        default=None,
+        description="wall of the room that it has at its back, instead of position: "
+        "north (+y), east (+x), south (-y) or west (-x)",
+    )
+    at: Annotated[float, Number(least=-50.0, most=50.0, unit="m")] = Field(
+        default=0.0,
+        description="its place along that wall, from the wall's middle, towards +x or +y [m]",
+    )
+    height: Annotated[float, Number(least=0.0, most=100.0, unit="m")] = Field(
+        default=0.0, description="of its origin above the floor, for what hangs on a wall [m]"
+    )
+    gap: Annotated[float, Number(least=0.0, most=50.0, unit="m")] = Field(
+        default=0.0, description="between its back and the wall [m]"
+    )
     scale: Scale = Field(
         default=(1.0, 1.0, 1.0), description="one factor, or three along the asset's x, y, z"
     )

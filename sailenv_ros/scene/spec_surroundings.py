@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 from pydantic import Field
 
 from sailenv_ros.lights import Environment, Light
-from sailenv_ros.scene.fields import Direction, Name, Position, Radiance, Rule, SceneModel
+from sailenv_ros.scene.fields import Direction, Fraction, Name, Position, Radiance, Rule, SceneModel
 from sailenv_ros.scene.kinds import Choice, Number
 from sailenv_ros.scene.rules import below, without_zero_length
 
@@ -44,6 +44,11 @@ class EnvironmentSpec(SceneModel):
     sky_horizon: Radiance = Field(default=_STANDARD.sky_horizon, description="sky at the horizon")
     sky_ground: Radiance = Field(
         default=_STANDARD.sky_ground, description="below the horizon, where there is no object"
+    )
+    sky_share: Fraction = Field(
+        default=_STANDARD.sky_share,
+        description="share of the sky's light that reaches the objects: 1 outdoors, about 0.2 in "
+        "a room",
     )
     sky_map: str = Field(
         default=_STANDARD.sky_map,

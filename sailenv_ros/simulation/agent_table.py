@@ -105,8 +105,8 @@ class AgentTable:
         return iter(self._records.values())
 
     def __getitem__(self, name: str) -> AgentRecord:
-        if name not in self._records:
-            raise UnknownName("agent", name, self._records)
+        if not isinstance(name, str) or name not in self._records:
+            raise UnknownName("agent", str(name), self._records)
         return self._records[name]
 
     @property
@@ -184,6 +184,15 @@ class AgentTable:
             record.pose = self.camera(record, world).pose
         record.spec = replace(record.spec, following=following)
         return following
+
+    def set_rate(self, name: str, rate_hz: float, world: World) -> None:
+        """Change how often frames are streamed, from the next time on the new rate's grid."""
+        record = self[name]
+        record.spec = replace(record.spec, rate_hz=rate_hz)
+        record.registered = replace(record.registered, rate_hz=rate_hz)
+        record.due_count = 0
+        if rate_hz:
+            record.skip_to(world.step_count)
 
     def begin_epoch(self, world: World, *, as_registered: bool) -> None:
         """Take the agents over into a world that has just begun.

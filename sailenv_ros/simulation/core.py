@@ -9,17 +9,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
-from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame, checked_views
-from sailenv_ros.geometry import Pose
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.simulation.agent_requests import AgentRequests
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.world_requests import Entries, WorldRequests
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.world import World
 
@@ -32,7 +31,16 @@ SLICE_STEPS = 24
 """Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
 
 
-class SimulationCore:
+def checked_real_time_factor(factor: float) -> float:
+    """Give the factor as it was given, or raise `InvalidRequest`."""
+    value: object = factor
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_number or not 0.1 <= factor <= 10.0:
+        raise InvalidRequest("real_time_factor", factor, "a number from 0.1 to 10")
+    return factor
+
+
+class SimulationCore(AgentRequests, WorldRequests):
     """World, renderer and agents of one simulation.
 
     Parameters
@@ -62,8 +70,9 @@ class SimulationCore:
         self._library = library
         self._renderer = renderer
         self._mode: TimeMode = mode
-        self._real_time_factor = real_time_factor
+        self._real_time_factor = checked_real_time_factor(real_time_factor)
         self._seed = seed
+        self._more: Entries = ()
         self._paused = paused
         self._should_end = should_end
         self._agents = AgentTable()
@@ -121,52 +130,6 @@ class SimulationCore:
             renderer=self._renderer.description,
         )
 
-    # -- agents ----------------------------------------------------------------------------
-
-    def register_agent(self, spec: AgentSpec) -> AgentSpec:
-        """Add an agent; give its spec as accepted."""
-        accepted = self._agents.add(spec, self._world)
-        self._announce()
-        return accepted
-
-    def delete_agent(self, name: str) -> None:
-        """Remove an agent and end its streams."""
-        self._agents.remove(name)
-        self._announce()
-
-    def get_pose(self, agent: str) -> AgentPose:
-        """Say where an agent is."""
-        return self._agents.pose(agent, self._world)
-
-    def set_pose(self, agent: str, pose: Pose, *, teleport: bool = False) -> None:
-        """Move an agent, or the mover that it follows."""
-        before = self._agents[agent].spec
-        was_driven = before.following and self._world.mover(before.mover).controller == "waypoint"
-        self._agents.put(agent, pose, self._world, teleport=teleport)
-        if was_driven:
-            self._announce()
-
-    def set_position(self, agent: str, position_m: Any, *, teleport: bool = False) -> None:
-        """Move an agent and leave its orientation."""
-        here = self.get_pose(agent).pose
-        moved = Pose(position_m, here.orientation_xyzw)
-        self.set_pose(agent, moved, teleport=teleport)
-
-    def set_rotation(self, agent: str, rpy_deg: Any, *, teleport: bool = False) -> None:
-        """Turn an agent to roll, pitch, yaw [deg] and leave its position."""
-        here = self.get_pose(agent).pose
-        self.set_pose(agent, Pose.from_rpy_deg(here.position_m, rpy_deg), teleport=teleport)
-
-    def set_follow(self, agent: str, following: bool) -> bool:
-        """Follow the mover or stop; give the new state."""
-        result = self._agents.set_follow(agent, bool(following), self._world)
-        self._announce()
-        return result
-
-    def toggle_follow(self, agent: str) -> bool:
-        """Change between following and not; give the new state."""
-        return self.set_follow(agent, not self._agents[agent].spec.following)
-
     # -- scene and time --------------------------------------------------------------------
 
     def change_scene(self, name: str) -> None:
@@ -178,7 +141,7 @@ class SimulationCore:
         chosen = self._seed if seed is None else seed
         if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
             raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
-        self._begin(self._world.scene, chosen, as_registered=True)
+        self._begin(self._world.scene, chosen, as_registered=True, more=self._more)
         return self._epoch
 
     def pause(self) -> None:
@@ -188,6 +151,11 @@ class SimulationCore:
     def resume(self) -> None:
         """Let simulated time run on; a second call does nothing."""
         self._set_paused(False)
+
+    def set_real_time_factor(self, factor: float) -> None:
+        """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
+        self._real_time_factor = checked_real_time_factor(factor)
+        self._announce()
 
     def step(self, count: int = 1) -> int:
         """Advance by physics steps of 1/240 s, with every streamed frame that falls due.
@@ -318,10 +286,10 @@ class SimulationCore:
                 if stream.views:
                     stream.put(frame)
 
-    def _begin(self, scene: str, seed: int, *, as_registered: bool) -> None:
-        world = self._library.build(scene, seed, self._epoch + 1, self._next_revision)
+    def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
+        world = self._library.build(scene, seed, self._epoch + 1, self._next_revision, more=more)
         self._world.close()
-        self._world, self._seed = world, seed
+        self._world, self._seed, self._more = world, seed, more
         self._epoch += 1
         self._agents.begin_epoch(world, as_registered=as_registered)
         self._announce()

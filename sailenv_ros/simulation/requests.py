@@ -6,10 +6,10 @@ waits. Knows no thread and no queue.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeout
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from numpy.typing import ArrayLike
 
@@ -17,6 +17,8 @@ from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Light
+from sailenv_ros.objects import ObjectState
 
 __all__ = ["REQUESTS", "Requests", "wait_for"]
 
@@ -27,17 +29,29 @@ REQUESTS = frozenset(
         "capture",
         "change_scene",
         "delete_agent",
+        "despawn_object",
+        "get_object",
         "get_pose",
+        "lights",
+        "load_scenario",
+        "move_object",
         "pause",
         "register_agent",
         "reset",
         "resume",
+        "set_ambient_light",
+        "set_background",
         "set_follow",
+        "set_light",
         "set_pose",
         "set_position",
+        "set_rate",
+        "set_real_time_factor",
         "set_rotation",
+        "spawn_object",
         "step",
         "toggle_follow",
+        "upload_model",
     }
 )
 """Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
@@ -46,7 +60,7 @@ REQUESTS = frozenset(
 class Requests:
     """The blocking methods; `Simulation` adds the queue that `request` puts them into."""
 
-    def request(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+    def request(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a request by its name; the future gives its result or raises its error."""
         raise NotImplementedError
 
@@ -95,6 +109,10 @@ class Requests:
         result: bool = self._ask("toggle_follow", timeout_s, agent)
         return result
 
+    def set_rate(self, agent: str, rate_hz: float, *, timeout_s: float = 30.0) -> None:
+        """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
+        self._ask("set_rate", timeout_s, agent, rate_hz)
+
     def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
         """Leave the present world for another scene, at simulated time 0."""
         self._ask("change_scene", timeout_s, name)
@@ -112,6 +130,10 @@ class Requests:
         """Let simulated time run on."""
         self._ask("resume", timeout_s)
 
+    def set_real_time_factor(self, factor: float, *, timeout_s: float = 30.0) -> None:
+        """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
+        self._ask("set_real_time_factor", timeout_s, factor)
+
     def step(self, count: int = 1, *, timeout_s: float = 600.0) -> int:
         """Advance by physics steps of 1/240 s; give the simulated time afterwards [ns]."""
         result: int = self._ask("step", timeout_s, count)
@@ -125,7 +147,147 @@ class Requests:
         result: Frame = self._ask("capture", timeout_s, agent, wanted)
         return result
 
-    def _ask(self, name: str, timeout_s: float, *args: Any, **kwargs: Any) -> Any:
+    # -- objects, lights, surroundings -----------------------------------------------------
+
+    def spawn_object(
+        self,
+        asset: str,
+        *,
+        name: str | None = None,
+        pose: Pose,
+        scale: ArrayLike = (1.0, 1.0, 1.0),
+        static: bool = False,
+        category: str | None = None,
+        behaviours: Sequence[Mapping[str, Any]] = (),
+        mass_kg: float | None = None,
+        timeout_s: float = 30.0,
+    ) -> int:
+        """Put one more object into the scene; give its instance id, the value of its pixels.
+
+        Parameters
+        ----------
+        asset : str
+            Catalogue or display name.
+        name : str or None
+            Unique in the scene; None makes one of the asset's.
+        pose : Pose
+            Of the asset's origin, world frame.
+        scale : float or (3,) array-like
+            Along the asset's axes, 0.001 to 1000.
+        static : bool
+            True if physics shall never move it.
+        category : str or None
+            Instead of the asset's.
+        behaviours : sequence of mapping
+            What moves it of itself, as in a scene file: ``type`` and the parameters. They start
+            now.
+        mass_kg : float or None
+            None takes the asset's, scaled [kg].
+
+        Raises
+        ------
+        UnknownName, NameTaken, InvalidEntry, AssetError
+            If it cannot be placed; the scene is as it was then.
+        """
+        result: int = self._ask(
+            "spawn_object",
+            timeout_s,
+            asset,
+            name=name,
+            pose=pose,
+            scale=scale,
+            static=static,
+            category=category,
+            behaviours=behaviours,
+            mass_kg=mass_kg,
+        )
+        return result
+
+    def despawn_object(self, obj: int | str, *, timeout_s: float = 30.0) -> None:
+        """Take an object, named by id or name, out of the scene; its id is not used again."""
+        self._ask("despawn_object", timeout_s, obj)
+
+    def move_object(
+        self, obj: int | str, pose: Pose, *, teleport: bool = False, timeout_s: float = 30.0
+    ) -> None:
+        """Move an object and stop it; that is motion, which flow shows, unless it teleports."""
+        self._ask("move_object", timeout_s, obj, pose, teleport=teleport)
+
+    def get_object(self, obj: int | str, *, timeout_s: float = 30.0) -> ObjectState:
+        """Say what and where an object is."""
+        result: ObjectState = self._ask("get_object", timeout_s, obj)
+        return result
+
+    def lights(self, *, timeout_s: float = 30.0) -> tuple[Light, ...]:
+        """Give the lights as they are now."""
+        result: tuple[Light, ...] = self._ask("lights", timeout_s)
+        return result
+
+    def set_light(self, name: str, *, timeout_s: float = 30.0, **changes: Any) -> Light:
+        """Change attributes of a light, by their names in `Light`; give the light as it is then."""
+        result: Light = self._ask("set_light", timeout_s, name, **changes)
+        return result
+
+    def set_ambient_light(self, colour: ArrayLike, *, timeout_s: float = 30.0) -> None:
+        """Set the light that arrives from everywhere (linear radiance)."""
+        self._ask("set_ambient_light", timeout_s, colour)
+
+    def set_background(
+        self,
+        kind: Literal["sky", "colour"],
+        colour: ArrayLike | None = None,
+        *,
+        timeout_s: float = 30.0,
+    ) -> None:
+        """Show the sky or a linear colour where nothing is hit; no colour keeps the last one."""
+        self._ask("set_background", timeout_s, kind, colour)
+
+    def upload_model(
+        self,
+        data: bytes,
+        *,
+        name: str,
+        filename: str,
+        category: str | None = None,
+        height_m: float | None = None,
+        timeout_s: float = 120.0,
+    ) -> str:
+        """Add a model to the catalogue; give the name that it is spawned by.
+
+        The simulation goes on meanwhile. See `sailenv_ros.simulation.uploads` for the arguments;
+        an empty name is made from the file's, with a number where it is in use.
+
+        Raises
+        ------
+        NameTaken, UnknownName, InvalidRequest, AssetError
+            If it cannot be used; the catalogue is as it was then.
+        """
+        result: str = self._ask(
+            "upload_model",
+            timeout_s,
+            data,
+            name=name,
+            filename=filename,
+            category=category,
+            height_m=height_m,
+        )
+        return result
+
+    def load_scenario(
+        self, scenario: str | Mapping[str, Any], *, timeout_s: float = 120.0
+    ) -> tuple[int, ...]:
+        """Begin a scene with more objects than its own; give their instance ids, in order.
+
+        Parameters
+        ----------
+        scenario : str or mapping
+            A scene's name, or a mapping with `scene` (its name; the present one if left out) and
+            `objects` (as in a scene file).
+        """
+        result: tuple[int, ...] = self._ask("load_scenario", timeout_s, scenario)
+        return result
+
+    def _ask(self, name: str, timeout_s: float, /, *args: Any, **kwargs: Any) -> Any:
         """Queue a request and wait; its result has the type of the core's method."""
         return wait_for(self.request(name, *args, **kwargs), f"the request {name!r}", timeout_s)
 

@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.sources import installed_packs, installed_sources
+from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.model import Asset
 from sailenv_ros.scene.catalogue import SceneCatalogue
+from sailenv_ros.scene.entries import checked_object, checked_objects, free_name
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
-from sailenv_ros.scene.spec import SceneSpec
-from sailenv_ros.world.build import build_world
+from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
+from sailenv_ros.world.bodies import Placement
+from sailenv_ros.world.build import build_world, make_placement
 from sailenv_ros.world.world import World
 
 __all__ = ["DEFAULT_SCENE", "SceneLibrary"]
+
+MAX_UPLOADS = 256
+"""Models that users may add, so that they cannot fill the memory without end."""
 
 DEFAULT_SCENE = "optical"
 
@@ -34,7 +45,9 @@ class SceneLibrary:
 
     def __init__(self, scene_paths: Sequence[Path] = ()) -> None:
         self._catalogue = SceneCatalogue(scene_paths)
-        self._assets = AssetLibrary()
+        self._packs = installed_packs()
+        self._assets = AssetLibrary(installed_sources(self._packs))
+        self._uploads = 0
         self._files: dict[str, Path] = {}
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
 
@@ -51,10 +64,11 @@ class SceneLibrary:
 
     @cached_property
     def categories(self) -> CategoryTable:
-        """The fixed table."""
-        return load_categories()
+        """The fixed table, and what the packs add to it."""
+        added = [entry.to_category() for pack in self._packs for entry in pack.content.categories]
+        return CategoryTable([*load_categories().values(), *added])
 
-    @cached_property
+    @property
     def knowledge(self) -> SceneKnowledge:
         """What a scene file's names may refer to."""
         return SceneKnowledge(
@@ -62,6 +76,7 @@ class SceneLibrary:
             categories=tuple(category.name for category in self.categories.values()),
             behaviour_faults=behaviour_faults,
             object_faults=ObjectFit(self._assets),
+            surfaces=surface_names(),
         )
 
     def load(self, scene: str | Path) -> SceneSpec:
@@ -78,12 +93,21 @@ class SceneLibrary:
         return load_scene(path, knowledge=self.knowledge)
 
     def build(
-        self, scene: str | Path, seed: int, epoch: int, next_revision: Callable[[], int]
+        self,
+        scene: str | Path,
+        seed: int,
+        epoch: int,
+        next_revision: Callable[[], int],
+        *,
+        more: Sequence[Mapping[str, Any]] = (),
     ) -> World:
-        """Build the world of a scene; see `load` and `world.build.build_world` for errors."""
+        """Build the world of a scene, with `more` objects than it has by itself.
+
+        See `load`, `scene.entries.checked_objects` and `world.build.build_world` for errors.
+        """
         spec = self.load(scene)
         world = build_world(
-            spec,
+            spec.model_copy(update={"objects": (*spec.objects, *self._described(more, spec))}),
             assets=self._assets,
             categories=self.categories,
             seed=seed,
@@ -95,6 +119,99 @@ class SceneLibrary:
             self._files[spec.name] = self._catalogue.path(scene)
         return world
 
+    def canonical_asset(self, name: str) -> str:
+        """Give the catalogue name of an asset's catalogue or display name.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such asset.
+        """
+        return self._assets.canonical(name)
+
+    def add_upload(self, asset: Asset, *, rename: bool) -> str:
+        """Add a user's asset to the catalogue; give its name there.
+
+        Parameters
+        ----------
+        rename : bool
+            True appends a number to a name that is in use.
+
+        Raises
+        ------
+        NameTaken
+            If the name is in use and is to be kept.
+        InvalidRequest
+            If there are `MAX_UPLOADS` already.
+        """
+        if self._uploads >= MAX_UPLOADS:
+            accepted = f"at most {MAX_UPLOADS} in a simulator's life"
+            raise InvalidRequest("number of uploaded models", self._uploads + 1, accepted)
+        taken = {*self._assets.all_names}
+        names = ((asset.name, asset.display_name), *_numbered(asset)) if rename else ()
+        for name, display_name in names:
+            if not taken & {name, display_name}:
+                asset = replace(asset, name=name, display_name=display_name)
+                break
+        self._assets.add(asset)
+        self._uploads += 1
+        return asset.name
+
+    def placement(
+        self, entry: Mapping[str, Any], world: World, *, seed: int, start_s: float
+    ) -> Placement:
+        """Check an object's description and make of it what a world can spawn.
+
+        Parameters
+        ----------
+        entry : mapping
+            With the keys of an object in a scene file.
+        world : World
+            Its categories are those that the entry may name.
+        seed : int
+            Of its behaviours' generators.
+        start_s : float
+            Simulated time at which they start [s].
+
+        Raises
+        ------
+        UnknownName, InvalidEntry, AssetError, InvalidRequest
+            If it cannot be placed.
+        """
+        names = tuple(category.name for category in world.categories.values())
+        spec = checked_object(entry, replace(self.knowledge, categories=names))
+        return make_placement(
+            spec,
+            self._assets.get(spec.asset),
+            spec.pose,
+            world.categories,
+            seed,
+            start_s=start_s,
+        )
+
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Give the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
+
+    def _described(
+        self, more: Sequence[Mapping[str, Any]], spec: SceneSpec
+    ) -> tuple[ObjectSpec, ...]:
+        """Check objects that come on top of a scene's; those without a name are given one."""
+        taken = {entry.name for entry in spec.objects}
+        named: list[Mapping[str, Any]] = []
+        for entry in more:
+            if isinstance(entry, Mapping) and entry.get("name") is None:
+                asset = self.canonical_asset(str(entry.get("asset")))
+                entry = {**entry, "name": free_name(asset, taken)}
+            if isinstance(entry, Mapping):
+                taken.add(str(entry["name"]))
+            named.append(entry)
+        own = tuple(category.name for category in spec.categories)
+        known = self.knowledge
+        return checked_objects(named, replace(known, categories=(*known.categories, *own)))
+
+
+def _numbered(asset: Asset) -> Iterator[tuple[str, str]]:
+    """Yield the asset's names with 2, 3, … at their end; more than there can be uploads."""
+    for number in range(2, MAX_UPLOADS + 2):
+        yield f"{asset.name}_{number}", f"{asset.display_name} {number}"

@@ -15,15 +15,17 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, SimulationClosed, UnknownName
+from sailenv_ros.errors import DeadlineExceeded, SimulationClosed, UnknownName
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.backends import make_backend
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.core import SimulationCore, checked_real_time_factor
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.requests import REQUESTS, Requests, wait_for
 from sailenv_ros.simulation.scenes import DEFAULT_SCENE, SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.upload_queue import UploadQueue
+from sailenv_ros.world.world import World
 
 __all__ = ["Simulation"]
 
@@ -81,12 +83,12 @@ class Simulation(Requests):
     ) -> None:
         if mode not in ("realtime", "lockstep"):
             raise UnknownName("mode", mode, ("realtime", "lockstep"))
-        if not 0.1 <= real_time_factor <= 10.0:
-            raise InvalidRequest("real_time_factor", real_time_factor, "a number from 0.1 to 10")
+        checked_real_time_factor(real_time_factor)
         self._wake = threading.Condition()
         self._queue: collections.deque[tuple[Future[Any], Callable[[SimulationCore], Any]]] = (
             collections.deque()
         )
+        self._core: SimulationCore | None = None
         self._closing = False
         self._ended = ""
         self._info: SceneInfo | None = None
@@ -94,6 +96,9 @@ class Simulation(Requests):
         self._info_listeners: list[Callable[[SceneInfo], None]] = []
         self._step_listeners: list[Callable[[int], None]] = []
         self._pacer = Pacer(real_time_factor)
+        self._uploads = UploadQueue(
+            lambda asset, rename: self._submit(lambda core: core.add_model(asset, rename=rename))
+        )
         started: Future[None] = Future()
 
         def make_core() -> SimulationCore:
@@ -135,13 +140,18 @@ class Simulation(Requests):
         return self._sim_time_ns
 
     @property
+    def skipped_frames(self) -> int:
+        """How many frames were never rendered because the wall clock was ahead; never blocks."""
+        return 0 if self._core is None else self._core.skipped_frames
+
+    @property
     def closed(self) -> bool:
         """True once the simulation has ended or is ending."""
         return self._closing
 
     # -- requests --------------------------------------------------------------------------
 
-    def request(self, name: str, *args: Any, **kwargs: Any) -> Future[Any]:
+    def request(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a request by its name; the future gives its result or raises its error.
 
         Raises
@@ -153,6 +163,8 @@ class Simulation(Requests):
         """
         if name not in REQUESTS:
             raise UnknownName("request", name, sorted(REQUESTS))
+        if name == "upload_model":
+            return self._uploads.begin(*args, **kwargs)
         return self._submit(lambda core: getattr(core, name)(*args, **kwargs))
 
     # -- streams and listeners -------------------------------------------------------------
@@ -184,6 +196,7 @@ class Simulation(Requests):
     def close(self) -> None:
         """End the simulation: break off what runs, free everything; a second call does nothing."""
         self._closing = True
+        self._uploads.close()
         self._nudge()
         atexit.unregister(self.close)
         if threading.current_thread() is not self._thread:
@@ -207,6 +220,7 @@ class Simulation(Requests):
             self._ended = str(error)
             started.set_exception(error)
             return
+        self._core = core
         core.on_info, core.on_step = self._told_info, self._told_step
         self._told_info(core.info)
         why = "it was closed"
@@ -229,15 +243,15 @@ class Simulation(Requests):
             future, call = self._queue.popleft()
             if not future.set_running_or_notify_cancel():
                 continue
-            world, ran = core.world, core.runs_by_itself
+            before = _pace(core)
             try:
                 result = call(core)
             except Exception as error:
                 future.set_exception(error)
             else:
                 future.set_result(result)
-            if core.world is not world or core.runs_by_itself != ran:
-                self._pacer.restart(core.world.step_count)
+            if _pace(core) != before:
+                self._pacer.restart(core.world.step_count, factor=core.real_time_factor)
 
     def _advance(self, core: SimulationCore) -> None:
         if core.runs_by_itself:
@@ -292,6 +306,11 @@ class Simulation(Requests):
     def _nudge(self) -> None:
         with self._wake:
             self._wake.notify_all()
+
+
+def _pace(core: SimulationCore) -> tuple[World, bool, float]:
+    """Give what time's pace depends on: when it changes, the clock begins anew."""
+    return core.world, core.runs_by_itself, core.real_time_factor
 
 
 def _discard(listeners: list[Any], listener: Any) -> None:

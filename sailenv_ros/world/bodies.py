@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import Action, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, PhysicsError
 from sailenv_ros.geometry import Pose
+from sailenv_ros.labels import Instance
 from sailenv_ros.model import Asset, TriangleShape
+from sailenv_ros.objects import ObjectState
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
 
@@ -131,11 +133,43 @@ class Body:
         )
         if not self.placement.static:
             self._client.resetBaseVelocity(self._id, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            self.wake()
+
+    def wake(self) -> None:
+        """Let physics move it again, if it has come to rest and sleeps."""
+        if not self.placement.static:
+            state = self._client.constants.ACTIVATION_STATE_WAKE_UP
+            self._client.changeDynamics(self._id, _LINK_OF_BASE, activationState=state)
 
     def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
         linear, angular = self._client.getBaseVelocity(self._id)
         return np.asarray(linear), np.asarray(angular)
+
+    def state(self, instance: Instance, sim_time_ns: int) -> ObjectState:
+        """Give all that clients may know of it now."""
+        placement = self.placement
+        low, high = placement.asset.model.bounds()
+        linear, angular = self.velocity()
+        return ObjectState(
+            id=instance.id,
+            name=instance.name,
+            asset=instance.asset,
+            category_id=instance.category_id,
+            category=instance.category,
+            pose=self.pose(),
+            scale=placement.scale,
+            size_m=_three((high - low) * np.asarray(placement.scale)),
+            static=placement.static,
+            mass_kg=self.mass_kg,
+            linear_velocity=_three(linear),
+            angular_velocity=_three(angular),
+            behaviours=tuple(
+                {"type": running.kind.type, **running.parameters.model_dump()}
+                for running in placement.behaviours
+            ),
+            sim_time_ns=sim_time_ns,
+        )
 
     def act(self, time_s: float) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""
@@ -150,6 +184,11 @@ class Body:
             self._apply(running.act(time_s, state))
         if self._lift is not None:
             self._push(self._lift)
+
+    @property
+    def collides(self) -> bool:
+        """True if it has a collision shape."""
+        return bool(self.placement.asset.collision)
 
     @property
     def acts(self) -> bool:
@@ -187,12 +226,19 @@ class Body:
             spinningFriction=0.002 if self.mass_kg else 0.0,
         )
         if not placement.static:
+            # What has come to rest sleeps: it keeps the very same pose, and costs nothing.
+            states = self._client.constants
+            self._client.changeDynamics(
+                body, _LINK_OF_BASE, activationState=states.ACTIVATION_STATE_ENABLE_SLEEPING
+            )
             self._client.resetBaseVelocity(
                 body, placement.linear_velocity, placement.angular_velocity
             )
         return int(body)
 
     def _apply(self, action: Action) -> None:
+        if action != Action():
+            self.wake()
         if action.linear_velocity is not None or action.angular_velocity is not None:
             linear, angular = self.velocity()
             self._client.resetBaseVelocity(
@@ -227,6 +273,10 @@ class Body:
         matrix = Pose((0.0, 0.0, 0.0), quat).matrix()
         matrix[:3, 3] = np.asarray(position) - matrix[:3, :3] @ np.asarray(self._centre)
         return matrix
+
+
+def _three(values: NDArray[np.float64]) -> Vector3:
+    return float(values[0]), float(values[1]), float(values[2])
 
 
 def _mass_kg(placement: Placement) -> float:

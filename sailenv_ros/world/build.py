@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.paint import painted
+from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.model import Asset
-from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, SceneSpec
+from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
 
-__all__ = ["build_world"]
+__all__ = ["build_world", "make_placement"]
 
 
 def build_world(
@@ -46,13 +49,21 @@ def build_world(
     UnknownName, AssetError, InvalidRequest, PhysicsError
         If something cannot be built; nothing is left then.
     """
+    stock = {entry.name: assets.get(entry.asset) for entry in spec.objects}
+    poses = arranged(spec.objects, stock, spec.room)
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
     return World(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
-        placements=[_placement(entry, assets, table, seed) for entry in spec.objects],
+        placements=[
+            *_room_placements(spec.room, table),
+            *(
+                make_placement(entry, stock[entry.name], poses[entry.name], table, seed)
+                for entry in spec.objects
+            ),
+        ],
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
@@ -61,12 +72,57 @@ def build_world(
     )
 
 
-def _placement(
-    entry: ObjectSpec, assets: AssetLibrary, categories: CategoryTable, seed: int
+def _room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterator[Placement]:
+    """Yield the parts of a room, none if there is no room."""
+    for part in () if room is None else room_parts(room):
+        yield Placement(
+            name=part.asset.display_name,
+            asset=part.asset,
+            category_id=categories.named(part.asset.category).id,
+            pose=Pose(part.position_m),
+            static=True,
+        )
+
+
+def make_placement(
+    entry: ObjectSpec,
+    asset: Asset,
+    pose: Pose,
+    categories: CategoryTable,
+    seed: int,
+    *,
+    start_s: float = 0.0,
 ) -> Placement:
-    asset = _painted(entry, assets.get(entry.asset))
+    """Turn an object's description into what `World.spawn` takes.
+
+    Parameters
+    ----------
+    entry : ObjectSpec
+    asset : Asset
+        What it is, as the library has it.
+    pose : Pose
+        Where it stands.
+    categories : CategoryTable
+    seed : int
+        Of its behaviours' generators.
+    start_s : float
+        Simulated time at which they start [s].
+
+    Raises
+    ------
+    UnknownName, InvalidRequest
+        If something does not exist or does not fit.
+    """
+    asset = _painted(entry, asset)
     behaviours = [
-        start_behaviour(b.type, b.parameters, seed=seed, object_name=entry.name, place=place)
+        start_behaviour(
+            b.type,
+            b.parameters,
+            seed=seed,
+            object_name=entry.name,
+            place=place,
+            start_s=start_s,
+        )
         for place, b in enumerate(entry.behaviours)
     ]
     x, y, z = (math.radians(rate) for rate in entry.angular_velocity)
@@ -74,7 +130,7 @@ def _placement(
         name=entry.name,
         asset=asset,
         category_id=categories.named(entry.category or asset.category).id,
-        pose=entry.pose,
+        pose=pose,
         scale=entry.scale,
         static=entry.static,
         mass_kg=entry.mass,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,8 @@ NO_COLLISION = -1
 """PyBullet's number for a body that nothing collides with."""
 
 Vector3 = tuple[float, float, float]
+
+_UNTURNED = (0.0, 0.0, 0.0, 1.0)
 
 
 def build_collision(
@@ -63,9 +67,12 @@ def build_collision(
     if len(parts) == 1:
         part = parts[0]
         part["collisionFramePosition"] = part.pop("position")
+        part["collisionFrameOrientation"] = part.pop("orientation", _UNTURNED)
         part["shapeType"] = part.pop("type")
         return int(client.createCollisionShape(**part))
-    return int(client.createCollisionShapeArray(**_as_arrays(parts)))
+    with TemporaryDirectory(prefix="sailenv-hulls-") as folder:
+        files = [_hull_file(Path(folder), number, part, name) for number, part in enumerate(parts)]
+        return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
 
 
 def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str) -> dict[str, Any]:
@@ -73,11 +80,13 @@ def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str
     sx, sy, sz = scale
     if isinstance(shape, BoxShape):
         hx, hy, hz = shape.half_extents_m
-        extents = [hx * sx, hy * sy, hz * sz]
+        if shape.orientation_xyzw != _UNTURNED:
+            _require_equal(name, scale, (0, 1, 2), "a turned box")
         return {
             "type": constants.GEOM_BOX,
-            "halfExtents": extents,
+            "halfExtents": [hx * sx, hy * sy, hz * sz],
             "position": _scaled(shape.centre_m, scale),
+            "orientation": shape.orientation_xyzw,
         }
     if isinstance(shape, SphereShape):
         _require_equal(name, scale, (0, 1, 2), "a ball")
@@ -110,6 +119,30 @@ def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str
     }
 
 
+def _hull_file(folder: Path, number: int, part: dict[str, Any], name: str) -> str:
+    """Write a hull's points as OBJ: inside a compound PyBullet takes meshes from files alone.
+
+    Returns
+    -------
+    path : str
+        Empty for shapes that are no meshes.
+    """
+    if "vertices" not in part:
+        return ""
+    if "indices" in part:
+        raise InvalidRequest(
+            f"collision shapes of {name!r}", "hollow geometry beside others", "hulls and solids"
+        )
+    points = part["vertices"]
+    lines = ["v " + " ".join(f"{coordinate:.9g}" for coordinate in point) for point in points]
+    # A hull needs no faces, but the reader keeps only points that faces name.
+    lines += [f"f 1 {corner} {corner + 1}" for corner in range(2, len(points))]
+    # Bullet remembers files by name: the folder's name is never used again.
+    path = folder / f"{number}.obj"
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    return str(path)
+
+
 def _as_arrays(parts: list[dict[str, Any]]) -> dict[str, Any]:
     """Turn dicts of single shapes into PyBullet's parallel lists, with its own defaults."""
     return {
@@ -117,10 +150,9 @@ def _as_arrays(parts: list[dict[str, Any]]) -> dict[str, Any]:
         "radii": [part.get("radius", 0.5) for part in parts],
         "halfExtents": [part.get("halfExtents", [1.0, 1.0, 1.0]) for part in parts],
         "lengths": [part.get("height", 1.0) for part in parts],
-        "vertices": [part.get("vertices", []) for part in parts],
-        "indices": [part.get("indices", []) for part in parts],
-        "flags": [part.get("flags", 0) for part in parts],
+        "meshScales": [[1.0, 1.0, 1.0]] * len(parts),
         "collisionFramePositions": [part["position"] for part in parts],
+        "collisionFrameOrientations": [part.get("orientation", _UNTURNED) for part in parts],
     }
 
 

@@ -73,6 +73,11 @@ class Mover:
         self._since_ns = 0
 
     @property
+    def track(self) -> WaypointTrack | None:
+        """Where waypoints lead it; None if there are none."""
+        return self._track
+
+    @property
     def controller(self) -> Controller:
         """What drives it."""
         return self._controller

@@ -136,7 +136,7 @@ def _lighting(contents: SceneContents, camera: Camera) -> dict[str, Any]:
     sun: Light | None = max(suns, key=_strength, default=None)
     environment = contents.environment
     sky = np.mean([environment.sky_zenith, environment.sky_horizon, environment.sky_ground], axis=0)
-    around = float(np.mean(sky + np.asarray(environment.ambient)))
+    around = float(np.mean(environment.sky_share * sky + np.asarray(environment.ambient)))
     exposure = 2.0**environment.exposure
     ambient = float(_toned(np.array(around * exposure)))
     lit = around + (_strength(sun) / np.pi if sun is not None else 0.0)

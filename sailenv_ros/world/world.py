@@ -16,6 +16,7 @@ from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
+from sailenv_ros.objects import ObjectState
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
@@ -110,6 +111,16 @@ class World:
         return self._contents
 
     @property
+    def client(self) -> BulletClient:
+        """The physics engine; for what lies in this package."""
+        return self._client
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """All bodies, in the order of their ids."""
+        return tuple(self._bodies.values())
+
+    @property
     def movers(self) -> Mapping[str, Mover]:
         """The movers by name, in the scene's order; read-only."""
         return MappingProxyType(self._movers)
@@ -141,8 +152,8 @@ class World:
         """
         if not name:
             return next(iter(self._movers.values()))
-        if name not in self._movers:
-            raise UnknownName("mover", name, self._movers)
+        if not isinstance(name, str) or name not in self._movers:
+            raise UnknownName("mover", str(name), self._movers)
         return self._movers[name]
 
     def body(self, instance_id: int) -> Body:
@@ -156,6 +167,30 @@ class World:
         if instance_id not in self._bodies:
             raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
         return self._bodies[instance_id]
+
+    def find(self, obj: int | str) -> int:
+        """Give the instance id of an object that is named by its id or its name.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            If there is no such object now.
+        """
+        if isinstance(obj, int | np.integer) and not isinstance(obj, bool):
+            self.body(int(obj))
+            return int(obj)
+        if not isinstance(obj, str):
+            raise InvalidRequest("object", obj, "an instance id, or the name of an object")
+        ids = {body.placement.name: id_ for id_, body in self._bodies.items()}
+        if obj not in ids:
+            raise UnknownName("object", obj, ids)
+        return ids[obj]
+
+    def object_state(self, instance_id: int) -> ObjectState:
+        """Say what and where an object is now; see `body` for errors."""
+        body = self.body(instance_id)
+        instance = self._drawn(instance_id, body.placement).instance
+        return body.state(instance, self.sim_time_ns)
 
     # -- what is changed -------------------------------------------------------------------
 

@@ -77,6 +77,15 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
     """The node with its one agent has the topics of the interface and no other of its own."""
     expected = {
         **{f"{NAMESPACE}/agent/{view}": "sensor_msgs/msg/Image" for view in VIEWS},
+        **{
+            f"{NAMESPACE}/agent/{view}/color": "sensor_msgs/msg/Image"
+            for view in ("depth", "category", "instance", "flow")
+        },
+        **{
+            f"{NAMESPACE}/agent/{view}/compressed": "sensor_msgs/msg/CompressedImage"
+            for view in ("rgb", "category", "instance")
+        },
+        "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
         f"{NAMESPACE}/agent/camera_info": "sensor_msgs/msg/CameraInfo",
         f"{NAMESPACE}/agent/frame_info": "sailenv_msgs/msg/FrameInfo",
         f"{NAMESPACE}/agent/pose": "geometry_msgs/msg/PoseStamped",

@@ -23,6 +23,7 @@ uniform vec3 main_towards;         // optical frame
 uniform mat4 shadow_from_optical;
 uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, penumbra [texels]
 uniform vec3 ambient;
+uniform float sky_share;
 
 const float PI = 3.14159265;
 
@@ -117,9 +118,10 @@ void main() {
 
     float nv = abs(dot(normal, view)) + 1e-4;
     vec3 world_normal = world_from_optical * normal;
-    vec3 around = ambient + sky_light(world_normal);
+    vec3 around = ambient + sky_share * sky_light(world_normal);
     vec3 mirrored = world_from_optical * reflect(-view, normal);
-    vec3 reflected = ambient + mix(sky(mirrored), sky_light(mirrored), min(1.0, roughness * 1.4));
+    vec3 reflected =
+        ambient + sky_share * mix(sky(mirrored), sky_light(mirrored), min(1.0, roughness * 1.4));
     vec2 term = environment_term(min(nv, 1.0), roughness);
     // What single bounces in the microfacets lose comes back from further ones, so that a white
     // surface in uniform light vanishes (Fdez-Aguera 2019, "A multiple-scattering microfacet model").

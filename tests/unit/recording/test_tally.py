@@ -21,7 +21,7 @@ NOTE = RecordedTopic(name="/note", type="std_msgs/msg/String", schema="string da
 
 @given(
     frames=st.lists(st.tuples(st.booleans(), st.booleans()), max_size=30),
-    late=st.integers(0, SLACK),
+    late=st.integers(0, SLACK - 1),
 )
 def test_images_that_were_announced_and_never_came_are_counted(
     frames: list[tuple[bool, bool]], late: int

@@ -22,6 +22,7 @@ KNOWLEDGE = SceneKnowledge(
     assets=("cube", "Cube", "sphere", "chair_01", "Chair 01"),
     categories=("background", "cube", "chair", "dining table"),
     behaviour_faults=_behaviour_faults,
+    surfaces=("plaster", "oak_planks", "white_tiles"),
 )
 
 

@@ -71,6 +71,42 @@ waypoints: Entries = st.tuples(
     st.fixed_dictionaries({"position": positions}), turns | st.just({"look_at": [500.0, 0.0, 0.0]})
 ).map(_merged)
 
+surfaces = st.sampled_from(["plaster", "oak_planks"]) | some(
+    material=st.just("white_tiles"),
+    colour=st.none() | colours,
+    seed=st.integers(0, 99),
+    turn=st.floats(-360, 360),
+)
+
+# Openings that fit every room of this size, each in a wall of its own.
+windows: Entries = st.tuples(
+    st.fixed_dictionaries({"type": st.just("window"), "wall": st.sampled_from(["north", "east"])}),
+    some(
+        at=st.floats(-0.5, 0.5),
+        width=st.floats(0.3, 2.0),
+        height=st.floats(0.3, 1.2),
+        casements=st.none() | st.integers(1, 3),
+        curtains=st.booleans() | some(colour=colours, drawn=st.floats(0, 0.9)),
+    ),
+).map(_merged)
+doors: Entries = st.tuples(
+    st.fixed_dictionaries({"type": st.just("door"), "wall": st.sampled_from(["south", "west"])}),
+    some(open=st.floats(0, 170), hinge=st.sampled_from(["left", "right"]), colour=colours),
+).map(_merged)
+
+rooms: Entries = st.tuples(
+    st.fixed_dictionaries({"size": st.just([4.4, 3.6, 2.6])}),
+    some(
+        thickness=st.floats(0.15, 0.5),
+        walls=surfaces,
+        wall_materials=some(north=surfaces, west=surfaces),
+        floor=surfaces,
+        ceiling=st.booleans() | surfaces,
+        skirting=st.booleans() | some(height=st.floats(0.02, 0.3), colour=colours),
+        openings=st.lists(windows | doors, max_size=3, unique_by=lambda entry: entry["wall"]),
+    ),
+).map(_merged)
+
 scenes: Entries = st.fixed_dictionaries(
     {"version": st.just(1)},
     optional={
@@ -78,6 +114,7 @@ scenes: Entries = st.fixed_dictionaries(
         "gravity": positions,
         "environment": some(ambient=colours, exposure=st.floats(-20, 20)),
         "lights": st.lists(lights, max_size=3, unique_by=_name),
+        "room": rooms,
         "objects": st.lists(objects, max_size=3, unique_by=_name),
         "mover": some(waypoints=st.lists(waypoints, max_size=3), total_time=st.floats(0.1, 1e4)),
     },

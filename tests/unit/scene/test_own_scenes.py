@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.assets import AssetLibrary, ObjectFit, load_categories
+from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose, interpolate
@@ -20,6 +21,7 @@ KNOWLEDGE = SceneKnowledge(
     categories=tuple(category.name for category in load_categories().values()),
     behaviour_faults=behaviour_faults,
     object_faults=ObjectFit(LIBRARY),
+    surfaces=surface_names(),
 )
 NAMES = ("object_view", "optical", "solid_benchmark")
 

@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from sailenv_ros.behaviours import behaviour_kinds
 from sailenv_ros.scene import SceneCatalogue
 from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, scene_schema, schema_text
+from sailenv_ros.scene.yaml_nodes import compose
 from tests.unit.scene.strategies import scenes, unhurried
 from tests.unit.scene.test_faults import HEAD, VALUES
 
@@ -58,8 +59,11 @@ def test_the_schema_is_a_schema() -> None:
 
 @pytest.mark.parametrize("name", SceneCatalogue().names)
 def test_the_package_s_scenes_fit_it(name: str) -> None:
-    data = yaml.safe_load(SceneCatalogue().path(name).read_text(encoding="utf-8"))
-    _validator(BEHAVIOURS).validate(data)
+    # Not PyYAML's own reader: to it, the key `on` is true (YAML 1.1).
+    node, faults = compose(SceneCatalogue().path(name).read_text(encoding="utf-8"))
+    assert node is not None
+    assert not faults
+    _validator(BEHAVIOURS).validate(node.plain())
 
 
 @unhurried

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import InvalidRequest, NameTaken, SceneError, UnknownName
+from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, NameTaken, SceneError, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
@@ -271,3 +272,32 @@ def test_a_running_simulation_is_not_stepped_by_hand() -> None:
     assert core.step(2) == 8_333_333
     core.close()
     assert renderer.closed
+
+
+def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
+    """Frames fall on multiples of the new interval, from the next on; a reset keeps the rate."""
+    core.register_agent(spec(rate_hz=30.0))
+    stream = core.open_stream("eye", ("depth",), lambda _: None)
+    core.step(10)
+    core.set_rate("eye", 60.0)
+    stamps = []
+    for _ in range(12):
+        core.step(1)
+        with contextlib.suppress(DeadlineExceeded):
+            stamps.append(round(stream.get(0.0).stamp_ns * 240e-9))
+    assert stamps == [8, 12, 16, 20]
+    core.reset()
+    assert core.info.agents[-1].rate_hz == 60.0
+    core.set_rate("eye", 0.0)
+    core.step(48)
+    with pytest.raises(DeadlineExceeded):
+        stream.get(0.0)
+
+
+@pytest.mark.parametrize("rate", [-1.0, 241.0, float("nan"), "often"])
+def test_a_rate_out_of_range_changes_nothing(core: SimulationCore, rate: object) -> None:
+    """The old rate stays."""
+    core.register_agent(spec(rate_hz=30.0))
+    with pytest.raises(InvalidRequest, match="a number from 0 to 240"):
+        core.set_rate("eye", rate)  # type: ignore[arg-type]  # on purpose
+    assert core.info.agents[-1].rate_hz == 30.0

@@ -1,0 +1,165 @@
+"""Objects, behaviours and changes of lights to and from their messages."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from geometry_msgs.msg import Twist, Vector3
+
+import sailenv_msgs.msg as msgs
+from sailenv_msgs.srv import GetObject
+from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
+from sailenv_msgs_py.scene_info import instance_to_msg, rgb_from_msg
+from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
+from sailenv_msgs_py.transforms import (
+    pose_from_msg,
+    pose_stamped_to_msg,
+    vector_to_msg,
+    xyz_from_msg,
+)
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.labels import Instance
+from sailenv_ros.objects import ObjectState
+
+__all__ = [
+    "LIGHT_FIELDS",
+    "behaviour_from_msg",
+    "behaviour_to_msg",
+    "light_changes_from_msg",
+    "object_state_from_response",
+    "object_state_to_response",
+    "scale_from_msg",
+]
+
+LIGHT_FIELDS: Mapping[str, str] = {
+    "type": "type",
+    "colour": "colour",
+    "intensity": "intensity",
+    "indirect_multiplier": "indirect_multiplier",
+    "position": "position_m",
+    "direction": "direction",
+    "range_m": "range_m",
+    "inner_cone_deg": "inner_cone_deg",
+    "outer_cone_deg": "outer_cone_deg",
+    "width_m": "width_m",
+    "height_m": "height_m",
+}
+"""Fields of a light's message that can be changed → attributes of `Light`."""
+
+
+def behaviour_to_msg(behaviour: Mapping[str, Any]) -> msgs.Behaviour:
+    """Make the message of a behaviour, which is its ``type`` and its parameters.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is no such mapping.
+    """
+    if not isinstance(behaviour, Mapping) or not isinstance(behaviour.get("type"), str):
+        raise InvalidRequest("behaviour", behaviour, "a mapping with its type and parameters")
+    parameters = {key: value for key, value in behaviour.items() if key != "type"}
+    try:
+        text = json.dumps(parameters, default=_as_list) if parameters else ""
+    except (TypeError, ValueError, RecursionError):
+        accepted = "of numbers, texts, truth values and lists of them"
+        raise InvalidRequest("parameters of a behaviour", parameters, accepted) from None
+    return msgs.Behaviour(type=behaviour["type"], parameters_json=text)
+
+
+def behaviour_from_msg(msg: msgs.Behaviour) -> dict[str, Any]:
+    """Read a behaviour as a scene file would write it.
+
+    Raises
+    ------
+    InvalidRequest
+        If its parameters are no JSON object.
+    """
+    try:
+        parameters = json.loads(msg.parameters_json or "{}")
+    except (ValueError, RecursionError):
+        parameters = None
+    if not isinstance(parameters, dict) or "type" in parameters:
+        accepted = 'a JSON object such as {"angular_velocity": [0, 0, 45]}'
+        raise InvalidRequest("parameters_json", msg.parameters_json, accepted)
+    return {"type": msg.type, **parameters}
+
+
+def object_state_to_response(state: ObjectState, response: GetObject.Response) -> None:
+    """Fill the answer of `get_object`."""
+    instance = Instance(
+        id=state.id,
+        name=state.name,
+        asset=state.asset,
+        category_id=state.category_id,
+        category=state.category,
+        static=state.static,
+    )
+    response.instance = instance_to_msg(instance, moving=bool(state.behaviours))
+    stamp = stamp_from_ns(state.sim_time_ns)
+    response.pose = pose_stamped_to_msg(state.pose, stamp, WORLD_FRAME_ID)
+    response.twist = Twist(
+        linear=vector_to_msg(state.linear_velocity), angular=vector_to_msg(state.angular_velocity)
+    )
+    response.scale = vector_to_msg(state.scale)
+    response.size = vector_to_msg(state.size_m)
+    response.mass_kg = state.mass_kg
+    response.behaviours = [behaviour_to_msg(behaviour) for behaviour in state.behaviours]
+
+
+def object_state_from_response(response: GetObject.Response) -> ObjectState:
+    """Read the answer of `get_object`."""
+    instance = response.instance
+    return ObjectState(
+        id=instance.id,
+        name=instance.name,
+        asset=instance.asset,
+        category_id=instance.category_id,
+        category=instance.category,
+        pose=pose_from_msg(response.pose.pose),
+        scale=xyz_from_msg(response.scale),
+        size_m=xyz_from_msg(response.size),
+        static=instance.is_static,
+        mass_kg=response.mass_kg,
+        linear_velocity=xyz_from_msg(response.twist.linear),
+        angular_velocity=xyz_from_msg(response.twist.angular),
+        behaviours=tuple(behaviour_from_msg(behaviour) for behaviour in response.behaviours),
+        sim_time_ns=ns_from_stamp(response.pose.header.stamp),
+    )
+
+
+def light_changes_from_msg(msg: msgs.Light, fields: Iterable[str]) -> dict[str, Any]:
+    """Read those fields of a light that are to be taken over; none means all.
+
+    Raises
+    ------
+    UnknownName
+        If a field is not in `LIGHT_FIELDS`.
+    """
+    wanted = tuple(fields) or tuple(LIGHT_FIELDS)
+    for field in wanted:
+        if field not in LIGHT_FIELDS:
+            raise UnknownName("field of a light", field, LIGHT_FIELDS)
+    return {LIGHT_FIELDS[field]: _light_value(msg, field) for field in wanted}
+
+
+def scale_from_msg(msg: Vector3) -> tuple[float, float, float]:
+    """Read a scale, where all 0 means 1."""
+    scale = xyz_from_msg(msg)
+    return scale if any(scale) else (1.0, 1.0, 1.0)
+
+
+def _light_value(msg: msgs.Light, field: str) -> Any:
+    value = getattr(msg, field)
+    if field == "colour":
+        return rgb_from_msg(value)
+    return xyz_from_msg(value) if field in ("position", "direction") else value
+
+
+def _as_list(value: Any) -> Any:
+    """Give JSON NumPy's arrays and numbers as lists and numbers."""
+    as_python = getattr(value, "tolist", None)
+    if not callable(as_python):
+        raise TypeError(type(value).__name__)
+    return as_python()

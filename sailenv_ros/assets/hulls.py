@@ -1,0 +1,177 @@
+"""Collision shapes of models: convex pieces that together fill what the model fills.
+
+`RawMesh` in, `ConvexShape`s out.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections.abc import Sequence
+
+import coacd
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from sailenv_ros.assets.meshes import RawMesh, components, simplified, welded
+from sailenv_ros.model import ConvexShape
+
+__all__ = ["convex_hull", "convex_parts", "hulls_of_pieces", "merged"]
+
+MAX_HULL_POINTS = 48
+MAX_HULLS = 24
+THINNEST_M = 0.002
+"""Flat pieces are given this thickness: a hull without volume stops nothing."""
+
+Floats = NDArray[np.float64]
+
+
+def merged(meshes: Sequence[RawMesh]) -> RawMesh:
+    """Join meshes into one, without normals."""
+    starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    return RawMesh(
+        positions=np.concatenate([mesh.positions for mesh in meshes]),
+        uvs=np.concatenate([mesh.uvs for mesh in meshes]),
+        triangles=np.concatenate(
+            [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
+        ),
+    )
+
+
+def convex_hull(points: Floats) -> ConvexShape:
+    """Give the hull of points, of at most `MAX_HULL_POINTS` corners."""
+    points = np.unique(np.asarray(points, dtype=np.float64).round(5), axis=0)
+    corners = _corners(_thickened(points))
+    if len(corners) > MAX_HULL_POINTS:
+        corners = _fewer(corners)
+    return ConvexShape(points=corners)
+
+
+def hulls_of_pieces(mesh: RawMesh) -> tuple[ConvexShape, ...]:
+    """Give one hull for each connected piece: exact for furniture that is joined from boards.
+
+    Pieces inside another one's box are left out; the smallest join their nearest neighbours until
+    there are at most `MAX_HULLS`.
+    """
+    of_triangle = components(mesh)
+    clouds = [
+        mesh.positions[np.unique(mesh.triangles[of_triangle == k])]
+        for k in range(int(of_triangle.max()) + 1)
+    ]
+    clouds = _without_hidden(clouds)
+    while len(clouds) > MAX_HULLS:
+        clouds = _smallest_joined(clouds)
+    return tuple(convex_hull(cloud) for cloud in clouds)
+
+
+def convex_parts(mesh: RawMesh, *, threshold: float = 0.08) -> tuple[ConvexShape, ...]:
+    """Give a convex decomposition, for what is hollow or branched.
+
+    Notes
+    -----
+    CoACD (Wei, Liu, Ling and Su, SIGGRAPH 2022) with its fixed seed.
+    """
+    small = simplified(_closed(mesh), 4000, max_error=0.05)
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    coacd.set_log_level("error")
+    parts = coacd.run_coacd(
+        coacd.Mesh(small.positions, small.triangles),
+        threshold=threshold,
+        max_convex_hull=MAX_HULLS,
+        preprocess_resolution=50,
+        resolution=1000,
+        mcts_nodes=10,
+        mcts_iterations=40,
+        mcts_max_depth=2,
+        seed=0,
+    )
+    # Open meshes are closed by a skin around them, which stands out a little.
+    return tuple(convex_hull(np.clip(np.asarray(points), low, high)) for points, _ in parts)
+
+
+def _closed(mesh: RawMesh) -> RawMesh:
+    """Join what lies at one place, whatever its texture coordinates."""
+    return welded(dataclasses.replace(mesh, uvs=np.zeros_like(mesh.uvs)))
+
+
+def _thickened(points: Floats) -> Floats:
+    """Give what is flat along an axis a little depth."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    for axis in np.flatnonzero(high - low < THINNEST_M):
+        lifted = points.copy()
+        points = points.copy()
+        points[:, axis] = (low[axis] + high[axis] - THINNEST_M) / 2.0
+        lifted[:, axis] = (low[axis] + high[axis] + THINNEST_M) / 2.0
+        points = np.concatenate([points, lifted])
+    return points
+
+
+def _corners(points: Floats) -> Floats:
+    try:
+        return np.asarray(points[ConvexHull(points).vertices])
+    except QhullError:  # flat along no axis: its box is as good
+        low, high = points.min(axis=0), points.max(axis=0)
+        grid = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T
+        return _thickened(grid)
+
+
+def _fewer(corners: Floats) -> Floats:
+    """Keep what it stands on, so that it stands, and of the rest what is far apart."""
+    depth = max(1e-4, 0.01 * float(np.ptp(corners[:, 2])))
+    base = corners[corners[:, 2] < corners[:, 2].min() + depth]
+    base = base[_farthest(base, min(len(base), MAX_HULL_POINTS // 3))]
+    rest = corners[_farthest(corners, MAX_HULL_POINTS - len(base))]
+    return np.unique(np.concatenate([base, rest]), axis=0)
+
+
+def _farthest(points: Floats, count: int) -> NDArray[np.int64]:
+    """Choose points that are far from one another, beginning with the extreme ones."""
+    chosen = list(dict.fromkeys([*points.argmin(axis=0), *points.argmax(axis=0)]))
+    distance = np.min([np.linalg.norm(points - points[k], axis=1) for k in chosen], axis=0)
+    while len(chosen) < count:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return np.array(chosen)
+
+
+def _without_hidden(clouds: list[Floats]) -> list[Floats]:
+    lows = np.array([cloud.min(axis=0) for cloud in clouds])
+    highs = np.array([cloud.max(axis=0) for cloud in clouds])
+    volumes = np.prod(highs - lows, axis=1)
+    order = np.argsort(-volumes, kind="stable")
+    kept: list[int] = []
+    for k in order:
+        inside = (
+            (lows[kept] <= lows[k] + 1e-4).all(axis=1)
+            & (highs[kept] >= highs[k] - 1e-4).all(axis=1)
+            & _dense(clouds, kept, volumes)
+        )
+        if not inside.any():
+            kept.append(int(k))
+    return [clouds[k] for k in sorted(kept)]
+
+
+def _dense(clouds: list[Floats], kept: list[int], volumes: Floats) -> NDArray[np.bool_]:
+    """Tell of which pieces the hull fills most of the box, so that what is in it is hidden."""
+    return np.array([_hull_volume(clouds[k]) > 0.8 * volumes[k] for k in kept], dtype=bool)
+
+
+def _hull_volume(cloud: Floats) -> float:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return float(ConvexHull(cloud).volume)
+    except (QhullError, ValueError):
+        return 0.0
+
+
+def _smallest_joined(clouds: list[Floats]) -> list[Floats]:
+    middles = np.array([(cloud.min(axis=0) + cloud.max(axis=0)) / 2.0 for cloud in clouds])
+    sizes = np.array([np.linalg.norm(np.ptp(cloud, axis=0)) for cloud in clouds])
+    smallest = int(sizes.argmin())
+    distances = np.linalg.norm(middles - middles[smallest], axis=1)
+    distances[smallest] = np.inf
+    nearest = int(distances.argmin())
+    joined = np.concatenate([clouds[smallest], clouds[nearest]])
+    return [c for k, c in enumerate(clouds) if k not in (smallest, nearest)] + [joined]

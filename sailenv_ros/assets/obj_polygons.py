@@ -1,0 +1,80 @@
+"""Polygons of OBJ files → triangles, so that concave ones keep their shape.
+
+Readers of OBJ cut polygons into fans, which is right for convex ones alone. Text in, text out; all
+but the faces stays as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import mapbox_earcut
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["with_triangles"]
+
+Floats = NDArray[np.float64]
+
+
+def with_triangles(text: str) -> str:
+    """Give an OBJ file's text with its polygons of four corners and more cut into triangles.
+
+    Notes
+    -----
+    Ear clipping in the polygon's plane (mapbox's earcut). Faces whose corners cannot be found are
+    left for the reader to complain about.
+    """
+    points: list[tuple[float, float, float]] = []
+    lines: list[str] = []
+    for line in text.replace("\\\n", " ").splitlines():
+        words = line.split()
+        if len(words) >= 4 and words[0] == "v":
+            try:
+                points.append((float(words[1]), float(words[2]), float(words[3])))
+            except ValueError:
+                points.append((0.0, 0.0, 0.0))
+        if len(words) > 4 and words[0] == "f":
+            lines.extend(_triangles(words[1:], points) or [line])
+        else:
+            lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def _triangles(corners: list[str], points: list[tuple[float, float, float]]) -> list[str]:
+    try:
+        numbers = [int(corner.split("/")[0]) for corner in corners]
+        polygon = np.array([points[n - 1 if n > 0 else n] for n in numbers])
+    except (ValueError, IndexError):
+        return []
+    if len(corners) == 4 and _is_convex(polygon):
+        cut = [(0, 1, 2), (0, 2, 3)]
+    else:
+        cut = list(_clipped(polygon))
+    return [f"f {corners[a]} {corners[b]} {corners[c]}" for a, b, c in cut]
+
+
+def _normal(polygon: Floats) -> Floats:
+    """Give twice the polygon's area as a vector (Newell)."""
+    return np.asarray(np.cross(polygon, np.roll(polygon, -1, axis=0)).sum(axis=0))
+
+
+def _is_convex(polygon: Floats) -> bool:
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    turns = np.cross(edges, np.roll(edges, -1, axis=0)) @ _normal(polygon)
+    return bool((turns >= 0.0).all())
+
+
+def _clipped(polygon: Floats) -> Iterator[tuple[int, int, int]]:
+    normal = _normal(polygon - polygon[0])
+    length = float(np.linalg.norm(normal))
+    if length == 0.0:
+        return
+    axis = int(np.abs(normal).argmax())
+    # The two other axes, in the order that keeps the polygon's sense of turning.
+    flat = polygon[:, [(axis + 1) % 3, (axis + 2) % 3]] * [np.sign(normal[axis]), 1.0]
+    rings = np.array([len(polygon)], dtype=np.uint32)
+    cut = mapbox_earcut.triangulate_float64(np.ascontiguousarray(flat), rings).reshape(-1, 3)
+    for a, b, c in cut.tolist():
+        turn = np.cross(polygon[b] - polygon[a], polygon[c] - polygon[a]) @ normal
+        yield (a, b, c) if turn >= 0.0 else (a, c, b)

@@ -1,0 +1,161 @@
+"""An asset pack: a folder with `pack.yaml` and one binary glTF file for each object.
+
+A folder in, `Asset`s out; a source of the `AssetLibrary`. Writing lies in `pack_writer`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sailenv_ros.assets.glb import read_glb
+from sailenv_ros.errors import AssetError
+from sailenv_ros.model import (
+    Asset,
+    BoxShape,
+    CollisionShape,
+    ConvexShape,
+    CylinderShape,
+    Model,
+    SphereShape,
+)
+from sailenv_ros.scene.spec import CategorySpec
+
+__all__ = ["PACK_FILE", "AssetPack", "PackContent", "PackEntry"]
+
+PACK_FILE = "pack.yaml"
+
+AssetName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,62}$")]
+Text = Annotated[str, Field(max_length=300)]
+Metres = Annotated[float, Field(gt=0.0, le=100.0)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PackEntry(_Strict):
+    """What `pack.yaml` says of one object.
+
+    Attributes
+    ----------
+    name, display_name, category : str
+    file : str
+        Of the model, in the pack's folder.
+    size : (3,) tuple of float
+        Along the body's x, y, z [m].
+    mass : float
+        [kg].
+    collision : str
+        ``box``, ``cylinder``, ``sphere`` around its size; ``hulls``: convex pieces in the file;
+        ``none``.
+    """
+
+    name: AssetName
+    display_name: Annotated[str, Field(pattern=r"^[^\x00-\x1f]{1,100}$")]
+    category: Annotated[str, Field(min_length=1, max_length=63)]
+    file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}\.glb$")]
+    size: tuple[Metres, Metres, Metres]
+    mass: Annotated[float, Field(gt=0.0, le=1e6)]
+    collision: Literal["box", "cylinder", "sphere", "hulls", "none"] = "hulls"
+    triangles: Annotated[int, Field(ge=1)]
+    tags: tuple[Text, ...] = ()
+    author: Text = ""
+    licence: Text = ""
+    source: Text = ""
+
+
+class PackContent(_Strict):
+    """The whole of `pack.yaml`."""
+
+    version: Literal[1]
+    title: Text = ""
+    fingerprint: Text = ""
+    categories: tuple[CategorySpec, ...] = ()
+    assets: tuple[PackEntry, ...] = ()
+
+
+class AssetPack:
+    """The assets of one folder.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    AssetError
+        If there is no `pack.yaml`, or it breaks the format.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.content = _read(folder / PACK_FILE)
+        self._entries = {entry.name: entry for entry in self.content.assets}
+        if len(self._entries) != len(self.content.assets):
+            raise AssetError(str(folder / PACK_FILE), "two of its assets have the same name")
+
+    @cached_property
+    def display_names(self) -> Mapping[str, str]:
+        """Display name of each catalogue name."""
+        return MappingProxyType({name: e.display_name for name, e in self._entries.items()})
+
+    @property
+    def entries(self) -> Mapping[str, PackEntry]:
+        """What `pack.yaml` says of each asset, by catalogue name."""
+        return MappingProxyType(self._entries)
+
+    def load(self, name: str) -> Asset:
+        """Read one asset's file.
+
+        Raises
+        ------
+        AssetError
+            If it is not there or cannot be used.
+        """
+        entry = self._entries[name]
+        path = self.folder / entry.file
+        if not path.is_file():
+            raise AssetError(name, f"its file {path} is missing")
+        parts, hulls = read_glb(path)
+        if entry.collision == "hulls" and not hulls:
+            raise AssetError(name, f"{path} holds no collision pieces")
+        model = Model(name=name, parts=parts)
+        low, high = model.bounds()
+        x, y, z = ((low + high) / 2.0).tolist()
+        return Asset(
+            name=name,
+            display_name=entry.display_name,
+            category=entry.category,
+            model=model,
+            collision=_shapes(entry, (x, y, z), hulls),
+            mass_kg=entry.mass,
+            centre_of_mass_m=(x, y, z),
+            tags=entry.tags,
+        )
+
+
+def _read(path: Path) -> PackContent:
+    try:
+        return PackContent.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, ValidationError) as problem:
+        raise AssetError(str(path), " ".join(str(problem).split())) from None
+
+
+def _shapes(
+    entry: PackEntry, middle: tuple[float, float, float], hulls: tuple[ConvexShape, ...]
+) -> tuple[CollisionShape, ...]:
+    x, y, z = entry.size
+    if entry.collision == "box":
+        return (BoxShape(half_extents_m=(x / 2.0, y / 2.0, z / 2.0), centre_m=middle),)
+    if entry.collision == "cylinder":
+        return (CylinderShape(radius_m=max(x, y) / 2.0, height_m=z, centre_m=middle),)
+    if entry.collision == "sphere":
+        return (SphereShape(radius_m=max(entry.size) / 2.0, centre_m=middle),)
+    return hulls if entry.collision == "hulls" else ()

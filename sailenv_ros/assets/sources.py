@@ -1,0 +1,81 @@
+"""Everything that assets come from on this machine: solids, the standard pack, the user's packs."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from sailenv_ros.assets.library import AssetSource
+from sailenv_ros.assets.pack import PACK_FILE, AssetPack
+from sailenv_ros.assets.places import pack_folders, standard_pack_folder
+from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.assets.standard.recipe import standard_recipe
+from sailenv_ros.errors import AssetError
+from sailenv_ros.model import Asset
+
+__all__ = ["BUILD_COMMAND", "UnbuiltPack", "installed_packs", "installed_sources"]
+
+BUILD_COMMAND = "sailenv assets build"
+
+_log = logging.getLogger(__name__)
+
+
+class UnbuiltPack:
+    """The standard pack where it has not been built: its names are known, its objects are not."""
+
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        """Display name of each catalogue name."""
+        recipe = standard_recipe()
+        return MappingProxyType({name: recipe.display_name(name) for name in recipe.assets})
+
+    def load(self, name: str) -> Asset:
+        """Say what is to be done.
+
+        Raises
+        ------
+        AssetError
+            Always.
+        """
+        raise AssetError(
+            name, f"the furniture is not on this machine yet; fetch it with: {BUILD_COMMAND}"
+        )
+
+
+def installed_packs() -> tuple[AssetPack, ...]:
+    """Open every pack on this machine, the standard one first.
+
+    One that cannot be opened is left out with a warning: it must not keep the others from use.
+    """
+    packs: list[AssetPack] = []
+    names: set[str] = set()
+    for folder in (standard_pack_folder(), *pack_folders()):
+        if not (folder / PACK_FILE).is_file():
+            continue
+        try:
+            pack = AssetPack(folder)
+        except AssetError as problem:
+            _log.warning("left out a pack: %s", problem)
+            continue
+        taken = names.intersection(pack.display_names)
+        if taken:
+            _log.warning("left out the pack %s: another has %s too", folder, min(taken))
+            continue
+        names.update(pack.display_names)
+        packs.append(pack)
+    return tuple(packs)
+
+
+def installed_sources(packs: Sequence[AssetPack] | None = None) -> tuple[AssetSource, ...]:
+    """Give all sources; the standard pack's names are there even where it has not been built.
+
+    Parameters
+    ----------
+    packs : sequence of AssetPack or None
+        What `installed_packs` gave; None opens them.
+    """
+    packs = installed_packs() if packs is None else packs
+    built = any(pack.folder == standard_pack_folder() for pack in packs)
+    unbuilt: tuple[AssetSource, ...] = () if built else (UnbuiltPack(),)
+    return (Primitives(), *unbuilt, *packs)

@@ -1,0 +1,57 @@
+"""Boxes, rods and parts: what the makers of objects are built on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailenv_ros.assets.meshes import RawMesh
+from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.solids import box_mesh, cylinder_mesh
+from sailenv_ros.model import Material, Mesh
+
+__all__ = ["Vector3", "box", "part", "raw_mesh", "rod"]
+
+Vector3 = tuple[float, float, float]
+
+
+def part(name: str, mesh: RawMesh | Mesh, **material: object) -> RawPart:
+    """Give a mesh with a material of that name; the rest of the material in keywords."""
+    return RawPart(
+        name=name,
+        mesh=mesh if isinstance(mesh, RawMesh) else raw_mesh(mesh),
+        material=Material(name=name, **material),  # type: ignore[arg-type]
+        textured=True,
+    )
+
+
+def raw_mesh(mesh: Mesh) -> RawMesh:
+    """Give a finished mesh as one that can be worked on."""
+    return RawMesh(
+        positions=mesh.positions.astype(np.float64),
+        uvs=mesh.uvs.astype(np.float64),
+        triangles=mesh.triangles.astype(np.int64),
+        normals=mesh.normals.astype(np.float64),
+    )
+
+
+def box(size: Vector3, centre: Vector3) -> RawMesh:
+    """Give a box."""
+    raw = raw_mesh(box_mesh(size))
+    return RawMesh(
+        positions=raw.positions + np.asarray(centre),
+        uvs=raw.uvs,
+        triangles=raw.triangles,
+        normals=raw.normals,
+    )
+
+
+def rod(radius: float, length: float, centre: Vector3, end_radius: float | None = None) -> RawMesh:
+    """Give a cylinder or a cone's stump along x."""
+    raw = raw_mesh(cylinder_mesh(1.0, 1.0))
+    z = raw.positions[:, 2] + 0.5
+    scale = radius + (radius if end_radius is None else end_radius) * z - radius * z
+    positions = np.stack(
+        [raw.positions[:, 2] * length, raw.positions[:, 0] * scale, raw.positions[:, 1] * scale],
+        axis=1,
+    )
+    return RawMesh(positions=positions + np.asarray(centre), uvs=raw.uvs, triangles=raw.triangles)

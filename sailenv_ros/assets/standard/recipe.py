@@ -1,0 +1,108 @@
+"""`config/standard_pack.yaml` → `Recipe`: what the standard pack holds and how it is put right."""
+
+from __future__ import annotations
+
+import fnmatch
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sailenv_ros.assets.standard.finishes import FINISHES
+from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.resources import resource_path
+
+__all__ = ["MaterialRule", "Recipe", "RecipeEntry", "standard_recipe"]
+
+Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class MaterialRule(_Strict):
+    """What the recipe says of materials whose name fits a pattern."""
+
+    finish: str | None = None
+    colour: Colour | None = None
+    roughness: Share | None = None
+    metallic: Share | None = None
+    pattern: str | None = None
+    drop: bool = False
+
+
+class RecipeEntry(_Strict):
+    """One object.
+
+    Attributes
+    ----------
+    source : str
+        ``library/model`` of the catalogues, or ``made/<what>`` for what code makes.
+    collision : str
+        ``box``, ``cylinder``, ``sphere``; ``pieces`` for a hull around each connected piece,
+        ``hull`` around all, ``convex`` for a decomposition of what is hollow or branched, ``base``
+        for a hull around the lowest fifth (plants, whose leaves give way), ``none``.
+    turn : float
+        About the vertical, where a catalogue's front is not the object's [deg].
+    """
+
+    category: str
+    source: str
+    display_name: str | None = None
+    mass: Annotated[float, Field(gt=0.0, le=2000.0)]
+    collision: Literal["box", "cylinder", "sphere", "hull", "pieces", "convex", "base", "none"] = (
+        "pieces"
+    )
+    turn: float = 0.0
+    tags: tuple[str, ...] = ()
+    triangles: Annotated[int, Field(ge=100, lt=20000)] = 12000
+    materials: dict[str, MaterialRule | str] = {}
+
+    def rule(self, material: str) -> MaterialRule:
+        """Give what is said of a material; an empty rule for nothing."""
+        for pattern, rule in self.materials.items():
+            if fnmatch.fnmatchcase(material, pattern):
+                return MaterialRule(finish=rule) if isinstance(rule, str) else rule
+        return MaterialRule()
+
+
+class Recipe(_Strict):
+    """The whole pack."""
+
+    version: Literal[1]
+    title: str
+    assets: dict[str, RecipeEntry]
+
+    def display_name(self, name: str) -> str:
+        """Give an object's display name: ``Chair 01`` for ``chair_01`` unless it has another."""
+        return self.assets[name].display_name or name.replace("_", " ").title()
+
+
+@lru_cache(maxsize=1)
+def standard_recipe() -> Recipe:
+    """Read the package's own recipe, once.
+
+    Raises
+    ------
+    AssetError
+        If it cannot be read or breaks the rules above.
+    """
+    return read_recipe(resource_path("config", "standard_pack.yaml"))
+
+
+def read_recipe(path: Path) -> Recipe:
+    """Read a recipe; see `standard_recipe`."""
+    try:
+        recipe = Recipe.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        for entry in recipe.assets.values():
+            for pattern in entry.materials:
+                finish = entry.rule(pattern).finish
+                if finish is not None and finish not in FINISHES:
+                    raise UnknownName("finish", finish, FINISHES)
+        return recipe
+    except (OSError, yaml.YAMLError, ValidationError, UnknownName) as problem:
+        raise AssetError(path.name, " ".join(str(problem).split())) from None

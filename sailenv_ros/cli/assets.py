@@ -1,0 +1,184 @@
+"""`sailenv assets`: build the standard pack, list and picture what there is, add one's own."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from sailenv_ros.assets.importing import import_asset
+from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.own_pack import add_to_own_pack
+from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.places import own_pack_folder, standard_pack_folder
+from sailenv_ros.assets.sources import installed_packs, installed_sources
+from sailenv_ros.assets.standard.build import build_standard_pack, is_current, licence_files
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.simulation.scenes import SceneLibrary
+
+__all__ = ["add_parser", "run"]
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add the command to those of `sailenv`."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "assets", help="build the furniture, list and picture objects, add one's own"
+    )
+    parser.set_defaults(run=run)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    build = actions.add_parser("build", help="fetch and make the standard pack of furniture")
+    build.add_argument("--force", action="store_true", help="make it anew though it is there")
+    build.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    actions.add_parser("list", help="list every object, with its category, size and licence")
+    credit = actions.add_parser("credits", help="print authors, licences and sources")
+    credit.add_argument("--full", action="store_true", help="the licence texts too")
+    sheet = actions.add_parser("sheet", help="picture objects on a contact sheet")
+    sheet.add_argument("names", nargs="*", metavar="NAME", help="objects (default: all)")
+    sheet.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="FILE", help=".jpg, .png"
+    )
+    sheet.add_argument("--columns", type=int, default=10, metavar="N")
+    sheet.add_argument("--tile", type=int, default=192, metavar="PX", help="width of a picture")
+    sheet.add_argument("--azimuth", type=float, default=32.0, metavar="DEG", help="of the camera")
+    add = actions.add_parser("add", help="put a model of yours into your own pack")
+    add.add_argument("model", type=Path, metavar="FILE", help=".glb, .gltf, .obj or .zip")
+    add.add_argument("--category", required=True, help="what it is, e.g. chair")
+    add.add_argument("--name", help="catalogue name (default: the file's)")
+    add.add_argument("--display-name", help="for people (default: made from the name)")
+    add.add_argument("--height", type=float, metavar="M", help="scale it to this height")
+    add.add_argument("--mass", type=float, metavar="KG", help="(default: by its size)")
+    add.add_argument("--author", default="", help="for the credits")
+    add.add_argument("--licence", default="", help="for the credits")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Do what was asked; 0 if all is well."""
+    return {
+        "build": _build,
+        "list": _list,
+        "credits": _credits,
+        "sheet": _sheet,
+        "add": _add,
+    }[args.action](args)
+
+
+def _progress(console: Console) -> Progress:
+    return Progress(
+        TextColumn("{task.description:<28}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=console,
+        transient=not console.is_terminal,
+    )
+
+
+def _build(args: argparse.Namespace) -> int:
+    folder = standard_pack_folder()
+    if is_current(folder) and not args.force:
+        print(f"{folder}: up to date ({len(AssetPack(folder).entries)} objects)")
+        return 0
+    console = Console(stderr=True)
+    with _progress(console) as bar:
+        task = bar.add_task("furniture", total=None)
+
+        def told(name: str, done: int, total: int) -> None:
+            bar.update(task, description=name, completed=done, total=total)
+
+        def said(text: str) -> None:
+            bar.update(task, description=text)
+            if not console.is_terminal:
+                console.print(text)
+
+        build_standard_pack(progress=told, say=said, jobs=args.jobs, force=args.force)
+        bar.update(task, description="furniture")
+    print(f"{folder}: {len(AssetPack(folder).entries)} objects")
+    return 0
+
+
+def _list(_: argparse.Namespace) -> int:
+    for pack in installed_packs():
+        print(f"{pack.folder}  {pack.content.title}".rstrip())
+        for name, entry in sorted(pack.entries.items()):
+            size = " × ".join(f"{100 * s:.0f}" for s in entry.size)
+            print(f"  {name:<20} {entry.category:<16} {size:>18} cm  {entry.licence}")
+    if not any(pack.folder == standard_pack_folder() for pack in installed_packs()):
+        print("The furniture has not been built yet: sailenv assets build")
+    return 0
+
+
+def _credits(args: argparse.Namespace) -> int:
+    for pack in installed_packs():
+        print(f"# {pack.content.title or pack.folder}\n")
+        for name, entry in sorted(pack.entries.items()):
+            print(f"{entry.display_name} ({name}): {entry.author}, {entry.licence}, {entry.source}")
+        files = licence_files(pack.folder)
+        if files and not args.full:
+            print(f"\n{len(files)} licence texts and credits files lie in {files[0].parents[1]}")
+        for file in files if args.full else ():
+            print(f"\n## {file.relative_to(pack.folder)}\n")
+            print(file.read_text(encoding="utf-8", errors="replace").strip())
+        print()
+    return 0
+
+
+def _sheet(args: argparse.Namespace) -> int:
+    # Imported here: all other actions do without OpenGL.
+    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.simulation.portraits import PortraitStudio
+
+    library = AssetLibrary(installed_sources())
+    names = [library.canonical(n) for n in args.names] or [
+        name for pack in installed_packs() for name in sorted(pack.entries)
+    ]
+    console = Console(stderr=True)
+    pictures = {}
+    with PortraitStudio() as studio, _progress(console) as bar:
+        for name in bar.track(names, description="pictures"):
+            asset = library.get(name)
+            pictures[asset.display_name] = studio.portrait(
+                asset, width=args.tile, height=args.tile * 3 // 4, azimuth_deg=args.azimuth
+            )
+    print(save_contact_sheet(args.output, pictures, columns=args.columns))
+    return 0
+
+
+def _add(args: argparse.Namespace) -> int:
+    categories = SceneLibrary().categories
+    if args.category not in {category.name for category in categories.values()}:
+        raise UnknownName("category", args.category, (c.name for c in categories.values()))
+    name = args.name or "".join(
+        c if c.isascii() and c.isalnum() else "_" for c in args.model.stem.lower()
+    ).strip("_")
+    asset = import_asset(
+        args.model,
+        name=name,
+        display_name=args.display_name,
+        category=args.category,
+        height_m=args.height,
+        mass_kg=args.mass,
+    )
+    entry = add_to_own_pack(asset, author=args.author, licence=args.licence, source=args.model.name)
+    preview = _preview(asset)
+    size = " × ".join(f"{s:.3g}" for s in entry.size)
+    print(
+        f"{entry.name}: {entry.category}, {size} m, {entry.mass:.3g} kg, "
+        f"{entry.triangles} triangles, {len(asset.collision)} collision pieces\n"
+        f"in {own_pack_folder()}, pictured in {preview.name}"
+    )
+    return 0
+
+
+def _preview(asset: Any) -> Path:
+    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.simulation.portraits import PortraitStudio
+
+    with PortraitStudio() as studio:
+        pictures = {
+            side: studio.portrait(asset, width=400, height=300, azimuth_deg=azimuth)
+            for side, azimuth in (("front", 25.0), ("back", 205.0))
+        }
+    return save_contact_sheet(own_pack_folder() / f"{asset.name}.png", pictures, columns=2)

@@ -1,0 +1,93 @@
+"""`sailenv scene render`: the five views of a scene from a viewpoint, on one sheet."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.scene.catalogue import SUFFIXES
+from sailenv_ros.simulation.simulation import Simulation
+
+__all__ = ["add_arguments", "render_scene"]
+
+STEPS_PER_S = 240
+FLOW_STEPS = 8
+"""Steps between a picture and its past, which flow needs: 1/30 s."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the action takes."""
+    parser.add_argument("scene", metavar="FILE", help="a YAML file, or a scene's name")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    parser.add_argument(
+        "--position", type=float, nargs=3, metavar=("X", "Y", "Z"), help="of the camera [m]"
+    )
+    parser.add_argument(
+        "--look-at", type=float, nargs=3, metavar=("X", "Y", "Z"), help="what it faces [m]"
+    )
+    parser.add_argument(
+        "--time", type=float, default=[0.0], nargs="+", metavar="S", help="simulated times [s]"
+    )
+    parser.add_argument("--views", nargs="+", default=list(FIVE_VIEWS), metavar="VIEW")
+    parser.add_argument("--width", type=int, default=640, metavar="PX")
+    parser.add_argument("--height", type=int, default=480, metavar="PX")
+    parser.add_argument("--fov", type=float, default=60.0, metavar="DEG", help="vertical")
+    parser.add_argument("--columns", type=int, default=3, metavar="N")
+
+
+def render_scene(args: argparse.Namespace) -> int:
+    """Render and save; 0 if all is well.
+
+    The camera stands where the mover is at that time, unless its place is given.
+    """
+    if min(args.time) < 0.0:
+        raise InvalidRequest("time", min(args.time), "0 s or later")
+    scene = Path(args.scene) if Path(args.scene).suffix in SUFFIXES else args.scene
+    pictures: dict[str, Any] = {}
+    with Simulation(scene=scene, mode="lockstep") as simulation:
+        simulation.register_agent(_eye(args))
+        table = simulation.info.categories
+        for time_s in sorted(args.time):
+            frame = _frame_at(simulation, time_s, args.views)
+            label = f"{time_s:g} s " if len(args.time) > 1 else ""
+            pictures.update({label + name: p for name, p in _pictures(frame, table).items()})
+    columns = min(args.columns, len(pictures))
+    print(save_contact_sheet(args.output, pictures, columns=columns))
+    return 0
+
+
+def _eye(args: argparse.Namespace) -> AgentSpec:
+    pose = None
+    if args.position is not None or args.look_at is not None:
+        pose = Pose(tuple(args.position or (0.0, 0.0, 1.5)))
+        if args.look_at is not None:
+            pose = look_at(pose.position_m, args.look_at)
+    intrinsics = CameraIntrinsics(width=args.width, height=args.height, vertical_fov_deg=args.fov)
+    return AgentSpec(
+        name="eye", intrinsics=intrinsics, rate_hz=0.0, following=pose is None, pose=pose
+    )
+
+
+def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
+    """Give the frame of a time; it has a past, so that flow shows what moves."""
+    step = max(FLOW_STEPS, round(time_s * STEPS_PER_S))
+    now = simulation.sim_time_ns * STEPS_PER_S // 10**9
+    simulation.step(max(0, step - FLOW_STEPS - now))
+    simulation.capture("eye", views)
+    simulation.step(FLOW_STEPS)
+    return simulation.capture("eye", views)
+
+
+def _pictures(frame: Frame, table: CategoryTable) -> dict[str, np.ndarray[Any, Any]]:
+    return {name: view_picture(name, values, table=table) for name, values in frame.views.items()}

@@ -1,0 +1,210 @@
+"""The room of a scene file: its size, surfaces, windows and doors.
+
+A room is centred on the world's origin with its floor at z = 0; x runs to the east, y to the
+north. What its surfaces are called is known elsewhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+
+from pydantic import (
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
+    model_validator,
+)
+from pydantic_core import core_schema
+
+from sailenv_ros.scene.fields import LinearColour, Rule, SceneModel
+from sailenv_ros.scene.kinds import Choice, Number, Several, Text
+from sailenv_ros.scene.room_rules import (
+    DOOR_SIZE_M,
+    WALLS,
+    WINDOW_SIZE_M,
+    inside_walls,
+    without_overlaps,
+)
+
+__all__ = [
+    "CurtainSpec",
+    "DoorSpec",
+    "OpeningSpec",
+    "RoomSpec",
+    "SkirtingSpec",
+    "SurfaceSpec",
+    "WallMaterialsSpec",
+    "WallName",
+    "WindowSpec",
+]
+
+WallName: TypeAlias = Literal["north", "east", "south", "west"]
+
+_Seed: TypeAlias = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
+_Extent: TypeAlias = Annotated[float, Number(least=1.0, most=100.0, unit="m")]
+_Opening: TypeAlias = Annotated[float, Number(least=0.3, most=100.0, unit="m")]
+_Along: TypeAlias = Annotated[float, Number(least=-50.0, most=50.0, unit="m")]
+_Wall: TypeAlias = Annotated[WallName, Choice(WALLS)]
+
+
+@dataclass(frozen=True, slots=True)
+class _OrNone:
+    """Lets ``false`` leave something out, and ``true`` take it with its defaults."""
+
+    def check(self, value: object) -> object:
+        """Turn the words for nothing and for the defaults into what the model takes."""
+        if value is True:
+            return {}
+        return None if value is False else value
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_before_validator_function(self.check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {"anyOf": [{"type": "boolean"}, handler(schema)]}
+
+
+class SurfaceSpec(SceneModel):
+    """What a wall, floor or ceiling is made of; a name alone stands for its material."""
+
+    material: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a material")] = Field(
+        default="plaster", description="e.g. plaster, oak_planks, white_tiles, wallpaper_damask"
+    )
+    colour: LinearColour | None = Field(
+        default=None, description="of the paint, wood or tiles, instead of the material's own"
+    )
+    seed: _Seed = Field(default=0, description="others give other grain, clouds and tones")
+    turn: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
+        default=0.0, description="by which it is laid counter-clockwise, e.g. 90 for boards along y"
+    )
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _by_name(cls, value: Any, handler: ModelWrapValidatorHandler[SurfaceSpec]) -> SurfaceSpec:
+        return handler({"material": value} if isinstance(value, str) else value)
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        described = handler.resolve_ref_schema(handler(schema))
+        described["type"] = ["object", "string"]
+        return described
+
+
+class WallMaterialsSpec(SceneModel):
+    """Walls that differ from the others."""
+
+    north: SurfaceSpec | None = Field(default=None, description="the wall towards +y")
+    east: SurfaceSpec | None = Field(default=None, description="the wall towards +x")
+    south: SurfaceSpec | None = Field(default=None, description="the wall towards -y")
+    west: SurfaceSpec | None = Field(default=None, description="the wall towards -x")
+
+
+class SkirtingSpec(SceneModel):
+    """The board along the foot of the walls."""
+
+    height: Annotated[float, Number(least=0.01, most=0.5, unit="m")] = Field(
+        default=0.09, description="[m]"
+    )
+    depth: Annotated[float, Number(least=0.005, most=0.1, unit="m")] = Field(
+        default=0.015, description="how far it stands out from the wall [m]"
+    )
+    colour: LinearColour = Field(default=(0.80, 0.80, 0.78), description="of its paint")
+
+
+class CurtainSpec(SceneModel):
+    """A pair of curtains, drawn aside, on a rod."""
+
+    colour: LinearColour = Field(default=(0.55, 0.50, 0.42), description="of the cloth")
+    drawn: Annotated[float, Number(least=0.0, most=0.95)] = Field(
+        default=0.0,
+        description="how far they are drawn: 0 beside the window, near 1 in front of it",
+    )
+
+
+class _OpeningBase(SceneModel):
+    """What windows and doors have."""
+
+    wall: _Wall = Field(description="north (+y), east (+x), south (-y) or west (-x)")
+    at: _Along = Field(
+        default=0.0,
+        description="its middle along the wall, from the wall's middle, towards +x or +y [m]",
+    )
+
+
+class WindowSpec(_OpeningBase):
+    """A window: frame, casements with glass, sill board."""
+
+    type: Literal["window"]
+    width: _Opening = Field(default=WINDOW_SIZE_M[0], description="of the opening [m]")
+    height: _Opening = Field(default=WINDOW_SIZE_M[1], description="of the opening [m]")
+    sill: Annotated[float, Number(least=0.0, most=50.0, unit="m")] = Field(
+        default=WINDOW_SIZE_M[2], description="height of the opening's lower edge [m]"
+    )
+    casements: Annotated[int, Number(least=1, most=8, whole=True)] | None = Field(
+        default=None, description="how many panes beside each other; by the width if left out"
+    )
+    colour: LinearColour = Field(default=(0.82, 0.82, 0.80), description="of frame and sill")
+    curtains: Annotated[CurtainSpec | None, _OrNone()] = Field(
+        default=None, description="true for plain ones, or their keys; none if left out"
+    )
+
+
+class DoorSpec(_OpeningBase):
+    """A door: frame, leaf and handles."""
+
+    type: Literal["door"]
+    width: _Opening = Field(default=DOOR_SIZE_M[0], description="of the opening [m]")
+    height: _Opening = Field(default=DOOR_SIZE_M[1], description="of the opening [m]")
+    open: Annotated[float, Number(least=0.0, most=170.0, unit="deg")] = Field(
+        default=0.0, description="by which the leaf is turned into the room [deg]"
+    )
+    hinge: Annotated[Literal["left", "right"], Choice(("left", "right"))] = Field(
+        default="left", description="side of the hinges, as seen from inside"
+    )
+    colour: LinearColour = Field(default=(0.78, 0.77, 0.74), description="of leaf and frame")
+
+
+OpeningSpec: TypeAlias = Annotated[WindowSpec | DoorSpec, Field(discriminator="type")]
+
+
+class RoomSpec(SceneModel):
+    """Four walls, floor and ceiling, around the origin."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (inside_walls, without_overlaps)
+
+    size: Annotated[
+        tuple[_Extent, _Extent, _Extent],
+        Several(3, "three numbers [along x, along y, height] in [m]"),
+    ] = Field(description="inner size along x, along y, and height [m]")
+    thickness: Annotated[float, Number(least=0.15, most=1.0, unit="m")] = Field(
+        default=0.2, description="of walls, floor and ceiling, outwards [m]"
+    )
+    walls: SurfaceSpec = Field(default_factory=SurfaceSpec, description="material of the walls")
+    wall_materials: WallMaterialsSpec = Field(
+        default_factory=WallMaterialsSpec, description="walls that differ from the others"
+    )
+    floor: SurfaceSpec = Field(
+        default_factory=lambda: SurfaceSpec(material="oak_planks"), description="its material"
+    )
+    ceiling: Annotated[SurfaceSpec | None, _OrNone()] = Field(
+        default_factory=SurfaceSpec, description="its material; false for a room without one"
+    )
+    skirting: Annotated[SkirtingSpec | None, _OrNone()] = Field(
+        default_factory=SkirtingSpec, description="board along the walls; false for none"
+    )
+    openings: tuple[OpeningSpec, ...] = Field(
+        default=(), max_length=64, description="windows and doors"
+    )
+
+    def surface_of(self, wall: WallName) -> SurfaceSpec:
+        """Give what a wall is made of."""
+        own: SurfaceSpec | None = getattr(self.wall_materials, wall)
+        return self.walls if own is None else own

@@ -1,0 +1,170 @@
+"""The requests that change what a scene holds: objects, lights, surroundings, models.
+
+Part of `SimulationCore`; each method does all of it or raises and leaves everything as it was.
+Values of clients in, ids and nouns out. Knows no thread, no renderer, no agent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any, Literal, TypeAlias
+
+from numpy.typing import ArrayLike
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Light, light_named
+from sailenv_ros.model import Asset
+from sailenv_ros.objects import ObjectState
+from sailenv_ros.scene.entries import free_name, plain_value
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.world.bullet import STEPS_PER_SECOND
+from sailenv_ros.world.world import World
+
+__all__ = ["Entries", "WorldRequests"]
+
+Entries: TypeAlias = Sequence[Mapping[str, Any]]
+"""Objects as a scene file describes them, besides those of the scene."""
+
+_LIGHT_FIELDS = tuple(field.name for field in fields(Light) if field.name != "name")
+
+
+class WorldRequests:
+    """What clients may ask of the present world; `SimulationCore` has the world."""
+
+    _library: SceneLibrary
+    _world: World
+    _seed: int
+
+    # -- objects ---------------------------------------------------------------------------
+
+    def spawn_object(
+        self,
+        asset: str,
+        *,
+        name: str | None = None,
+        pose: Pose,
+        scale: ArrayLike = (1.0, 1.0, 1.0),
+        static: bool = False,
+        category: str | None = None,
+        behaviours: Sequence[Mapping[str, Any]] = (),
+        mass_kg: float | None = None,
+    ) -> int:
+        """Put one more object into the scene; give its instance id, the value of its pixels."""
+        _require_pose(pose)
+        world = self._world
+        catalogue_name = self._library.canonical_asset(asset)
+        taken = (drawn.instance.name for drawn in world.contents.instances)
+        entry: dict[str, Any] = {
+            "name": free_name(catalogue_name, taken) if name is None else name,
+            "asset": asset,
+            "position": pose.position_m,
+            "orientation": pose.orientation_xyzw,
+            "scale": scale,
+            "static": static,
+            "behaviours": behaviours,
+        }
+        given = {"category": category, "mass": mass_kg}
+        entry.update({key: value for key, value in given.items() if value is not None})
+        placement = self._library.placement(
+            entry, world, seed=self._seed, start_s=world.step_count / STEPS_PER_SECOND
+        )
+        instance_id = world.spawn(placement)
+        self._announce()
+        return instance_id
+
+    def despawn_object(self, obj: int | str) -> None:
+        """Take an object, named by id or name, out of the scene; its id is not used again."""
+        self._world.despawn(self._world.find(obj))
+        self._announce()
+
+    def move_object(self, obj: int | str, pose: Pose, *, teleport: bool = False) -> None:
+        """Move an object and stop it; that is motion, which flow shows, unless it teleports."""
+        _require_pose(pose)
+        self._world.put_body(self._world.find(obj), pose, teleport=bool(teleport))
+
+    def get_object(self, obj: int | str) -> ObjectState:
+        """Say what and where an object is."""
+        return self._world.object_state(self._world.find(obj))
+
+    def add_model(self, asset: Asset, *, rename: bool) -> str:
+        """Put an imported model into the catalogue; give the name that it is spawned by.
+
+        Parameters
+        ----------
+        rename : bool
+            True appends a number where the name is in use; False refuses it then.
+        """
+        self._world.categories.named(asset.category)
+        name = self._library.add_upload(asset, rename=rename)
+        self._announce()
+        return name
+
+    # -- lights and surroundings -----------------------------------------------------------
+
+    def lights(self) -> tuple[Light, ...]:
+        """Give the lights as they are now."""
+        return self._world.contents.lights
+
+    def set_light(self, name: str, **changes: Any) -> Light:
+        """Change attributes of a light, by their names in `Light`; give the light as it is then."""
+        lights = self.lights()
+        present = light_named(name, lights)
+        for key in changes:
+            if key not in _LIGHT_FIELDS:
+                raise UnknownName("attribute of a light", key, _LIGHT_FIELDS)
+        changed = replace(present, **changes)
+        if changes:
+            self._world.set_lights([changed if light.name == name else light for light in lights])
+            self._announce()
+        return changed
+
+    def set_ambient_light(self, colour: ArrayLike) -> None:
+        """Set the light that arrives from everywhere (linear radiance)."""
+        environment: Any = self._world.contents.environment
+        self._world.set_environment(replace(environment, ambient=colour))
+        self._announce()
+
+    def set_background(
+        self, kind: Literal["sky", "colour"], colour: ArrayLike | None = None
+    ) -> None:
+        """Show the sky or a linear colour where nothing is hit; no colour keeps the last one."""
+        environment: Any = self._world.contents.environment
+        chosen = environment.background_colour if colour is None else colour
+        changed = replace(environment, background=kind, background_colour=chosen)
+        self._world.set_environment(changed)
+        self._announce()
+
+    # -- scenarios -------------------------------------------------------------------------
+
+    def load_scenario(self, scenario: str | Mapping[str, Any]) -> tuple[int, ...]:
+        """Begin a scene with more objects than its own; give their instance ids, in order."""
+        wanted: Mapping[str, Any] = {"scene": scenario} if isinstance(scenario, str) else scenario
+        if not isinstance(wanted, Mapping):
+            raise InvalidRequest("scenario", wanted, "a mapping with scene and objects")
+        for key in wanted:
+            if key not in ("scene", "objects"):
+                raise UnknownName("key of a scenario", str(key), ("scene", "objects"))
+        scene = wanted.get("scene", self._world.scene)
+        if not isinstance(scene, str):
+            raise InvalidRequest("scene", scene, "the name of a scene")
+        more = plain_value(wanted.get("objects", []))
+        if not isinstance(more, list):
+            raise InvalidRequest("objects", more, "a list of objects")
+        self._begin(scene, self._seed, as_registered=False, more=more)
+        ids = [drawn.instance.id for drawn in self._world.contents.instances]
+        return tuple(ids[len(ids) - len(more) :])
+
+    # -- of the simulation -----------------------------------------------------------------
+
+    def _announce(self) -> None:
+        raise NotImplementedError
+
+    def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
+        raise NotImplementedError
+
+
+def _require_pose(pose: object) -> None:
+    if not isinstance(pose, Pose):
+        raise InvalidRequest("pose", pose, "a sailenv_ros.geometry.Pose")

@@ -1,0 +1,129 @@
+"""The surfaces: seamless, seeded, at a stated size, with the colour that was asked for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sailenv_ros.assets.surfaces import Surface, surface, surface_names
+from sailenv_ros.assets.surfaces.catalogue import _made
+from sailenv_ros.assets.surfaces.maps import SurfaceMaps, surface_of
+from sailenv_ros.errors import UnknownName
+
+NAMES = surface_names()
+
+
+def _textures(made: Surface) -> list[NDArray[np.uint8]]:
+    material = made.material
+    textures = [
+        material.base_colour_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+    ]
+    return [texture for texture in textures if texture is not None]
+
+
+def _linear(texture: NDArray[np.uint8]) -> NDArray[np.float64]:
+    encoded = texture[..., :3] / 255.0
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def test_the_kinds_that_rooms_need_are_there() -> None:
+    assert {"plaster", "roughcast", "concrete", "oak_planks", "walnut_planks"} <= set(NAMES)
+    assert {"white_tiles", "metro_tiles", "stone_tiles", "carpet", "oak_parquet"} <= set(NAMES)
+    assert {"wallpaper_stripes", "wallpaper_damask"} <= set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_surface_has_three_read_only_textures(name: str) -> None:
+    textures = _textures(surface(name))
+    assert [texture.shape for texture in textures] == [(1024, 1024, 4)] * 3
+    assert [texture.dtype for texture in textures] == [np.uint8] * 3
+    assert not any(texture.flags.writeable for texture in textures)
+    assert all((texture[..., 3] == 255).all() for texture in textures)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_opposite_edges_continue(name: str) -> None:
+    """The step across a seam is as one between neighbours inside (at a joint, if it is one)."""
+    for texture in _textures(surface(name)):
+        for axis in (0, 1):
+            values = texture[..., :3].astype(np.int16)
+            steps = np.abs(np.diff(values, axis=axis)).mean(axis=(1 - axis, 2))
+            ends = np.take(values, 0, axis=axis) - np.take(values, -1, axis=axis)
+            seam = np.abs(ends).mean()
+            assert seam <= 1.1 * steps.max()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_name_and_seed_decide_every_byte(name: str) -> None:
+    first = _made.__wrapped__(name, (0.4, 0.3, 0.2), 7)
+    again = _made.__wrapped__(name, (0.4, 0.3, 0.2), 7)
+    other = _made.__wrapped__(name, (0.4, 0.3, 0.2), 8)
+    for one, two in zip(_textures(first), _textures(again), strict=True):
+        np.testing.assert_array_equal(one, two)
+    assert not np.array_equal(_textures(first)[0], _textures(other)[0])
+
+
+def test_a_surface_is_made_once() -> None:
+    """Models are compared by identity, so the GPU holds each texture once."""
+    assert surface("plaster") is surface("plaster")
+    assert surface("plaster", colour=(0.1, 0.2, 0.3)) is not surface("plaster")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_average_is_near_the_colour_asked_for(name: str) -> None:
+    """Joints, pores and figures change it by a fifth at most, and hardly its hue."""
+    colour = np.array([0.42, 0.30, 0.24])
+    made = surface(name, colour=(0.42, 0.30, 0.24))
+    average = _linear(_textures(made)[0]).mean(axis=(0, 1))
+    np.testing.assert_allclose(average, colour, rtol=0.25)
+    np.testing.assert_allclose(average / average.sum(), colour / colour.sum(), atol=0.02)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_normals_are_of_unit_length_and_level_on_average(name: str) -> None:
+    normals = _textures(surface(name))[2][..., :3].astype(np.float64) - 128.0
+    assert np.abs(np.linalg.norm(normals, axis=-1) / 127.0 - 1.0).max() < 0.02
+    assert np.abs(normals[..., :2].mean(axis=(0, 1))).max() < 1.5
+    assert normals[..., 2].min() > 0
+
+
+def test_normals_lean_away_from_what_rises() -> None:
+    """A wave along x and along y: height falls where the normal leans to +x, +y (up)."""
+    turn = 2.0 * np.pi * (np.arange(1024) + 0.5) / 1024
+    height = 0.01 * np.sin(turn)
+    flat = np.ones((1024, 1024), np.float32)
+    for axis, channel in ((1, 0), (0, 1)):
+        shape = (1, 1024) if axis == 1 else (1024, 1)
+        maps = SurfaceMaps(
+            albedo=np.repeat(flat[..., None], 3, axis=2),
+            height_m=(height.reshape(shape) * flat).astype(np.float32),
+            roughness=flat,
+            tile_m=(2.0, 2.0),
+        )
+        normals = _textures(surface_of("wave", maps))[2][..., channel].astype(float) - 128.0
+        # Rows run downwards: y grows from the last row to the first.
+        sense = 1.0 if axis == 1 else -1.0
+        slope = sense * 0.01 * np.pi * np.cos(turn)
+        expected = -127.0 * slope / np.sqrt(1.0 + slope**2)
+        np.testing.assert_allclose(normals.mean(axis=1 - axis), expected, atol=0.6)
+
+
+def test_texture_coordinates_are_metres_over_the_tile() -> None:
+    made = surface("oak_planks")
+    assert made.tile_m == (2.4, 1.2)
+    np.testing.assert_allclose(made.uvs([[2.4, 0.0], [0.0, 0.6]]), [[1, 0], [0, 0.5]])
+
+
+def test_herringbone_is_laid_at_45_degrees() -> None:
+    """Along the floor's x axis one moves along the diagonal of the blocks."""
+    made = surface("oak_parquet")
+    half = np.sqrt(0.5) / made.tile_m[0]
+    np.testing.assert_allclose(made.uvs([[1.0, 0.0]]), [[half, -half]], rtol=1e-6)
+
+
+def test_an_unknown_name_is_answered_with_the_nearest() -> None:
+    with pytest.raises(UnknownName, match="oak_planks"):
+        surface("oak_plank")

@@ -1,0 +1,78 @@
+"""Compounds of collision shapes: each lies where it should, hulls and turned boxes too."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.model import BoxShape, CollisionShape, ConvexShape, TriangleShape
+from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.collision import build_collision
+
+SLAB = BoxShape(half_extents_m=(2.0, 2.0, 0.1), centre_m=(0.0, 0.0, -0.1))
+PYRAMID = ConvexShape(
+    points=np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [0, 0, 1]], float)
+)
+EIGHTH = (0.0, 0.0, math.sin(math.radians(22.5)), math.cos(math.radians(22.5)))
+
+
+def _hits(
+    shapes: list[CollisionShape],
+    rays: list[tuple[float, float]],
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> list[float]:
+    """Heights at which rays straight down meet a body of the shapes; NaN for none."""
+    client = BulletClient()
+    try:
+        shape = build_collision(
+            client, shapes, scale=scale, centre_of_mass_m=(0.0, 0.0, 0.0), name="body"
+        )
+        client.createMultiBody(baseMass=0.0, baseCollisionShapeIndex=shape)
+        found = [client.rayTest((x, y, 9.0), (x, y, -9.0))[0] for x, y in rays]
+        return [hit[3][2] if hit[0] >= 0 else math.nan for hit in found]
+    finally:
+        client.close()
+
+
+def test_boxes_in_a_compound_lie_where_they_should() -> None:
+    step = BoxShape(half_extents_m=(0.5, 0.5, 0.25), centre_m=(1.0, 0.0, 0.25))
+    assert _hits([SLAB, step], [(-1.0, 0.0), (1.0, 0.0)]) == pytest.approx([0.0, 0.5], abs=1e-6)
+
+
+@pytest.mark.parametrize("alone", [True, False])
+def test_a_turned_box_reaches_as_far_as_its_diagonal(alone: bool) -> None:
+    """A square of 2 m turned by 45 degrees has its corner at 1.41 m and its side at 0.71 m."""
+    box = BoxShape(half_extents_m=(1.0, 1.0, 0.5), orientation_xyzw=EIGHTH)
+    shapes: list[CollisionShape] = [box] if alone else [SLAB, box]
+    reached, missed = _hits(shapes, [(1.35, 0.0), (0.9, 0.9)])
+    assert reached == pytest.approx(0.5, abs=0.01)
+    assert np.isnan(missed) if alone else missed == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_turned_box_is_scaled_equally_or_not_at_all() -> None:
+    box = BoxShape(half_extents_m=(1.0, 1.0, 0.5), orientation_xyzw=EIGHTH)
+    with pytest.raises(InvalidRequest, match="a turned box"):
+        _hits([box], [], scale=(1.0, 2.0, 1.0))
+
+
+def test_hulls_in_a_compound_have_their_slopes() -> None:
+    """A pyramid of 1 m on a slab: half way up at half its base, to the collision margin."""
+    heights = _hits([SLAB, PYRAMID], [(0.0, 0.0), (0.5, 0.0), (1.5, 1.5)])
+    assert heights == pytest.approx([1.0, 0.5, 0.0], abs=0.06)
+
+
+def test_two_hulls_in_a_compound_are_scaled() -> None:
+    far = ConvexShape(points=np.add(PYRAMID.points, (5.0, 0.0, 0.0)))
+    heights = _hits([PYRAMID, far], [(0.0, 0.0), (10.0, 0.0)], scale=(2.0, 1.0, 3.0))
+    assert heights == pytest.approx([3.0, 3.0], abs=0.15)
+
+
+def test_hollow_geometry_stands_alone() -> None:
+    hollow = TriangleShape(
+        positions=PYRAMID.points, triangles=np.array([[0, 1, 4]], dtype=np.int32)
+    )
+    with pytest.raises(InvalidRequest, match="hollow geometry"):
+        _hits([SLAB, hollow], [])
