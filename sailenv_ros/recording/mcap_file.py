@@ -68,12 +68,21 @@ class McapFile:
         except OSError as problem:
             raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
         self._end = 0
-        self._append((MAGIC, _bytes(Header(profile=PROFILE, library="sailenv_ros"))))
+        try:
+            self._append((MAGIC, _bytes(Header(profile=PROFILE, library="sailenv_ros"))))
+        except RecordingError:
+            self.abandon()
+            raise
 
     @property
     def size(self) -> int:
         """Bytes written so far."""
         return self._end
+
+    @property
+    def finished(self) -> bool:
+        """True once the file was closed."""
+        return self._file.closed
 
     @property
     def message_count(self) -> int:

@@ -227,9 +227,15 @@ class RecordingWriter:
         self._channels.clear()
         self._schemas.clear()
         self._began_ns = log_ns
-        self._file = McapFile(self._path(len(self._files)))
+        try:
+            self._file = McapFile(self._path(len(self._files)))
+        except RecordingError:
+            self._failed = True
+            raise
 
     def _finish_file(self) -> None:
+        if self._file.finished:
+            return  # and the next one could not be begun
         topics = {number: name for name, number in self._channels.items()}
         try:
             self._file.add_metadata(self._embedded())

@@ -177,6 +177,28 @@ def test_a_full_disk_ends_the_recording_readably(tmp_path: Path) -> None:
     assert statistics.lost > 0
 
 
+def test_a_file_that_cannot_be_begun_ends_the_recording_readably(tmp_path: Path) -> None:
+    """When the next of split files is in the way of something, those before it are a whole bag."""
+    writer = RecordingWriter(tmp_path / "bag", RecordingOptions(split_s=0.1))
+    (tmp_path / "bag/bag_1.mcap").mkdir()
+    recorder = FrameRecorder(writer)
+    recorder.write_info(noise_info())
+    with pytest.raises(RecordingError, match=r"bag_1\.mcap cannot be written: File exists"):
+        for number in range(1, 10):
+            recorder.write_frame(noise_frame(number), 10.0)
+    writer.close()
+    with Reader(tmp_path / "bag") as reader:
+        assert sum(1 for _ in reader.messages()) == reader.message_count
+        assert reader.message_count == writer.statistics.messages > 8
+
+
+def test_a_file_without_room_for_its_head_is_not_left_behind(tmp_path: Path) -> None:
+    """Where nothing at all can be written, there is an error and no stump of a file."""
+    with file_size_limit(10), pytest.raises(RecordingError, match="disk is full"):
+        RecordingWriter(tmp_path / "bag")
+    assert list((tmp_path / "bag").iterdir()) == []
+
+
 def test_a_topic_keeps_its_type(tmp_path: Path) -> None:
     """The same topic twice is one; with another type it is refused."""
     other = RecordedTopic(name="/note", type="std_msgs/msg/Bool", schema="bool data\n")
