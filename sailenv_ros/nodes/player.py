@@ -32,7 +32,7 @@ from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.schemas import message_class
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
 
-__all__ = ["Player", "main"]
+__all__ = ["PARAMETERS", "Player", "main"]
 
 NODE_NAME = "player"
 LOOK_INTERVAL_S = 0.05
@@ -43,7 +43,7 @@ ACKNOWLEDGE_S = 2.0
 
 _CLOCK_NAME = "/clock"
 
-_PARAMETERS = {
+PARAMETERS = {
     "input": Parameter("", "The bag's folder, or one MCAP file."),
     "topics": Parameter([""], "Names of the topics that are played; empty: all."),
     "rate": Parameter(1.0, "Recorded seconds per second.", 1e-3, 1000.0),
@@ -53,6 +53,7 @@ _PARAMETERS = {
     "clock": Parameter(True, "True: publish /clock."),
     "delay_s": Parameter(0.5, "Time for subscribers to be found before it begins [s].", 0.0, 60.0),
 }
+"""Every parameter of the node by its name."""
 
 
 class Player:
@@ -176,7 +177,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _play(node: Node, stop: StopRequest) -> int:
-    values = declare_table(node, _PARAMETERS)
+    values = declare_table(node, PARAMETERS)
     if not values["input"]:
         raise InvalidRequest("parameter input", "", "a bag's folder or an MCAP file")
     with RecordingReader(values["input"]) as reader:

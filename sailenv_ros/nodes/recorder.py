@@ -33,7 +33,7 @@ from sailenv_ros.recording.tally import FrameTally
 from sailenv_ros.recording.topics import OfferedQos, RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
 
-__all__ = ["Recorder", "main"]
+__all__ = ["PARAMETERS", "Recorder", "main"]
 
 NODE_NAME = "recorder"
 
@@ -45,7 +45,7 @@ DEPTH = 30
 
 _log = logging.getLogger(f"sailenv_ros.nodes.{NODE_NAME}")  # __name__ may be __main__
 
-_PARAMETERS = {
+PARAMETERS = {
     "output": Parameter("", "Folder of the bag, which must not exist; empty: by the time."),
     "agents": Parameter([""], "Names of the agents; empty: all, also those that come later."),
     "views": Parameter([""], "Views that are recorded, and so rendered; empty: the five."),
@@ -61,6 +61,7 @@ _PARAMETERS = {
     "progress": Parameter(True, "True: log a line of progress every few seconds."),
     "progress_interval_s": Parameter(2.0, "Time between two such lines [s].", 0.1, 3600.0),
 }  # fmt: skip
+"""Every parameter of the node by its name."""
 
 
 class Recorder:
@@ -186,7 +187,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _record(node: Node, stop: StopRequest) -> int:
-    values = declare_table(node, _PARAMETERS)
+    values = declare_table(node, PARAMETERS)
     options = RecordingOptions(
         compression=values["compression"],
         split_bytes=values["split_bytes"],

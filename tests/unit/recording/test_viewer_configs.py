@@ -1,4 +1,4 @@
-"""The layouts for Foxglove and RViz name topics that there are."""
+"""What is shipped in config/ for recordings: layouts with topics that exist, all parameters."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ import re
 import pytest
 import yaml
 
+from sailenv_ros.nodes.parameters import Parameter
+from sailenv_ros.nodes.player import PARAMETERS as PLAYER
+from sailenv_ros.nodes.recorder import PARAMETERS as RECORDER
 from sailenv_ros.recording.channels import AGENT_TOPICS
 from sailenv_ros.resources import resource_path
 
@@ -42,3 +45,11 @@ def test_the_rviz_configuration_fits_our_topics() -> None:
     assert topics <= KNOWN
     assert len(topics) == 5
     assert manager["Global Options"]["Fixed Frame"] == "world"
+
+
+@pytest.mark.parametrize(("file", "table"), [("recorder.yaml", RECORDER), ("player.yaml", PLAYER)])
+def test_the_parameter_files_have_every_default(file: str, table: dict[str, Parameter]) -> None:
+    """The shipped files name every parameter of their node, with the value that it has."""
+    shipped = yaml.safe_load((resource_path("config") / file).read_text())
+    defaults = {name: entry.default for name, entry in table.items()}
+    assert shipped == {"/**": {"ros__parameters": defaults}}

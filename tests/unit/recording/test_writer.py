@@ -183,7 +183,9 @@ def test_a_file_that_cannot_be_begun_ends_the_recording_readably(tmp_path: Path)
     (tmp_path / "bag/bag_1.mcap").mkdir()
     recorder = FrameRecorder(writer)
     recorder.write_info(noise_info())
-    with pytest.raises(RecordingError, match=r"bag_1\.mcap cannot be written: File exists"):
+    with pytest.raises(  # noqa: PT012
+        RecordingError, match=r"bag_1\.mcap cannot be written: File exists"
+    ):
         for number in range(1, 10):
             recorder.write_frame(noise_frame(number), 10.0)
     writer.close()
