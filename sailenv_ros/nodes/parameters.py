@@ -44,7 +44,7 @@ class SimParameters:
         The agent that is there from the start.
     """
 
-    scene: str
+    scene: str | None
     mode: TimeMode
     real_time_factor: float
     seed: int
@@ -83,8 +83,9 @@ LIVE = ("real_time_factor", "agent.rate_hz")
 
 _PARAMETERS: dict[str, _Parameter] = {
     "scene": _Parameter(
-        "optical",
-        "Name of the first scene, or the path of a scene file; later: the service change_scene.",
+        "",
+        "Name of the first scene, or the path of a scene file; later: the service change_scene. "
+        "Empty: room_01, or optical where the furniture has not been built.",
     ),
     "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
     "mode": _Parameter(
@@ -140,7 +141,7 @@ def declare_parameters(node: Node) -> SimParameters:
     """
     values = declare_table(node, _PARAMETERS)
     return SimParameters(
-        scene=values["scene"],
+        scene=values["scene"] or None,
         mode=cast(TimeMode, values["mode"]),
         real_time_factor=values["real_time_factor"],
         seed=values["seed"],
