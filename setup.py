@@ -12,6 +12,8 @@ PACKAGE = "sailenv_ros"
 REQUIREMENTS = [
     "coacd>=1.0.7",
     "glcontext>=3.0",
+    # Compresses what clients of the gateway want gzipped, many times faster than zlib.
+    "isal>=1.6",
     "mapbox-earcut>=1.0.3",
     # Has no final release yet; compiled where it is installed, in some seconds.
     "meshoptimizer>=0.2.30a0",
@@ -53,6 +55,8 @@ DEV = [
     "pytest-timeout",
     "pytest-xdist",
     "ruff",
+    # The original's client, which the gateway's tests drive; it declares no dependencies.
+    "sailenv==0.5b0",
     "types-jsonschema",
     "types-PyYAML",
 ]

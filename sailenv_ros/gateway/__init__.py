@@ -2,3 +2,7 @@
 
 Bytes in, requests to `simulation/` and bytes out. Knows no ROS.
 """
+
+from sailenv_ros.gateway.server import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
+
+__all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "GatewayServer"]
