@@ -20,6 +20,7 @@ __all__ = ["COMMANDS", "main"]
 COMMANDS = {
     "assets": "build the furniture, list and picture objects, add one's own",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "run": "start the simulator, with or without ROS",
     "scene": "check, render, list and begin scenes, export the schema of the format",
 }
 """What each subcommand does, by its name, which is its module's too."""

@@ -84,7 +84,17 @@ class GatewayServer:
             target=self._run, args=(started,), name="sailenv-gateway", daemon=True
         )
         self._thread.start()
-        self._port = wait_for(started, "the gateway to listen", _START_S)
+        try:
+            self._port = wait_for(started, "the gateway to listen", _START_S)
+        except BaseException:
+            self.close()
+            raise
+        _log.info(
+            "clients of the original SAILenv (protocol %s) connect to %s, port %d",
+            protocol,
+            host,
+            self._port,
+        )
 
     @property
     def host(self) -> str:
@@ -138,7 +148,7 @@ class GatewayServer:
         except OSError as problem:
             where = f"{self._host}:{self._port}"
             accepted = f"one that can be listened on ({problem.strerror or problem})"
-            raise InvalidRequest("address of the gateway", where, accepted) from None
+            raise InvalidRequest("address of the gateway", where, accepted) from problem
         started.set_result(server.sockets[0].getsockname()[1])
         await self._stop.wait()
         server.close()
