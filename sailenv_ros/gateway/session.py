@@ -11,12 +11,13 @@ from typing import Any
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import NameTaken, ProtocolError, UnknownName
+from sailenv_ros.errors import NameTaken, ProtocolError
 from sailenv_ros.frame import Frame
 from sailenv_ros.gateway.codec import Message, pack_floats, pack_ints, pack_string, pack_strings
 from sailenv_ros.gateway.light_answers import LightAnswers
 from sailenv_ros.gateway.object_answers import ObjectAnswers
 from sailenv_ros.gateway.payloads import packed_frame, views_of_flags
+from sailenv_ros.gateway.scene_names import scene_of_wire, wire_scenes
 from sailenv_ros.gateway.steps import Answer, Ask, Step, Work, in_words
 from sailenv_ros.gateway.unity import (
     pose_from_unity,
@@ -26,12 +27,10 @@ from sailenv_ros.gateway.unity import (
 )
 from sailenv_ros.scene_info import SceneInfo
 
-__all__ = ["Session", "scene_of_wire", "wire_scenes"]
+__all__ = ["AGENT_PREFIX", "Session"]
 
 AGENT_PREFIX = "client_"
 """Begins the names of the agents that clients of the gateway are."""
-
-_SCENE_SUFFIX = "/scene"
 
 Vector3 = tuple[float, float, float]
 
@@ -165,22 +164,3 @@ class Session(LightAnswers, ObjectAnswers):
 
     def _toggled(self) -> Generator[Step, Any, None]:
         yield Ask("toggle_follow", (self.agent,))
-
-
-def wire_scenes(info: SceneInfo) -> list[str]:
-    """Give the scenes' names as clients know them: ``room_01/scene``."""
-    return [f"{name}{_SCENE_SUFFIX}" for name in info.scenes]
-
-
-def scene_of_wire(name: str, info: SceneInfo) -> str:
-    """Give our name of a scene; a client may leave the ``/scene`` out.
-
-    Raises
-    ------
-    UnknownName
-        If there is none, with the names that clients know.
-    """
-    ours = name.removesuffix(_SCENE_SUFFIX)
-    if ours not in info.scenes:
-        raise UnknownName("scene", name, wire_scenes(info))
-    return ours
