@@ -112,19 +112,19 @@ class Connection:
 
     async def _read_on(self) -> bool:
         """Read what comes; False if the peer has gone in good order."""
+        if self._began_s is None and not self._messages.is_idle:
+            self._began_s = asyncio.get_running_loop().time()
         data = await _within(self._reader.read(CHUNK_BYTES), *self._patience())
         if not data:
             if not self._messages.is_idle:
                 _log.info("%s went away in the middle of a command", self.peer)
             return False
-        if self._began_s is None:
-            self._began_s = asyncio.get_running_loop().time()
         self._messages.feed(data)
         self._admit(self, None)
         return True
 
     def _patience(self) -> tuple[str, float]:
-        """Say what is waited for and how much longer [s]."""
+        """Say what is waited for and how much longer [s]; a command counts from its first byte."""
         if self._began_s is None:
             return f"the next command of {self.peer}", self._limits.idle_s
         limit_s = self._limits.command_s if self._greeted else self._limits.hello_s
