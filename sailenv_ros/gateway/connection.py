@@ -107,8 +107,8 @@ class Connection:
             self._greeted, self._began_s = True, None
             self._admit(self, message)
             pieces = await self._carried_out(self._session.answer(message))
-            self._writer.writelines(pieces)
-            await _within(self._writer.drain(), f"{self.peer} to take an answer", self._write_s)
+            what = f"{self.peer} to take an answer"
+            await _within(self._sent(pieces), what, self._limits.write_s)
 
     async def _read_on(self) -> bool:
         """Read what comes; False if the peer has gone in good order."""
@@ -132,9 +132,12 @@ class Connection:
         what = "rest of a command" if self._greeted else "registration"
         return f"the {what} of {self.peer}", max(0.001, limit_s - spent_s)
 
-    @property
-    def _write_s(self) -> float:
-        return self._limits.write_s
+    async def _sent(self, pieces: Sequence[bytes]) -> None:
+        # Bit by bit: what the system does not take at once is copied, which a frame is too big for.
+        for piece in _joined_if_small(pieces):
+            for start in range(0, len(piece), CHUNK_BYTES):
+                self._writer.write(memoryview(piece)[start : start + CHUNK_BYTES])
+                await self._writer.drain()
 
     async def _carried_out(self, answer: Answer) -> Sequence[bytes]:
         """Drive an answer to its end."""
@@ -164,6 +167,11 @@ class Connection:
         if self._session.agent:
             with contextlib.suppress(SailenvError):  # the simulation has ended, and with it all
                 self._simulation.request("delete_agent", self._session.agent)
+
+
+def _joined_if_small(pieces: Sequence[bytes]) -> Sequence[bytes]:
+    """Make one piece of an answer of many small ones, each of which would be a packet."""
+    return [b"".join(pieces)] if sum(map(len, pieces)) <= CHUNK_BYTES else pieces
 
 
 async def _within(awaitable: Awaitable[T], what: str, timeout_s: float) -> T:
