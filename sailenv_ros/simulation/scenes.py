@@ -83,6 +83,11 @@ class SceneLibrary:
         """Names of the assets."""
         return self._assets.names
 
+    @property
+    def spawnable_display_names(self) -> tuple[str, ...]:
+        """Names of the assets as people write them, in the same order."""
+        return tuple(self._assets.display_names.values())
+
     @cached_property
     def categories(self) -> CategoryTable:
         """The fixed table, and what the packs add to it."""
