@@ -14,7 +14,7 @@ from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.behaviours import behaviour_faults
+from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.model import Asset
@@ -78,6 +78,11 @@ class SceneLibrary:
             object_faults=ObjectFit(self._assets),
             surfaces=surface_names(),
         )
+
+    @property
+    def _knowledge_of_strangers(self) -> SceneKnowledge:
+        """What requests may refer to: they cannot have code imported, as files can."""
+        return replace(self.knowledge, behaviour_faults=known_behaviour_faults)
 
     def load(self, scene: str | Path) -> SceneSpec:
         """Read a scene by its name or file; every fault at once.
@@ -179,7 +184,8 @@ class SceneLibrary:
             If it cannot be placed.
         """
         names = tuple(category.name for category in world.categories.values())
-        spec = checked_object(entry, replace(self.knowledge, categories=names))
+        known = replace(self._knowledge_of_strangers, categories=names)
+        spec = checked_object(entry, known)
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -207,7 +213,7 @@ class SceneLibrary:
                 taken.add(str(entry["name"]))
             named.append(entry)
         own = tuple(category.name for category in spec.categories)
-        known = self.knowledge
+        known = self._knowledge_of_strangers
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
 
 

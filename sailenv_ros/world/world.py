@@ -18,7 +18,7 @@ from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
-from sailenv_ros.world.bodies import Body, Placement
+from sailenv_ros.world.bodies import Body, Confines, Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.mover import Mover
 
@@ -40,6 +40,12 @@ class World:
         Get instance ids 1, 2, 3 … in this order.
     movers : sequence of Mover
         At least one.
+
+    Attributes
+    ----------
+    confines : callable
+        ``confines(agent, distance_m)`` gives the (N, 4) planes of an agent's view; none at all
+        unless whoever knows the agents has set it.
     """
 
     def __init__(
@@ -70,6 +76,7 @@ class World:
         self._last_history = 0
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
+        self.confines: Confines = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
             for placement in placements:
@@ -97,7 +104,7 @@ class World:
         for _ in range(count):
             time_s = self._step / STEPS_PER_SECOND
             for body in active:
-                body.act(time_s)
+                body.act(time_s, self.confines)
             self._client.stepSimulation()
             self._step += 1
         if count:
@@ -128,7 +135,7 @@ class World:
     @property
     def moving_ids(self) -> frozenset[int]:
         """Ids of the instances that a behaviour moves."""
-        return frozenset(id_ for id_, body in self._bodies.items() if body.placement.behaviours)
+        return frozenset(id_ for id_, body in self._bodies.items() if body.behaviours)
 
     def snapshot(self) -> WorldSnapshot:
         """Copy the poses; the same object until something changes."""
