@@ -50,6 +50,13 @@ class BehaviourParameters(BaseModel):
         default=0.0, description="time after the object's appearance at which it begins [s]"
     )
 
+    def told(self) -> dict[str, Any]:
+        """Give the parameters as a scene file would write them, defaults too."""
+        dumped = self.model_dump(exclude_none=True)
+        if not self.start:
+            del dumped["start"]
+        return dumped
+
     @property
     def duration_s(self) -> float | None:
         """Time from its beginning to its end [s]; None if it goes on for ever."""

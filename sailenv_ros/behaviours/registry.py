@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -137,7 +138,8 @@ def _load_users(type_: str) -> str:
             f"{type_!r}: {module_name!r} has no behaviour {name!r}; "
             f"it has: {', '.join(kinds) or 'none'}"
         )
-    _users[type_] = kind
+    # Under the name that scene files and answers have for it.
+    _users[type_] = replace(kind, type=type_)
     return ""
 
 

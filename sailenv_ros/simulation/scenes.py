@@ -94,8 +94,7 @@ class SceneLibrary:
         SceneError
             If its file has faults.
         """
-        path = self._files.get(str(scene)) or self._catalogue.path(scene)
-        return load_scene(path, knowledge=self.knowledge)
+        return load_scene(self._path(scene), knowledge=self.knowledge)
 
     def build(
         self,
@@ -121,7 +120,7 @@ class SceneLibrary:
         )
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
-            self._files[spec.name] = self._catalogue.path(scene)
+            self._files[spec.name] = self._path(scene)
         return world
 
     def canonical_asset(self, name: str) -> str:
@@ -198,6 +197,9 @@ class SceneLibrary:
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Give the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
+
+    def _path(self, scene: str | Path) -> Path:
+        return self._files.get(str(scene)) or self._catalogue.path(scene)
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec

@@ -185,7 +185,7 @@ class Body:
             linear_velocity=_three(linear),
             angular_velocity=_three(angular),
             behaviours=tuple(
-                {"type": running.kind.type, **running.parameters.model_dump()}
+                {"type": running.kind.type, **running.parameters.told()}
                 for running in self._behaviours
             ),
             sim_time_ns=sim_time_ns,
