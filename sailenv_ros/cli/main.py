@@ -18,6 +18,7 @@ from sailenv_ros.errors import SailenvError
 __all__ = ["COMMANDS", "main"]
 
 COMMANDS = {
+    "behaviours": "list how objects can move of themselves, with every parameter",
     "assets": "build the furniture, list and picture objects, add one's own",
     "bag": "say what a recording holds, restore a damaged one",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
