@@ -15,7 +15,14 @@ from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownNa
 from sailenv_ros.resources import resource_path
 from sailenv_ros.scene.catalogue import SUFFIXES, SceneCatalogue
 from sailenv_ros.scene.loader import load_scene
-from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, schema_text, write_schema
+from sailenv_ros.scene.reference import write_reference
+from sailenv_ros.scene.schema import (
+    SCHEMA_FILE,
+    is_stale,
+    scene_schema,
+    schema_text,
+    write_schema,
+)
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.rehearsal import obstructions, overlaps, shifts
@@ -167,4 +174,8 @@ def _schema(output: Path | None, *, check: bool) -> int:
         print(f"{path}: cannot be written: {problem.strerror}")
         return 1
     print(path)
+    page = path.parents[1] / "docs" / "scene_format.md"
+    if output is None and page.is_file():  # a checkout; an installed package has no docs
+        write_reference(page, scene_schema(behaviours))
+        print(page)
     return 0

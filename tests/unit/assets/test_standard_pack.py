@@ -177,7 +177,8 @@ def test_a_failed_build_leaves_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     [
         "version: 2\ntitle: a\nassets: {}",
         "version: 1\ntitle: a\nassets: {a: {category: chair, source: x, mass: -1}}",
-        "version: 1\ntitle: a\nassets: {a: {category: chair, source: x, mass: 1, materials: {a: b}}}",
+        "version: 1\ntitle: a\n"
+        "assets: {a: {category: chair, source: x, mass: 1, materials: {a: b}}}",
         "- 1",
         "a: [",
     ],

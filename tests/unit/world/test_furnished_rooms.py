@@ -1,4 +1,4 @@
-"""The furnished rooms hold together: nothing overlaps, everything rests, the mover's way is free."""
+"""The furnished rooms hold together: nothing overlaps, all rests, the mover's way is free."""
 
 from __future__ import annotations
 
