@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Literal, get_args
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import vector
 
-__all__ = ["Environment", "Light", "LightType", "light_named"]
+__all__ = ["Environment", "Light", "LightType", "SkyMap", "light_named"]
 
 LightType = Literal["directional", "point", "spot", "area"]
 
@@ -105,6 +106,25 @@ def light_named(name: str, lights: Iterable[Light]) -> Light:
     return by_name[name]
 
 
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class SkyMap:
+    """A picture of the whole sky; compared by identity: the same object is uploaded once.
+
+    Attributes
+    ----------
+    radiance : (H, 2 H, 3) float16
+        Linear radiance in equirectangular projection: row 0 is the zenith, the middle column lies
+        towards +x, columns run clockwise as seen from above.
+    zenith, horizon, ground : (3,) tuple of float
+        Mean radiance of its parts, for light that comes from everywhere.
+    """
+
+    radiance: NDArray[np.float16]
+    zenith: tuple[float, float, float]
+    horizon: tuple[float, float, float]
+    ground: tuple[float, float, float]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Environment:
     """What surrounds the objects.
@@ -121,6 +141,8 @@ class Environment:
         Linear radiance of the analytic sky, used while no picture of a sky is named.
     sky_share : float
         Share of the sky's light that reaches the objects: 1 outdoors, less in a room.
+    sky : SkyMap or None
+        What is seen of the sky instead of the three colours, which still light the objects.
     sky_map : str
         Name of a sky picture, empty for the analytic sky.
     exposure : float
@@ -134,6 +156,7 @@ class Environment:
     sky_horizon: tuple[float, float, float] = (0.75, 0.82, 0.90)
     sky_ground: tuple[float, float, float] = (0.30, 0.28, 0.26)
     sky_share: float = 1.0
+    sky: SkyMap | None = None
     sky_map: str = ""
     exposure: float = 0.0
 

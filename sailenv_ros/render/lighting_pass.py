@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
-from sailenv_ros.lights import Environment, Light
+from sailenv_ros.lights import Environment, Light, SkyMap
 from sailenv_ros.render.geometry_pass import Targets
 from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.shadow_pass import SIZE_PX, ShadowPass
@@ -27,6 +27,9 @@ MAX_LIGHTS = 16
 """Lights that are taken into account, the strongest first."""
 
 PENUMBRA_TEXELS = 1.6
+
+SKY_UNIT = 7
+"""Texture unit of the sky's picture, below those of materials."""
 
 _KINDS = {"directional": 0.0, "point": 1.0, "spot": 2.0, "area": 3.0}
 
@@ -52,9 +55,14 @@ class LightingPass:
     def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
         self._context = context
         self._light = programs.get("screen.vert", "lighting.frag", MAX_LIGHTS=MAX_LIGHTS)
-        self._sky = programs.get("screen.vert", "sky.frag")
+        self._skies = [
+            programs.get("screen.vert", "sky.frag"),
+            programs.get("screen.vert", "sky.frag", SKY_MAP=1),
+        ]
         self._light_array = context.vertex_array(self._light, [])
-        self._sky_array = context.vertex_array(self._sky, [])
+        self._sky_arrays = [context.vertex_array(program, []) for program in self._skies]
+        self._sky_shown: SkyMap | None = None
+        self._sky_texture: moderngl.Texture | None = None
         self._warned_of: Sequence[Light] | None = None
         self._lights = context.buffer(reserve=MAX_LIGHTS * ROW.itemsize, dynamic=True)
 
@@ -71,8 +79,11 @@ class LightingPass:
         targets.picture.use()
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST)
-        for program in (self._light, self._sky):
+        kind = 0 if environment.sky is None else 1
+        for program in (self._light, self._skies[kind]):
             _set_camera(program, camera, environment)
+        if environment.sky is not None:
+            self._show_sky(environment.sky)
         self._set_lights(targets, camera, lights, shadow)
         # The covering triangle lies at the far end: in front of it are surfaces, on it is sky.
         try:
@@ -80,15 +91,30 @@ class LightingPass:
             context.depth_func = ">"
             self._light_array.render(moderngl.TRIANGLES, vertices=3)
             context.depth_func = "=="
-            self._sky_array.render(moderngl.TRIANGLES, vertices=3)
+            self._sky_arrays[kind].render(moderngl.TRIANGLES, vertices=3)
         finally:
             targets.picture.depth_mask = True
             context.depth_func = "<"
 
     def close(self) -> None:
         """Free the buffers."""
-        for resource in (self._light_array, self._sky_array, self._lights):
-            resource.release()
+        for resource in (self._light_array, *self._sky_arrays, self._lights, self._sky_texture):
+            if resource is not None:
+                resource.release()
+
+    def _show_sky(self, sky: SkyMap) -> None:
+        """Make a sky's picture readable; it is uploaded where it is another than before."""
+        if self._sky_texture is None or sky is not self._sky_shown:
+            if self._sky_texture is not None:
+                self._sky_texture.release()
+            height, width, _ = sky.radiance.shape
+            data = np.ascontiguousarray(sky.radiance).tobytes()
+            self._sky_texture = self._context.texture((width, height), 3, data, dtype="f2")
+            self._sky_texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+            self._sky_texture.repeat_y = False
+            self._sky_shown = sky
+        self._sky_texture.use(SKY_UNIT)
+        set_uniform(self._skies[1], "sky_map", SKY_UNIT)
 
     def _set_lights(
         self, targets: Targets, camera: Camera, lights: Sequence[Light], shadow: ShadowPass

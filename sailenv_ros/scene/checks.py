@@ -16,7 +16,7 @@ from pydantic_core import ErrorDetails
 from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.kinds import FAULT
 from sailenv_ros.scene.knowledge import SceneKnowledge
-from sailenv_ros.scene.spec import CategorySpec, SceneSpec
+from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
 from sailenv_ros.scene.tree import Entry, entries
@@ -91,6 +91,9 @@ def _unknown_names(
                 yield Finding((*loc, *place), sentence)
         elif issubclass(model, RoomSpec | WallMaterialsSpec):
             yield from _unknown_surfaces(loc, model, entry, knowledge.surfaces)
+        elif issubclass(model, EnvironmentSpec):
+            if entry.get("sky_map"):
+                yield from _unknown(loc, entry, "sky_map", knowledge.skies)
         elif issubclass(model, CategorySpec):
             if entry.get("name") in knowledge.categories:
                 yield Finding(

@@ -33,6 +33,8 @@ class SceneKnowledge:
         The entry is plain data; nothing in it is certain.
     surfaces : tuple of str
         Every name that the material of a room's walls, floor or ceiling may have.
+    skies : tuple of str
+        Names of the photographed skies.
     """
 
     assets: tuple[str, ...]
@@ -40,3 +42,4 @@ class SceneKnowledge:
     behaviour_faults: Callable[[str, Mapping[str, Any]], Faults]
     object_faults: Callable[[Mapping[str, Any]], Faults] = _no_faults
     surfaces: tuple[str, ...] = ()
+    skies: tuple[str, ...] = ()

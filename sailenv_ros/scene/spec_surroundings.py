@@ -53,7 +53,7 @@ class EnvironmentSpec(SceneModel):
     sky_map: str = Field(
         default=_STANDARD.sky_map,
         max_length=200,
-        description="name of a sky picture; empty for the sky of the three colours",
+        description="name of a photographed sky, e.g. forest; empty for that of the three colours",
     )
     exposure: Annotated[float, Number(least=-20.0, most=20.0, unit="stops")] = Field(
         default=_STANDARD.exposure,

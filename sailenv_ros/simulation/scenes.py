@@ -14,6 +14,7 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.places import standard_pack_folder
+from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
@@ -67,6 +68,7 @@ class SceneLibrary:
     def __init__(self, scene_paths: Sequence[Path] = ()) -> None:
         self._catalogue = SceneCatalogue(scene_paths)
         self._packs = installed_packs()
+        self._skies = sky_files(pack.folder for pack in self._packs)
         self._assets = AssetLibrary(installed_sources(self._packs))
         self._uploads = 0
         self._files: dict[str, Path] = {}
@@ -103,6 +105,7 @@ class SceneLibrary:
             behaviour_faults=behaviour_faults,
             object_faults=ObjectFit(self._assets),
             surfaces=surface_names(),
+            skies=tuple(self._skies),
         )
 
     @property
@@ -143,6 +146,7 @@ class SceneLibrary:
             seed=seed,
             epoch=epoch,
             next_revision=next_revision,
+            skies=self._skies,
         )
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
+from sailenv_ros.assets.skies import load_sky
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.lights import Environment
 from sailenv_ros.model import Asset
 from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.world.bodies import Placement
@@ -30,6 +33,7 @@ def build_world(
     seed: int,
     epoch: int,
     next_revision: Callable[[], int],
+    skies: Mapping[str, Path] | None = None,
 ) -> World:
     """Build the world of a scene.
 
@@ -43,6 +47,8 @@ def build_world(
         Of the behaviours' generators.
     epoch, next_revision
         As `World` takes them.
+    skies : mapping of str to Path or None
+        Files of the photographed skies by name.
 
     Raises
     ------
@@ -67,8 +73,19 @@ def build_world(
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
-        environment=spec.environment.to_environment(),
+        environment=_environment(spec, skies or {}),
         gravity=spec.gravity,
+    )
+
+
+def _environment(spec: SceneSpec, skies: Mapping[str, Path]) -> Environment:
+    """Give the surroundings; under a photographed sky its means take the place of the colours."""
+    environment = spec.environment.to_environment()
+    if not environment.sky_map:
+        return environment
+    sky = load_sky(environment.sky_map, skies)
+    return replace(
+        environment, sky=sky, sky_zenith=sky.zenith, sky_horizon=sky.horizon, sky_ground=sky.ground
     )
 
 

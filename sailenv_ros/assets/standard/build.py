@@ -18,6 +18,7 @@ from pathlib import Path
 from sailenv_ros.assets.pack import AssetPack, PackContent, PackEntry
 from sailenv_ros.assets.pack_writer import packed, replaced_folder, write_content
 from sailenv_ros.assets.places import standard_pack_folder
+from sailenv_ros.assets.skies import SKIES, bake_sky
 from sailenv_ros.assets.standard.catalogues import LICENCES, Catalogues
 from sailenv_ros.assets.standard.fetch import fetched
 from sailenv_ros.assets.standard.prepare import prepare
@@ -25,15 +26,14 @@ from sailenv_ros.assets.standard.recipe import Recipe, standard_recipe
 from sailenv_ros.errors import AssetError
 from sailenv_ros.resources import resource_path
 
-__all__ = ["CREDITS", "SKIES", "build_standard_pack", "is_current"]
+__all__ = ["CREDITS", "build_standard_pack", "is_current", "licence_files"]
 
 CREDITS = "credits"
-SKIES = "skies"
 
 Progress = Callable[[str, int, int], None]
 """Called with what was done, how many are done, and of how many."""
 
-_TOOLS = ("glb", "hulls", "meshes", "model_files", "obj_polygons", "solids")
+_TOOLS = ("glb", "hulls", "meshes", "model_files", "obj_polygons", "skies", "solids")
 """Modules beside this folder whose code shapes the result."""
 
 _LIBRARIES = ("trimesh", "meshoptimizer", "coacd", "mapbox_earcut", "numpy")
@@ -142,7 +142,7 @@ def _make(name: str, furniture: Path, scratch: Path) -> PackEntry:
 def _keep_skies(skies: Path, scratch: Path) -> None:
     (scratch / SKIES).mkdir()
     for sky in sorted(skies.glob("*.exr")):
-        shutil.copyfile(sky, scratch / SKIES / sky.name)
+        bake_sky(sky, scratch / SKIES / f"{sky.stem}.npy")
     notice = scratch / CREDITS / "blender-data"
     notice.mkdir(parents=True)
     for text in sorted(skies.glob("*.txt")):

@@ -4,9 +4,20 @@ layout(location = 0) out vec4 out_colour;  // sRGB, luma in alpha for the edge p
 #include "picture.glsl"
 
 uniform vec4 background;  // colour; 1 if it is shown instead of the sky
+#ifdef SKY_MAP
+uniform sampler2D sky_map;  // equirectangular, row 0 is the zenith
+
+vec3 mapped_sky(vec3 d) {
+    const float PI = 3.14159265;
+    // Of the finest level always: at the seam the derivatives of the angle mean nothing.
+    return textureLod(sky_map, vec2(0.5 - atan(d.y, d.x) / (2.0 * PI), acos(d.z) / PI), 0.0).rgb;
+}
+#else
+#define mapped_sky sky
+#endif
 
 void main() {
     vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
-    vec3 seen = background.a > 0.5 ? background.rgb : sky(normalize(world_from_optical * ray));
+    vec3 seen = background.a > 0.5 ? background.rgb : mapped_sky(normalize(world_from_optical * ray));
     out_colour = finished(seen);
 }

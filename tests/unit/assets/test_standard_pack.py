@@ -10,9 +10,10 @@ import pytest
 
 from sailenv_ros.assets import AssetLibrary, load_categories
 from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.skies import SKIES
 from sailenv_ros.assets.sources import UnbuiltPack, installed_sources
 from sailenv_ros.assets.standard.build import (
-    SKIES,
+
     build_standard_pack,
     is_current,
     licence_files,
@@ -136,7 +137,7 @@ def test_credits_and_skies_are_kept(pack: AssetPack) -> None:
     texts = {path.parent.name for path in licence_files(pack.folder)}
     used = {entry.source.partition("/")[0] for entry in standard_recipe().assets.values()}
     assert texts >= (used - {"made"}) | {"blender-data"}
-    assert len(list((pack.folder / SKIES).glob("*.exr"))) == 8
+    assert len(list((pack.folder / SKIES).glob("*.npy"))) == 8
 
 
 def test_building_again_changes_nothing(pack: AssetPack) -> None:

@@ -1,0 +1,101 @@
+"""Pictures of skies: from the packs' files to `SkyMap`s, each loaded once.
+
+Made from high-dynamic-range photographs by `bake_sky` when a pack is built; brightness is brought
+to one scale, so that a scene looks alike under another sky.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.lights import SkyMap
+
+__all__ = ["SKIES", "bake_sky", "load_sky", "sky_files"]
+
+SKIES = "skies"
+"""Name of the folder in a pack."""
+
+MEAN_RADIANCE = 0.65
+"""Of the upper half, without the sun, after baking."""
+
+SUN_RADIANCE = 6.0
+"""Brighter than this times the median is the sun: lights stand for it, the map does not."""
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def sky_files(folders: Iterable[Path]) -> Mapping[str, Path]:
+    """Give the files of all skies in some packs' folders, by name."""
+    return {
+        path.stem: path for folder in folders for path in sorted((folder / SKIES).glob("*.npy"))
+    }
+
+
+def load_sky(name: str, files: Mapping[str, Path]) -> SkyMap:
+    """Give a sky; the same object each time.
+
+    Raises
+    ------
+    UnknownName
+        If no pack has it.
+    AssetError
+        If its file cannot be used.
+    """
+    if name not in files:
+        raise UnknownName("sky", name, files)
+    return _loaded(files[name])
+
+
+@lru_cache(maxsize=8)
+def _loaded(path: Path) -> SkyMap:
+    try:
+        radiance = np.load(path, allow_pickle=False)
+    except (OSError, ValueError) as problem:
+        raise AssetError(path.name, f"the sky cannot be read ({problem})") from None
+    if radiance.ndim != 3 or radiance.shape[1:] != (2 * radiance.shape[0], 3):
+        raise AssetError(path.name, f"a sky is (H, 2 H, 3), and this is {radiance.shape}")
+    radiance = np.ascontiguousarray(radiance, dtype=np.float16)
+    radiance.flags.writeable = False
+    rows = len(radiance)
+    return SkyMap(
+        radiance=radiance,
+        zenith=_mean(radiance[: rows // 4]),
+        horizon=_mean(radiance[rows * 3 // 8 : rows // 2]),
+        ground=_mean(radiance[rows * 5 // 8 :]),
+    )
+
+
+def _mean(part: NDArray[np.float16]) -> tuple[float, float, float]:
+    red, green, blue = part.astype(np.float64).mean(axis=(0, 1))
+    return float(red), float(green), float(blue)
+
+
+def bake_sky(photograph: Path, target: Path) -> None:
+    """Turn an OpenEXR panorama into a sky's file.
+
+    Raises
+    ------
+    AssetError
+        If it cannot be read.
+    """
+    # OpenCV reads OpenEXR only where this is set, and looks when it first meets such a file.
+    os.environ.setdefault("OPENCV_IO_ENABLE_OPENEXR", "1")
+    import cv2
+
+    pixels = cv2.imread(str(photograph), cv2.IMREAD_UNCHANGED)
+    if pixels is None or pixels.ndim != 3:
+        raise AssetError(photograph.name, "the panorama cannot be read")
+    radiance = np.maximum(np.asarray(pixels[..., 2::-1], dtype=np.float64), 0.0)
+    light = radiance @ LUMINANCE
+    sky = light[: len(light) // 2]
+    limit = SUN_RADIANCE * float(np.median(sky))
+    radiance *= np.minimum(1.0, limit / np.maximum(light, 1e-6))[..., None]
+    scale = MEAN_RADIANCE / float(np.minimum(sky, limit).mean())
+    np.save(target, (radiance * scale).astype(np.float16))
