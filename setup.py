@@ -12,6 +12,8 @@ PACKAGE = "sailenv_ros"
 REQUIREMENTS = [
     "coacd>=1.0.7",
     "glcontext>=3.0",
+    # Compresses what clients of the gateway want gzipped, many times faster than zlib.
+    "isal>=1.6",
     "lz4>=4.3",
     "mapbox-earcut>=1.0.3",
     # Has no final release yet; compiled where it is installed, in some seconds.
@@ -59,6 +61,8 @@ DEV = [
     "pytest-xdist",
     "rosbags",
     "ruff",
+    # The original's client, which the gateway's tests drive; it declares no dependencies.
+    "sailenv==0.5b0",
     "types-jsonschema",
     "types-PyYAML",
 ]

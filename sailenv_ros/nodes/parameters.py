@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -19,6 +19,8 @@ from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
+from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import TimeMode
 
@@ -40,6 +42,10 @@ class SimParameters:
     render_device : int or None
     scene_paths : tuple of Path
     publish_clock : bool
+    gateway_host : str
+    gateway_port : int
+        0 for none.
+    gateway_protocol : {'0.5', '0.6'}
     agent : AgentSpec or None
         The agent that is there from the start.
     """
@@ -53,6 +59,9 @@ class SimParameters:
     render_device: int | None
     scene_paths: tuple[Path, ...]
     publish_clock: bool
+    gateway_host: str
+    gateway_port: int
+    gateway_protocol: str
     agent: AgentSpec | None
 
 
@@ -110,6 +119,15 @@ _PARAMETERS: dict[str, _Parameter] = {
     ),
     "render_device": _Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
     "publish_clock": _Parameter(True, "True: publish simulated time on /clock."),
+    "gateway.port": _Parameter(
+        DEFAULT_PORT, "TCP port for clients of the original SAILenv; 0: none.", 0, 65535
+    ),
+    "gateway.host": _Parameter(
+        DEFAULT_HOST, "Address that port listens on; 0.0.0.0: all, without any password."
+    ),
+    "gateway.protocol": _Parameter(
+        "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
+    ),
     "agent.name": _Parameter("agent", "Name of the first agent; empty: start without one."),
     "agent.width": _Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
     "agent.height": _Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
@@ -150,6 +168,9 @@ def declare_parameters(node: Node) -> SimParameters:
         render_device=None if values["render_device"] < 0 else values["render_device"],
         scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
         publish_clock=values["publish_clock"],
+        gateway_host=values["gateway.host"],
+        gateway_port=values["gateway.port"],
+        gateway_protocol=values["gateway.protocol"],
         agent=_agent(values),
     )
 

@@ -8,6 +8,7 @@ scene is wrong, 3 where another simulator has the namespace already.
 from __future__ import annotations
 
 import argparse
+import errno
 import logging
 import os
 import sys
@@ -22,6 +23,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, SimulationClosed
+from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
@@ -31,10 +33,12 @@ from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_en
 from sailenv_ros.nodes.light_services import LightServices
 from sailenv_ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.nodes.log_bridge import LogBridge
+from sailenv_ros.nodes.motion_services import MotionServices
 from sailenv_ros.nodes.object_services import ObjectServices
 from sailenv_ros.nodes.parameters import SimParameters, declare_parameters
 from sailenv_ros.nodes.requests import Requests
 from sailenv_ros.nodes.services import SimulatorServices
+from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.presence import SimulatorLock
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
@@ -77,16 +81,22 @@ class SimNode:
         self._executor = executor
         self._simulation = simulation
         requests = Requests(simulation, executor)
-        self._endpoints = AgentEndpoints(node, simulation, requests)
+        self._tf = TfTree(node)
+        self._endpoints = AgentEndpoints(node, simulation, requests, self._tf)
         self._announcements = Announcements(
             node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
         )
         self._services = SimulatorServices(node, requests, self._reconcile)
-        self._more_services = (ObjectServices(node, requests), LightServices(node, requests))
+        self._more_services = (
+            ObjectServices(node, requests),
+            LightServices(node, requests),
+            MotionServices(node, requests),
+        )
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
+        self._gateway = _gateway(simulation, parameters)
 
     @property
     def simulation(self) -> Simulation:
@@ -102,6 +112,8 @@ class SimNode:
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
+        if self._gateway is not None:
+            self._gateway.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._endpoints.close()
@@ -227,6 +239,24 @@ def _simulation(parameters: SimParameters) -> Simulation:
         simulation.close()
         raise
     return simulation
+
+
+def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer | None:
+    if not parameters.gateway_port:
+        return None
+    try:
+        return GatewayServer(
+            simulation,
+            host=parameters.gateway_host,
+            port=parameters.gateway_port,
+            protocol=parameters.gateway_protocol,
+        )
+    except InvalidRequest as problem:
+        # Another simulator on this machine is no reason not to start; anything else is.
+        if getattr(problem.__cause__, "errno", None) != errno.EADDRINUSE:
+            raise
+        _log.warning("clients of the original SAILenv cannot connect here: %s", problem)
+        return None
 
 
 def _close_loaded(loading: Future[Simulation]) -> None:

@@ -16,7 +16,7 @@ from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.places import standard_pack_folder
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.behaviours import behaviour_faults
+from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.model import Asset
@@ -83,6 +83,11 @@ class SceneLibrary:
         """Names of the assets."""
         return self._assets.names
 
+    @property
+    def spawnable_display_names(self) -> tuple[str, ...]:
+        """Names of the assets as people write them, in the same order."""
+        return tuple(self._assets.display_names.values())
+
     @cached_property
     def categories(self) -> CategoryTable:
         """The fixed table, and what the packs add to it."""
@@ -100,6 +105,11 @@ class SceneLibrary:
             surfaces=surface_names(),
         )
 
+    @property
+    def _knowledge_of_strangers(self) -> SceneKnowledge:
+        """What requests may refer to: they cannot have code imported, as files can."""
+        return replace(self.knowledge, behaviour_faults=known_behaviour_faults)
+
     def load(self, scene: str | Path) -> SceneSpec:
         """Read a scene by its name or file; every fault at once.
 
@@ -110,8 +120,7 @@ class SceneLibrary:
         SceneError
             If its file has faults.
         """
-        path = self._files.get(str(scene)) or self._catalogue.path(scene)
-        return load_scene(path, knowledge=self.knowledge)
+        return load_scene(self._path(scene), knowledge=self.knowledge)
 
     def build(
         self,
@@ -137,7 +146,7 @@ class SceneLibrary:
         )
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
-            self._files[spec.name] = self._catalogue.path(scene)
+            self._files[spec.name] = self._path(scene)
         return world
 
     def canonical_asset(self, name: str) -> str:
@@ -200,7 +209,8 @@ class SceneLibrary:
             If it cannot be placed.
         """
         names = tuple(category.name for category in world.categories.values())
-        spec = checked_object(entry, replace(self.knowledge, categories=names))
+        known = replace(self._knowledge_of_strangers, categories=names)
+        spec = checked_object(entry, known)
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -213,6 +223,9 @@ class SceneLibrary:
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Give the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
+
+    def _path(self, scene: str | Path) -> Path:
+        return self._files.get(str(scene)) or self._catalogue.path(scene)
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec
@@ -228,7 +241,7 @@ class SceneLibrary:
                 taken.add(str(entry["name"]))
             named.append(entry)
         own = tuple(category.name for category in spec.categories)
-        known = self.knowledge
+        known = self._knowledge_of_strangers
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
 
 

@@ -89,6 +89,10 @@ class WorldRequests:
         """Say what and where an object is."""
         return self._world.object_state(self._world.find(obj))
 
+    def spawnable_display_names(self) -> tuple[str, ...]:
+        """Give the names of what can be spawned as people write them, e.g. ``Chair 01``."""
+        return self._library.spawnable_display_names
+
     def add_model(self, asset: Asset, *, rename: bool) -> str:
         """Put an imported model into the catalogue; give the name that it is spawned by.
 
