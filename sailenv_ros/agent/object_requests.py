@@ -17,10 +17,12 @@ from typing import Any, BinaryIO
 from numpy.typing import ArrayLike
 
 from sailenv_msgs.srv import (
+    AddBehaviour,
     DespawnObject,
     GetObject,
     LoadScenario,
     MoveObject,
+    RemoveBehaviours,
     SpawnObject,
     UploadModel,
 )
@@ -153,6 +155,26 @@ class ObjectRequests(Asking):
         """Say what and where an object, named by id or name, is now."""
         request = GetObject.Request(id=self._object_id(obj))
         return object_state_from_response(self._call(GetObject, "get_object", request))
+
+    def add_behaviour(self, obj: int | str, behaviour: Mapping[str, Any]) -> None:
+        """Let an object move of itself, beside the behaviours that it has.
+
+        Parameters
+        ----------
+        obj : int or str
+            Its id or name; not a static one.
+        behaviour : mapping
+            As in a scene file: ``type`` and the parameters.
+        """
+        request = AddBehaviour.Request(
+            id=self._object_id(obj), behaviour=behaviour_to_msg(behaviour)
+        )
+        self._call(AddBehaviour, "add_behaviour", request)
+
+    def remove_behaviours(self, obj: int | str) -> None:
+        """End everything that makes an object move of itself."""
+        request = RemoveBehaviours.Request(id=self._object_id(obj))
+        self._call(RemoveBehaviours, "remove_behaviours", request)
 
     def send_obj_zip(
         self,

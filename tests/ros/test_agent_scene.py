@@ -91,6 +91,20 @@ def test_behaviours_and_masses_make_objects_move(agent: Agent) -> None:
     assert dict(state.behaviours[0])["angular_velocity"] == [0.0, 0.0, 90.0]
 
 
+def test_behaviours_come_and_go(agent: Agent) -> None:
+    """An object turns once it is told to, and says so until it is told no more."""
+    id_ = agent.spawn_object("cube", (0, 0, 30), remove_dynamics=False)
+    agent.add_behaviour(id_, {"type": "rotate_rigidbody", "angular_velocity": [0, 0, 90]})
+    agent.step(24)
+    state = agent.get_object(id_)
+    assert state.angular_velocity[2] == pytest.approx(np.pi / 2, rel=1e-3)
+    assert [behaviour["type"] for behaviour in state.behaviours] == ["rotate_rigidbody"]
+    agent.remove_behaviours(id_)
+    assert agent.get_object(id_).behaviours == ()
+    with pytest.raises(RequestRefused, match="behaviour"):
+        agent.add_behaviour(id_, {"type": "spin"})
+
+
 def test_a_scenario_comes_from_text_file_and_mapping(agent: Agent, tmp_path: Path) -> None:
     """All three give the ids of its objects, in order."""
     mapping = {"scene": "object_view", "objects": [{"asset": "cube", "name": "a"}]}

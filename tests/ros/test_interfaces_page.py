@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,9 @@ def names_and_types(heading: str) -> dict[str, str]:
     """Give the names of a table with their types, as ROS spells them."""
     kind = "srv" if heading == "Services" else "msg"
     found = {}
-    for name, type_, *_ in table(heading):
+    for name, type_, about in table(heading):
+        if "where `tf2_msgs` is installed" in about and find_spec("tf2_msgs") is None:
+            continue
         name = name.strip("`").replace("<agent>", "agent")
         package, _, word = type_.strip("`").partition("/")
         found[name if name.startswith("/") else f"{NAMESPACE}/{name}"] = f"{package}/{kind}/{word}"
