@@ -1,6 +1,8 @@
 """How objects move of themselves: small pure functions of time, state and a seeded generator."""
 
 from sailenv_ros.behaviours.base import (
+    MAX_SPEED_M_S,
+    STEP_S,
     Action,
     BehaviourKind,
     BehaviourParameters,
@@ -8,9 +10,16 @@ from sailenv_ros.behaviours.base import (
     RunningBehaviour,
     behaviour,
 )
-from sailenv_ros.behaviours.registry import behaviour_faults, behaviour_kinds, start_behaviour
+from sailenv_ros.behaviours.registry import (
+    behaviour_faults,
+    behaviour_kinds,
+    known_behaviour_faults,
+    start_behaviour,
+)
 
 __all__ = [
+    "MAX_SPEED_M_S",
+    "STEP_S",
     "Action",
     "BehaviourKind",
     "BehaviourParameters",
@@ -19,5 +28,6 @@ __all__ = [
     "behaviour",
     "behaviour_faults",
     "behaviour_kinds",
+    "known_behaviour_faults",
     "start_behaviour",
 ]

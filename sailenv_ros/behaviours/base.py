@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.kinds import Number
 
 __all__ = [
+    "MAX_SPEED_M_S",
+    "STEP_S",
     "Action",
     "BehaviourKind",
     "BehaviourParameters",
@@ -28,11 +31,46 @@ __all__ = [
 
 Vector3 = tuple[float, float, float]
 
+MAX_VIEW_DISTANCE_M = 10.0
+
+
+STEP_S = 1.0 / 240.0
+"""Simulated time that an action lasts: one physics step."""
+
+MAX_SPEED_M_S = 10.0
+"""No behaviour drives a body faster: in one step it then covers less than half a thin wall."""
+
 
 class BehaviourParameters(BaseModel):
     """Base of every behaviour's parameters: unknown keys are faults, numbers are finite."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    start: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
+        default=0.0, description="time after the object's appearance at which it begins [s]"
+    )
+
+    def told(self) -> dict[str, Any]:
+        """Give the parameters as a scene file would write them, defaults too."""
+        dumped = self.model_dump(exclude_none=True)
+        if not self.start:
+            del dumped["start"]
+        return dumped
+
+    @property
+    def duration_s(self) -> float | None:
+        """Time from its beginning to its end [s]; None if it goes on for ever."""
+        return None
+
+    @property
+    def viewer(self) -> str:
+        """Name of the agent in whose view the object is kept; empty for none."""
+        return ""
+
+    @property
+    def view_distance_m(self) -> float:
+        """How far away from the viewer it may be [m]."""
+        return MAX_VIEW_DISTANCE_M
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,12 +85,19 @@ class BodyState:
     angular_velocity : (3,) float64
         [rad/s]
     mass_kg : float
+    inertia_kg_m2 : (3,) float64
+        Moments of inertia about the body's own axes.
+    confines : (N, 4) float64
+        Planes (a, b, c, d) that it is kept in front of: a x + b y + c z + d > 0 [m], with a unit
+        normal (a, b, c). None at all unless its parameters name a viewer.
     """
 
     pose: Pose
     linear_velocity: NDArray[np.float64]
     angular_velocity: NDArray[np.float64]
     mass_kg: float
+    inertia_kg_m2: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
+    confines: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,12 +112,21 @@ class Action:
         Set before the step, world frame [m/s].
     angular_velocity : (3,) tuple of float or None
         Set before the step, world frame [rad/s].
+    idle_until_s : float or None
+        Time on the behaviour's clock before which it need not be asked again [s].
     """
 
     force_n: Vector3 | None = None
     torque_nm: Vector3 | None = None
     linear_velocity: Vector3 | None = None
     angular_velocity: Vector3 | None = None
+    idle_until_s: float | None = None
+
+    @property
+    def acts(self) -> bool:
+        """True if the engine has anything to do."""
+        done = (self.force_n, self.torque_nm, self.linear_velocity, self.angular_velocity)
+        return any(part is not None for part in done)
 
 
 ParametersType: TypeAlias = type[BehaviourParameters]
@@ -114,12 +168,21 @@ class RunningBehaviour:
     rng: np.random.Generator
     start_s: float = 0.0
     memory: dict[str, Any] = field(default_factory=dict)
+    idle_until_s: float = 0.0
+
+    def is_idle(self, time_s: float) -> bool:
+        """Say if it does nothing in the step that begins at `time_s` [s of simulated time]."""
+        own_s = time_s - self.start_s - self.parameters.start
+        return own_s < self.idle_until_s - 1e-9
 
     def act(self, time_s: float, body: BodyState) -> Action:
         """Ask for the action of the step that begins at `time_s` [s of simulated time]."""
-        return self.kind.function(
-            self.parameters, time_s - self.start_s, body, self.memory, self.rng
-        )
+        if self.is_idle(time_s):
+            return Action()
+        own_s = time_s - self.start_s - self.parameters.start
+        action = self.kind.function(self.parameters, own_s, body, self.memory, self.rng)
+        self.idle_until_s = action.idle_until_s or 0.0
+        return action
 
 
 def behaviour(

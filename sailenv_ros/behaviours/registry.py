@@ -6,8 +6,10 @@ and the behaviour's place in the object's list, and on nothing else.
 
 from __future__ import annotations
 
+import importlib
 import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -15,15 +17,37 @@ import numpy as np
 from pydantic import ValidationError
 
 from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
+from sailenv_ros.behaviours.poltergeist import poltergeist
 from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
+from sailenv_ros.behaviours.uniform_movement import uniform_movement_random_bounce
+from sailenv_ros.behaviours.wander_plane import wander_plane
+from sailenv_ros.behaviours.waypoints import catmull_waypoints, linear_waypoints
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.kinds import FAULT
 
-__all__ = ["behaviour_faults", "behaviour_kinds", "start_behaviour"]
+__all__ = [
+    "behaviour_faults",
+    "behaviour_kinds",
+    "known_behaviour_faults",
+    "start_behaviour",
+]
 
 _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
-    {kind.type: kind for kind in (rotate_rigidbody,)}
+    {
+        kind.type: kind
+        for kind in (
+            rotate_rigidbody,
+            poltergeist,
+            wander_plane,
+            uniform_movement_random_bounce,
+            linear_waypoints,
+            catmull_waypoints,
+        )
+    }
 )
+
+_users: dict[str, BehaviourKind] = {}
+"""Kinds from users' modules by ``module:name``, once a scene file has named them."""
 
 
 def behaviour_kinds() -> Mapping[str, BehaviourKind]:
@@ -34,15 +58,32 @@ def behaviour_kinds() -> Mapping[str, BehaviourKind]:
 def behaviour_faults(
     type_: str, parameters: Mapping[str, Any]
 ) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Yield what is wrong with a behaviour: the place inside it, and a sentence."""
-    if type_ not in _KINDS:
-        yield ("type",), str(UnknownName("behaviour", type_, _KINDS))
+    """Yield what is wrong with a behaviour: the place inside it, and a sentence.
+
+    A type ``module:name`` is imported, which runs code: for scene files, not for what comes over a
+    network.
+    """
+    if ":" in type_ and type_ not in _users:
+        problem = _load_users(type_)
+        if problem:
+            yield ("type",), problem
+            return
+    yield from known_behaviour_faults(type_, parameters)
+
+
+def known_behaviour_faults(
+    type_: str, parameters: Mapping[str, Any]
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Yield what is wrong with a behaviour, as `behaviour_faults`, but import nothing."""
+    kind = _kind(type_)
+    if kind is None:
+        yield ("type",), str(UnknownName("behaviour", type_, {**_KINDS, **_users}))
         return
     try:
-        _KINDS[type_].parameters.model_validate(dict(parameters))
+        kind.parameters.model_validate(dict(parameters))
     except ValidationError as error:
         for fault in error.errors(include_url=False):
-            yield tuple(fault["loc"]), _sentence(type_, fault)
+            yield tuple(fault["loc"]), _sentence(kind, fault)
 
 
 def start_behaviour(
@@ -61,14 +102,15 @@ def start_behaviour(
     InvalidRequest
         If the type is unknown or a parameter is wrong.
     """
-    for path, message in behaviour_faults(type_, parameters):
+    for path, message in known_behaviour_faults(type_, parameters):
         field = ".".join(str(part) for part in path)
         raise InvalidRequest(
             f"behaviour {type_!r} of {object_name!r}",
             dict(parameters),
             f"right in every parameter ({field} {message})",
         )
-    kind = _KINDS[type_]
+    kind = _kind(type_)
+    assert kind is not None
     entropy = (seed & 0xFFFFFFFF, zlib.crc32(object_name.encode()), place)
     return RunningBehaviour(
         kind=kind,
@@ -78,10 +120,33 @@ def start_behaviour(
     )
 
 
-def _sentence(type_: str, fault: Any) -> str:
+def _kind(type_: str) -> BehaviourKind | None:
+    return _KINDS.get(type_) or _users.get(type_)
+
+
+def _load_users(type_: str) -> str:
+    """Import a user's behaviour; give a sentence of what is wrong, empty if nothing is."""
+    module_name, _, name = type_.partition(":")
+    try:
+        module = importlib.import_module(module_name)
+    except Exception as problem:  # whatever a user's module raises while it is imported
+        return f"{type_!r}: module {module_name!r} cannot be imported: {problem}"
+    kind = getattr(module, name, None)
+    if not isinstance(kind, BehaviourKind):
+        kinds = [key for key, value in vars(module).items() if isinstance(value, BehaviourKind)]
+        return (
+            f"{type_!r}: {module_name!r} has no behaviour {name!r}; "
+            f"it has: {', '.join(kinds) or 'none'}"
+        )
+    # Under the name that scene files and answers have for it.
+    _users[type_] = replace(kind, type=type_)
+    return ""
+
+
+def _sentence(kind: BehaviourKind, fault: Any) -> str:
     if fault["type"] == "extra_forbidden":
-        known = ", ".join(_KINDS[type_].parameters.model_fields)
-        return f"is not a parameter of {type_}; its parameters are: {known}"
+        known = ", ".join(kind.parameters.model_fields)
+        return f"is not a parameter of {kind.type}; its parameters are: {known}"
     if fault["type"] == FAULT:
         return str(fault["ctx"]["sentence"])
     if fault["type"] == "missing":

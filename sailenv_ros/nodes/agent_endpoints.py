@@ -12,6 +12,7 @@ from sailenv_ros.nodes.agent_services import AgentServices
 from sailenv_ros.nodes.diagnostics import AgentCounts
 from sailenv_ros.nodes.publishers import AgentPublisher
 from sailenv_ros.nodes.requests import Requests
+from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 
@@ -33,7 +34,8 @@ class _Endpoint:
 class AgentEndpoints:
     """Topics and services of all agents; used by the executor's thread alone."""
 
-    def __init__(self, node: Node, simulation: Simulation, requests: Requests) -> None:
+    def __init__(self, node: Node, simulation: Simulation, requests: Requests, tf: TfTree) -> None:
+        self._tf = tf
         self._node = node
         self._simulation = simulation
         self._requests = requests
@@ -46,6 +48,7 @@ class AgentEndpoints:
             spec = specs.get(name)
             if spec is None or endpoint.publisher.ended or not _same_topics(spec, endpoint.spec):
                 self._endpoints.pop(name).close()
+        self._tf.set_agents(tuple(specs))
         for name, spec in specs.items():
             if name not in self._endpoints:
                 self._add(spec)
@@ -70,7 +73,7 @@ class AgentEndpoints:
 
     def _add(self, spec: AgentSpec) -> None:
         try:
-            publisher = AgentPublisher(self._node, self._simulation, spec)
+            publisher = AgentPublisher(self._node, self._simulation, spec, self._tf)
         except SailenvError:
             return  # deleted meanwhile; the next scene_info says so
         services = AgentServices(self._node, self._requests, publisher, spec)

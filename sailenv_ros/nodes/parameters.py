@@ -6,6 +6,7 @@ They say how to run, never what a scene is. Those in `LIVE` may be changed while
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -23,7 +24,7 @@ from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import TimeMode
 
-__all__ = ["LIVE", "SimParameters", "declare_parameters"]
+__all__ = ["LIVE", "Parameter", "SimParameters", "declare_parameters", "declare_table"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +50,7 @@ class SimParameters:
         The agent that is there from the start.
     """
 
-    scene: str
+    scene: str | None
     mode: TimeMode
     real_time_factor: float
     seed: int
@@ -91,8 +92,9 @@ LIVE = ("real_time_factor", "agent.rate_hz")
 
 _PARAMETERS: dict[str, _Parameter] = {
     "scene": _Parameter(
-        "optical",
-        "Name of the first scene, or the path of a scene file; later: the service change_scene.",
+        "",
+        "Name of the first scene, or the path of a scene file; later: the service change_scene. "
+        "Empty: room_01, or optical where the furniture has not been built.",
     ),
     "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
     "mode": _Parameter(
@@ -155,10 +157,9 @@ def declare_parameters(node: Node) -> SimParameters:
     InvalidRequest
         If a value that was given has the wrong type or is out of range, or a name is unknown.
     """
-    _refuse_unknown(node)
-    values = {name: _declare(node, name, entry) for name, entry in _PARAMETERS.items()}
+    values = declare_table(node, _PARAMETERS)
     return SimParameters(
-        scene=values["scene"],
+        scene=values["scene"] or None,
         mode=cast(TimeMode, values["mode"]),
         real_time_factor=values["real_time_factor"],
         seed=values["seed"],
@@ -172,6 +173,22 @@ def declare_parameters(node: Node) -> SimParameters:
         gateway_protocol=values["gateway.protocol"],
         agent=_agent(values),
     )
+
+
+Parameter = _Parameter
+"""One parameter of a node: default, description, range or choices."""
+
+
+def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
+    """Declare the parameters of any node of this package; give their values by name.
+
+    Raises
+    ------
+    InvalidRequest
+        If a value that was given has the wrong type or is out of range, or a name is unknown.
+    """
+    _refuse_unknown(node, table)
+    return {name: _declare(node, name, entry) for name, entry in table.items()}
 
 
 def _declare(node: Node, name: str, entry: _Parameter) -> Any:
@@ -194,13 +211,13 @@ def _given(node: Node, name: str) -> Any:
     return node._parameter_overrides[name].value  # rclpy tells it nowhere else
 
 
-def _refuse_unknown(node: Node) -> None:
+def _refuse_unknown(node: Node, table: Mapping[str, Parameter]) -> None:
     """Refuse a misspelt parameter, which ROS would pass over in silence."""
     for name in node._parameter_overrides:  # rclpy tells it nowhere else
-        ours = name in _PARAMETERS
+        ours = name in table
         of_ros = name.startswith("qos_overrides.") or node.has_parameter(name)
         if not ours and not of_ros:
-            raise UnknownName("parameter", name, _PARAMETERS)
+            raise UnknownName("parameter", name, table)
 
 
 def _agent(values: dict[str, Any]) -> AgentSpec | None:

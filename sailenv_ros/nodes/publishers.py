@@ -29,6 +29,7 @@ from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.nodes.companions import Companions
 from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
+from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import FrameStream, Simulation
 
 __all__ = ["AgentPublisher"]
@@ -51,9 +52,12 @@ class AgentPublisher:
     simulation : Simulation
     spec : AgentSpec
         As registered.
+    tf : TfTree
+        Told where the agent is, as the topic `pose` is.
     """
 
-    def __init__(self, node: Node, simulation: Simulation, spec: AgentSpec) -> None:
+    def __init__(self, node: Node, simulation: Simulation, spec: AgentSpec, tf: TfTree) -> None:
+        self._tf = tf
         self._node = node
         self._simulation = simulation
         self._spec = spec
@@ -182,7 +186,8 @@ class AgentPublisher:
 
     def _pose_alone(self) -> None:
         """Tell where the agent is while no frames are made."""
-        if self._stream is None or self._stream.views or not _is_subscribed(self._pose):
+        wanted = self._tf.wanted or _is_subscribed(self._pose)
+        if self._stream is None or self._stream.views or not wanted:
             return
         try:
             pose = self._simulation.get_pose(self._spec.name)
@@ -193,6 +198,7 @@ class AgentPublisher:
                 self._last_pose = pose
                 stamp = stamp_from_ns(pose.sim_time_ns)
                 self._pose.publish(pose_stamped_to_msg(pose.pose, stamp, WORLD_FRAME_ID))
+                self._tf.publish(self._spec.name, pose.pose, stamp)
 
     # -- messages --------------------------------------------------------------------------
 
@@ -215,6 +221,7 @@ class AgentPublisher:
         if _is_subscribed(self._pose):
             pose = frame.camera.pose
             self._pose.publish(pose_stamped_to_msg(pose, header.stamp, WORLD_FRAME_ID))
+        self._tf.publish(self._spec.name, frame.camera.pose, header.stamp)
         # Last, as they take time and nobody waits for them.
         self._companions.publish(frame, header)
         self._counter.add(frame, time.perf_counter() - began)

@@ -6,7 +6,15 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-__all__ = ["clock_qos", "diagnostics_qos", "frame_qos", "latched_qos", "no_events", "overridable"]
+__all__ = [
+    "clock_qos",
+    "command_qos",
+    "diagnostics_qos",
+    "frame_qos",
+    "latched_qos",
+    "no_events",
+    "overridable",
+]
 
 
 def frame_qos() -> QoSProfile:
@@ -34,6 +42,16 @@ def latched_qos() -> QoSProfile:
 
 def clock_qos() -> QoSProfile:
     """/clock: best effort and the latest alone, as every node's time source subscribes."""
+    return QoSProfile(
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.VOLATILE,
+        history=HistoryPolicy.KEEP_LAST,
+        depth=1,
+    )
+
+
+def command_qos() -> QoSProfile:
+    """Commands: best effort fits every sender, and the latest is the one that counts."""
     return QoSProfile(
         reliability=ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.VOLATILE,

@@ -33,10 +33,12 @@ from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_en
 from sailenv_ros.nodes.light_services import LightServices
 from sailenv_ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.nodes.log_bridge import LogBridge
+from sailenv_ros.nodes.motion_services import MotionServices
 from sailenv_ros.nodes.object_services import ObjectServices
 from sailenv_ros.nodes.parameters import SimParameters, declare_parameters
 from sailenv_ros.nodes.requests import Requests
 from sailenv_ros.nodes.services import SimulatorServices
+from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.presence import SimulatorLock
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
@@ -79,12 +81,17 @@ class SimNode:
         self._executor = executor
         self._simulation = simulation
         requests = Requests(simulation, executor)
-        self._endpoints = AgentEndpoints(node, simulation, requests)
+        self._tf = TfTree(node)
+        self._endpoints = AgentEndpoints(node, simulation, requests, self._tf)
         self._announcements = Announcements(
             node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
         )
         self._services = SimulatorServices(node, requests, self._reconcile)
-        self._more_services = (ObjectServices(node, requests), LightServices(node, requests))
+        self._more_services = (
+            ObjectServices(node, requests),
+            LightServices(node, requests),
+            MotionServices(node, requests),
+        )
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)

@@ -60,7 +60,7 @@ def _behaviour_definitions(behaviours: Mapping[str, type[BaseModel]]) -> dict[st
         is_this = {"properties": {"type": {"const": name}}, "required": ["type"]}
         cases.append({"if": is_this, "then": parameters})
     kind = {
-        "enum": sorted(behaviours),
+        "anyOf": [{"enum": sorted(behaviours)}, {"type": "string", "pattern": "^[^:]+:[^:]+$"}],
         "description": "name of the behaviour; it decides which other keys there are",
     }
     definitions["BehaviourSpec"] = {

@@ -40,9 +40,13 @@ class BehaviourSpec(SceneModel):
 
     model_config = ConfigDict(extra="allow")
 
-    type: Annotated[str, Text(r"[a-z][a-z0-9_]{0,62}", "the name of a behaviour")] = Field(
-        description="name of the behaviour, e.g. rotate_rigidbody"
-    )
+    type: Annotated[
+        str,
+        Text(
+            r"[a-z][a-z0-9_]{0,62}|[A-Za-z_][A-Za-z0-9_.]{0,200}:[A-Za-z_][A-Za-z0-9_]{0,62}",
+            "the name of a behaviour, or module:name of one of yours",
+        ),
+    ] = Field(description="name of the behaviour, e.g. rotate_rigidbody")
 
     @property
     def parameters(self) -> Mapping[str, Any]:

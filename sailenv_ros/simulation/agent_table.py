@@ -6,7 +6,7 @@ Used by the loop thread alone. Knows the world for its movers and nothing of ren
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
@@ -193,6 +193,24 @@ class AgentTable:
         record.due_count = 0
         if rate_hz:
             record.skip_to(world.step_count)
+
+    def require_room(self, specs: Iterable[AgentSpec]) -> None:
+        """Refuse a scene whose agents would be too many beside those that there are.
+
+        Raises
+        ------
+        InvalidRequest
+        """
+        count = len({*self._records, *(spec.name for spec in specs)})
+        if count > MAX_AGENTS:
+            accepted = f"at most {MAX_AGENTS} with those of the scene; delete some first"
+            raise InvalidRequest("number of agents", count, accepted)
+
+    def add_missing(self, specs: Iterable[AgentSpec], world: World) -> None:
+        """Add a scene's agents, but for those whose names are in use: they stay as they are."""
+        for spec in specs:
+            if spec.name not in self._records:
+                self.add(spec, world)
 
     def begin_epoch(self, world: World, *, as_registered: bool) -> None:
         """Take the agents over into a world that has just begun.

@@ -16,6 +16,7 @@ from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_requests import AgentRequests
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+from sailenv_ros.simulation.motion_requests import MotionRequests
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.world_requests import Entries, WorldRequests
@@ -40,7 +41,7 @@ def checked_real_time_factor(factor: float) -> float:
     return factor
 
 
-class SimulationCore(AgentRequests, WorldRequests):
+class SimulationCore(AgentRequests, MotionRequests, WorldRequests):
     """World, renderer and agents of one simulation.
 
     Parameters
@@ -82,6 +83,7 @@ class SimulationCore(AgentRequests, WorldRequests):
         self.on_step: Callable[[int], None] = lambda sim_time_ns: None
         self.skipped_frames = 0
         self._world = library.build(scene, seed, self._epoch, self._next_revision)
+        self._world.confines = self._confines
         for spec in library.agents_of(self._world.scene):
             self._agents.add(spec, self._world)
 
@@ -288,10 +290,19 @@ class SimulationCore(AgentRequests, WorldRequests):
 
     def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
         world = self._library.build(scene, seed, self._epoch + 1, self._next_revision, more=more)
+        brought = () if as_registered else self._library.agents_of(world.scene)
+        try:
+            self._agents.require_room(brought)
+        except BaseException:
+            world.close()
+            raise
         self._world.close()
+        world.confines = self._confines
         self._world, self._seed, self._more = world, seed, more
         self._epoch += 1
         self._agents.begin_epoch(world, as_registered=as_registered)
+        self._agents.add_missing(brought, world)
+        self._discard_frames()
         self._announce()
         self.on_step(world.sim_time_ns)
 
@@ -302,6 +313,12 @@ class SimulationCore(AgentRequests, WorldRequests):
         if paused != self._paused:
             self._paused = paused
             self._announce()
+
+    def _discard_frames(self) -> None:
+        """Drop waiting frames whose ids the next scene_info will not know."""
+        for record in self._agents:
+            for stream in record.streams:
+                stream.discard()
 
     def _next_revision(self) -> int:
         self._revision += 1

@@ -26,10 +26,13 @@ T = TypeVar("T")
 
 REQUESTS = frozenset(
     {
+        "attach_behaviour",
         "capture",
         "change_scene",
         "delete_agent",
         "despawn_object",
+        "detach_behaviours",
+        "drive_mover",
         "get_object",
         "get_pose",
         "lights",
@@ -43,6 +46,7 @@ REQUESTS = frozenset(
         "set_background",
         "set_follow",
         "set_light",
+        "set_mover_controller",
         "set_pose",
         "set_position",
         "set_rate",
@@ -292,6 +296,44 @@ class Requests:
         """
         result: tuple[int, ...] = self._ask("load_scenario", timeout_s, scenario)
         return result
+
+    def attach_behaviour(
+        self,
+        obj: int | str,
+        type_: str,
+        parameters: Mapping[str, Any] | None = None,
+        *,
+        timeout_s: float = 30.0,
+    ) -> None:
+        """Let an object, named by id or name, move of itself in one more way, from now on."""
+        self._ask("attach_behaviour", timeout_s, obj, type_, parameters)
+
+    def detach_behaviours(self, obj: int | str, *, timeout_s: float = 30.0) -> None:
+        """End everything that makes an object move of itself; its speed remains."""
+        self._ask("detach_behaviours", timeout_s, obj)
+
+    def set_mover_controller(
+        self, mover: str, controller: Literal["waypoint", "rigidbody"], *, timeout_s: float = 30.0
+    ) -> None:
+        """Choose what drives a mover; the empty name means the scene's first."""
+        self._ask("set_mover_controller", timeout_s, mover, controller)
+
+    def drive_mover(
+        self,
+        mover: str = "",
+        *,
+        linear_m_s: ArrayLike = (0.0, 0.0, 0.0),
+        angular_rad_s: ArrayLike = (0.0, 0.0, 0.0),
+        timeout_s: float = 30.0,
+    ) -> None:
+        """Have a mover walk for half a simulated second, unless another command comes.
+
+        Forward and left along the ground, up along the world's z [m/s]; pitch (down is positive)
+        and yaw (left is positive) [rad/s]. What it meets stops it.
+        """
+        self._ask(
+            "drive_mover", timeout_s, mover, linear_m_s=linear_m_s, angular_rad_s=angular_rad_s
+        )
 
     def _ask(self, name: str, timeout_s: float, /, *args: Any, **kwargs: Any) -> Any:
         """Queue a request and wait; its result has the type of the core's method."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -12,9 +13,10 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
-from sailenv_ros.assets.sources import installed_packs, installed_sources
+from sailenv_ros.assets.places import standard_pack_folder
+from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.behaviours import behaviour_faults
+from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.model import Asset
@@ -26,12 +28,31 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_placement
 from sailenv_ros.world.world import World
 
-__all__ = ["DEFAULT_SCENE", "SceneLibrary"]
+__all__ = ["DEFAULT_SCENE", "SCENE_WITHOUT_FURNITURE", "SceneLibrary", "default_scene"]
 
 MAX_UPLOADS = 256
 """Models that users may add, so that they cannot fill the memory without end."""
 
-DEFAULT_SCENE = "optical"
+DEFAULT_SCENE = "room_01"
+SCENE_WITHOUT_FURNITURE = "optical"
+
+_log = logging.getLogger(__name__)
+
+
+def default_scene() -> str:
+    """Give the scene to begin with if none is asked for.
+
+    `DEFAULT_SCENE`, or one without furniture where that has not been built, with a warning.
+    """
+    if any(pack.folder == standard_pack_folder() for pack in installed_packs()):
+        return DEFAULT_SCENE
+    _log.warning(
+        "beginning with the scene %s, because %s needs the furniture; fetch it with: %s",
+        SCENE_WITHOUT_FURNITURE,
+        DEFAULT_SCENE,
+        BUILD_COMMAND,
+    )
+    return SCENE_WITHOUT_FURNITURE
 
 
 class SceneLibrary:
@@ -84,6 +105,11 @@ class SceneLibrary:
             surfaces=surface_names(),
         )
 
+    @property
+    def _knowledge_of_strangers(self) -> SceneKnowledge:
+        """What requests may refer to: they cannot have code imported, as files can."""
+        return replace(self.knowledge, behaviour_faults=known_behaviour_faults)
+
     def load(self, scene: str | Path) -> SceneSpec:
         """Read a scene by its name or file; every fault at once.
 
@@ -94,8 +120,7 @@ class SceneLibrary:
         SceneError
             If its file has faults.
         """
-        path = self._files.get(str(scene)) or self._catalogue.path(scene)
-        return load_scene(path, knowledge=self.knowledge)
+        return load_scene(self._path(scene), knowledge=self.knowledge)
 
     def build(
         self,
@@ -121,7 +146,7 @@ class SceneLibrary:
         )
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
-            self._files[spec.name] = self._catalogue.path(scene)
+            self._files[spec.name] = self._path(scene)
         return world
 
     def canonical_asset(self, name: str) -> str:
@@ -184,7 +209,8 @@ class SceneLibrary:
             If it cannot be placed.
         """
         names = tuple(category.name for category in world.categories.values())
-        spec = checked_object(entry, replace(self.knowledge, categories=names))
+        known = replace(self._knowledge_of_strangers, categories=names)
+        spec = checked_object(entry, known)
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -197,6 +223,9 @@ class SceneLibrary:
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Give the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
+
+    def _path(self, scene: str | Path) -> Path:
+        return self._files.get(str(scene)) or self._catalogue.path(scene)
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec
@@ -212,7 +241,7 @@ class SceneLibrary:
                 taken.add(str(entry["name"]))
             named.append(entry)
         own = tuple(category.name for category in spec.categories)
-        known = self.knowledge
+        known = self._knowledge_of_strangers
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
 
 

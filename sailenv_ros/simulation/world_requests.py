@@ -77,6 +77,7 @@ class WorldRequests:
     def despawn_object(self, obj: int | str) -> None:
         """Take an object, named by id or name, out of the scene; its id is not used again."""
         self._world.despawn(self._world.find(obj))
+        self._discard_frames()
         self._announce()
 
     def move_object(self, obj: int | str, pose: Pose, *, teleport: bool = False) -> None:
@@ -163,6 +164,9 @@ class WorldRequests:
     # -- of the simulation -----------------------------------------------------------------
 
     def _announce(self) -> None:
+        raise NotImplementedError
+
+    def _discard_frames(self) -> None:
         raise NotImplementedError
 
     def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:

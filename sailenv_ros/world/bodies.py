@@ -6,26 +6,40 @@ in which the model's vertices stand.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.behaviours import Action, BodyState, RunningBehaviour
+from sailenv_ros.behaviours import MAX_SPEED_M_S, Action, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, PhysicsError
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
 
-__all__ = ["Body", "Placement"]
+__all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement"]
 
 Vector3 = tuple[float, float, float]
 
+Confines: TypeAlias = Callable[[str, float], NDArray[np.float64]]
+"""``confines(agent, distance_m)`` gives the planes of an agent's view, as `BodyState` has them."""
+
+MAX_BEHAVIOURS = 16
+
+CAREFUL_SPEED_M_S = 0.5
+"""Slower bodies are kept out of walls by the engine alone."""
+
+MAX_DEPTH_M = 0.002
+OUT_OF_WALLS_PER_S = 24.0
+
 _LINK_OF_BASE = -1
+
+_NO_PLANES = np.zeros((0, 4))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,12 +101,16 @@ class Body:
 
     def __init__(self, client: BulletClient, placement: Placement, gravity: Vector3) -> None:
         self.placement = placement
+        self._behaviours = placement.behaviours
         self._client = client
         self._centre = tuple(
             c * s for c, s in zip(placement.asset.centre_of_mass_m, placement.scale, strict=True)
         )
         self.mass_kg = 0.0 if placement.static else _mass_kg(placement)
         self._id = self._build()
+        self._inertia = np.ones(3)
+        if not placement.static:
+            self._inertia = np.asarray(self._client.getDynamicsInfo(self._id, _LINK_OF_BASE)[2])
         self._static_pose = placement.pose
         self._matrix = placement.pose.matrix()
         # PyBullet has no per-body gravity; the weight of those it must not pull is given back.
@@ -119,10 +137,16 @@ class Body:
         return self._matrix_of(position, quat)
 
     def pose(self) -> Pose:
-        """Give the pose of the body frame now."""
+        """Give the pose of the body frame now; what has fallen out of the world is at its edge."""
         if self.placement.static:
             return self._static_pose
-        return Pose.from_matrix(self.world_from_body())
+        if not any(self._centre):
+            position, quat = self._client.getBasePositionAndOrientation(self._id)
+            self._require_finite(position, quat)
+            return Pose(np.clip(position, -POSITION_LIMIT_M, POSITION_LIMIT_M), quat)
+        matrix = self.world_from_body().copy()
+        np.clip(matrix[:3, 3], -POSITION_LIMIT_M, POSITION_LIMIT_M, out=matrix[:3, 3])
+        return Pose.from_matrix(matrix)
 
     def put(self, pose: Pose) -> None:
         """Set the pose and stop the body."""
@@ -165,23 +189,49 @@ class Body:
             linear_velocity=_three(linear),
             angular_velocity=_three(angular),
             behaviours=tuple(
-                {"type": running.kind.type, **running.parameters.model_dump()}
-                for running in placement.behaviours
+                {"type": running.kind.type, **running.parameters.told()}
+                for running in self._behaviours
             ),
             sim_time_ns=sim_time_ns,
         )
 
-    def act(self, time_s: float) -> None:
-        """Do what its behaviours and its want of gravity ask for the step that begins now."""
-        for running in self.placement.behaviours:
-            linear, angular = self.velocity()
-            state = BodyState(
-                pose=self.pose(),
-                linear_velocity=linear,
-                angular_velocity=angular,
-                mass_kg=self.mass_kg,
+    @property
+    def behaviours(self) -> tuple[RunningBehaviour, ...]:
+        """What moves it, in the order in which they are asked."""
+        return self._behaviours
+
+    def attach(self, running: RunningBehaviour) -> None:
+        """Let one more behaviour move it.
+
+        Raises
+        ------
+        InvalidRequest
+            If it is static, or has `MAX_BEHAVIOURS` already.
+        """
+        name = self.placement.name
+        if self.placement.static:
+            raise InvalidRequest(
+                f"static of {name!r}", True, "false for an object that has behaviours"
             )
-            self._apply(running.act(time_s, state))
+        if len(self._behaviours) >= MAX_BEHAVIOURS:
+            raise InvalidRequest(
+                f"number of behaviours of {name!r}",
+                len(self._behaviours) + 1,
+                f"at most {MAX_BEHAVIOURS}; detach them first",
+            )
+        self._behaviours = (*self._behaviours, running)
+
+    def detach(self) -> None:
+        """Let no behaviour move it any more; its speed remains."""
+        self._behaviours = ()
+
+    def act(self, time_s: float, confines: Confines) -> None:
+        """Do what its behaviours and its want of gravity ask for the step that begins now."""
+        for running in self._behaviours:
+            if not running.is_idle(time_s):
+                self._apply(running.act(time_s, self._state(running, confines)))
+        if self._behaviours:
+            self._tame()
         if self._lift is not None:
             self._push(self._lift)
 
@@ -193,7 +243,7 @@ class Body:
     @property
     def acts(self) -> bool:
         """True if `act` has anything to do."""
-        return self._lift is not None or bool(self.placement.behaviours)
+        return self._lift is not None or bool(self._behaviours)
 
     def remove(self) -> None:
         """Take the body out of the engine."""
@@ -236,8 +286,42 @@ class Body:
             )
         return int(body)
 
+    def _state(self, running: RunningBehaviour, confines: Confines) -> BodyState:
+        linear, angular = self.velocity()
+        viewer = running.parameters.viewer
+        planes = confines(viewer, running.parameters.view_distance_m) if viewer else _NO_PLANES
+        return BodyState(
+            pose=self.pose(),
+            linear_velocity=linear,
+            angular_velocity=angular,
+            mass_kg=self.mass_kg,
+            inertia_kg_m2=self._inertia,
+            confines=planes,
+        )
+
+    def _tame(self) -> None:
+        """Keep it out of walls, into which driven bodies are pressed anew at each step."""
+        linear, angular = self.velocity()
+        speed = float(np.linalg.norm(linear))
+        if speed < CAREFUL_SPEED_M_S:
+            return
+        tamed = linear * min(1.0, MAX_SPEED_M_S / speed)
+        for normal, depth_m in self._walls():
+            # As fast into the wall as the engine bears, or out of it where it is in too deep.
+            least = max(0.0, depth_m - MAX_DEPTH_M) * OUT_OF_WALLS_PER_S
+            tamed = tamed + max(0.0, least - float(tamed @ normal)) * normal
+        if (tamed != linear).any():
+            self._client.resetBaseVelocity(self._id, tamed.tolist(), angular.tolist())
+
+    def _walls(self) -> Iterator[tuple[NDArray[np.float64], float]]:
+        """Yield the normals of static bodies that it stands in, and how deep [m]."""
+        for point in self._client.getContactPoints(bodyA=self._id):
+            other, normal, distance = point[2], point[7], point[8]
+            if distance < 0.0 and not self._client.getDynamicsInfo(other, _LINK_OF_BASE)[0]:
+                yield np.asarray(normal), -distance
+
     def _apply(self, action: Action) -> None:
-        if action != Action():
+        if action.acts:
             self.wake()
         if action.linear_velocity is not None or action.angular_velocity is not None:
             linear, angular = self.velocity()
@@ -265,11 +349,14 @@ class Body:
         matrix = pose.matrix()
         return (matrix[:3, :3] @ np.asarray(self._centre) + matrix[:3, 3]).tolist()  # type: ignore[no-any-return]  # tolist is Any
 
-    def _matrix_of(self, position: Any, quat: Any) -> NDArray[np.float64]:
+    def _require_finite(self, position: Any, quat: Any) -> None:
         if not np.isfinite(position).all() or not np.isfinite(quat).all():
             raise PhysicsError(
                 f"the motion of {self.placement.name!r} is no longer finite; reset the scene"
             )
+
+    def _matrix_of(self, position: Any, quat: Any) -> NDArray[np.float64]:
+        self._require_finite(position, quat)
         matrix = Pose((0.0, 0.0, 0.0), quat).matrix()
         matrix[:3, 3] = np.asarray(position) - matrix[:3, :3] @ np.asarray(self._centre)
         return matrix

@@ -1,20 +1,68 @@
 """The mover: the track that agents follow.
 
 While its waypoints drive it, its pose is a pure function of the simulated time it has run, so
-reading it twice gives the same bytes. Once it is put somewhere by hand it stays there until the
-waypoints are given control again.
+reading it twice gives the same bytes. Once it is put somewhere by hand it stays there until a
+command moves it (`world.stand` says how far) or the waypoints are given control again.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
-from sailenv_ros.geometry import Pose, interpolate
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.geometry import Pose, interpolate, vector
 
-__all__ = ["Mover", "WaypointTrack"]
+__all__ = [
+    "COMMAND_LASTS_NS",
+    "MAX_COMMAND",
+    "Controller",
+    "Mover",
+    "MoverCommand",
+    "WaypointTrack",
+]
 
 Controller = Literal["waypoint", "rigidbody"]
+
+COMMAND_LASTS_NS = 500_000_000
+"""Simulated time after which a command that was not given again ends [ns]."""
+
+MAX_COMMAND = 5.0
+"""Fastest that is accepted [m/s], [rad/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoverCommand:
+    """How a mover walks, as a first-person camera does.
+
+    Attributes
+    ----------
+    linear_m_s : (3,) tuple of float
+        Forward and left along the ground, up along the world's z, whatever it looks at [m/s].
+    angular_rad_s : (3,) tuple of float
+        Roll, which is not accepted, pitch (down is positive), yaw (left is positive) [rad/s].
+
+    Raises
+    ------
+    InvalidRequest
+        If a number is not finite or above `MAX_COMMAND`, or it rolls.
+    """
+
+    linear_m_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    angular_rad_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("linear_m_s", "angular_rad_s"):
+            given = vector(f"command's {name}", getattr(self, name), limit=MAX_COMMAND)
+            object.__setattr__(self, name, given)
+        if self.angular_rad_s[0]:
+            accepted = "0: a mover does not roll"
+            raise InvalidRequest("command's roll rate", self.angular_rad_s[0], accepted)
+
+    @property
+    def moves(self) -> bool:
+        """True unless everything is 0."""
+        return any((*self.linear_m_s, *self.angular_rad_s))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +119,8 @@ class Mover:
         self._held = start
         self._run_ns = 0
         self._since_ns = 0
+        self._command: MoverCommand | None = None
+        self._command_ends_ns = 0
 
     @property
     def track(self) -> WaypointTrack | None:
@@ -93,8 +143,42 @@ class Mover:
         self.control("rigidbody", time_ns)
         self._held = pose
 
+    def moved(self, pose: Pose) -> None:
+        """Take note of where a command has brought it."""
+        self._held = pose
+
+    def command(self, command: MoverCommand, time_ns: int) -> None:
+        """Have it walk, until another command comes or `COMMAND_LASTS_NS` are over.
+
+        Raises
+        ------
+        InvalidRequest
+            If its waypoints drive it.
+        """
+        if self._controller != "rigidbody":
+            accepted = "'rigidbody' to be driven by commands; change it by set_mover_controller"
+            raise InvalidRequest(f"controller of {self.name!r}", self._controller, accepted)
+        self._command = command
+        self._command_ends_ns = time_ns + COMMAND_LASTS_NS
+
+    def command_at(self, time_ns: int) -> MoverCommand | None:
+        """Give the command that moves it at a simulated time [ns]; None if it stands still."""
+        command = self._command
+        if command is None or not command.moves or time_ns >= self._command_ends_ns:
+            return None
+        return command
+
     def control(self, controller: Controller, time_ns: int) -> None:
-        """Change what drives it; waypoints go on where they were interrupted."""
+        """Change what drives it; waypoints go on where they were interrupted.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such controller.
+        """
+        if controller not in get_args(Controller):
+            raise UnknownName("controller", str(controller), get_args(Controller))
+        self._command = None
         if controller == self._controller:
             return
         if controller == "rigidbody":

@@ -1,4 +1,4 @@
-"""Whether a scene is put together as its maker meant: what overlaps, what falls, what is in the way.
+"""Whether a scene is put together as was meant: what overlaps, what falls, what is in the way.
 
 A built `World` in, findings out. The world is stepped, so it is one for this alone.
 """
@@ -74,9 +74,7 @@ def shifts(
     world: World, *, seconds: float = 2.0, distance_m: float = 0.02, angle_deg: float = 5.0
 ) -> Iterator[Shift]:
     """Step the world, then yield what has moved or turned by more, though nothing drives it."""
-    resting = [
-        body for body in world.bodies if not body.placement.static and not body.placement.behaviours
-    ]
+    resting = [body for body in world.bodies if not body.placement.static and not body.behaviours]
     before = [body.world_from_body() for body in resting]
     world.step(round(seconds * STEPS_PER_SECOND))
     for body, start in zip(resting, before, strict=True):
@@ -103,7 +101,7 @@ def _on_track(world: World, mover: Mover, probe: int, radius_m: float) -> Iterat
     if mover.track is None:
         return
     seen: set[str] = set()
-    bodies = [body for body in world.bodies if body.collides and not body.placement.behaviours]
+    bodies = [body for body in world.bodies if body.collides and not body.behaviours]
     for time_s in np.arange(0.0, mover.track.total_time_s, TRACK_STEP_S):
         position = mover.track.pose_at(float(time_s)).position_m
         world.client.resetBasePositionAndOrientation(probe, position, (0.0, 0.0, 0.0, 1.0))

@@ -18,9 +18,10 @@ from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
-from sailenv_ros.world.bodies import Body, Placement
+from sailenv_ros.world.bodies import Body, Confines, Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
-from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover import Mover, MoverCommand
+from sailenv_ros.world.stand import Stand
 
 __all__ = ["World"]
 
@@ -40,6 +41,12 @@ class World:
         Get instance ids 1, 2, 3 … in this order.
     movers : sequence of Mover
         At least one.
+
+    Attributes
+    ----------
+    confines : callable
+        ``confines(agent, distance_m)`` gives the (N, 4) planes of an agent's view; none at all
+        unless whoever knows the agents has set it.
     """
 
     def __init__(
@@ -65,11 +72,13 @@ class World:
         self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
         self._bodies: dict[int, Body] = {}
+        self._stands: dict[str, Stand] = {}
         self._histories: dict[int, int] = {}
         self._last_id = 0
         self._last_history = 0
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
+        self.confines: Confines = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
             for placement in placements:
@@ -97,8 +106,12 @@ class World:
         for _ in range(count):
             time_s = self._step / STEPS_PER_SECOND
             for body in active:
-                body.act(time_s)
+                body.act(time_s, self.confines)
+            for stand in self._stands.values():
+                stand.before_step(self.sim_time_ns)
             self._client.stepSimulation()
+            for stand in self._stands.values():
+                stand.after_step(self.sim_time_ns)
             self._step += 1
         if count:
             self._snapshot = None
@@ -128,7 +141,7 @@ class World:
     @property
     def moving_ids(self) -> frozenset[int]:
         """Ids of the instances that a behaviour moves."""
-        return frozenset(id_ for id_, body in self._bodies.items() if body.placement.behaviours)
+        return frozenset(id_ for id_, body in self._bodies.items() if body.behaviours)
 
     def snapshot(self) -> WorldSnapshot:
         """Copy the poses; the same object until something changes."""
@@ -224,6 +237,19 @@ class World:
         if teleport:
             self._histories[instance_id] = self._new_history()
         self._snapshot = None
+
+    def drive(self, mover: str, command: MoverCommand) -> None:
+        """Have a mover walk as a command says, stopped by what it meets.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            If there is no such mover, or its waypoints drive it.
+        """
+        driven = self.mover(mover)
+        driven.command(command, self.sim_time_ns)
+        if driven.name not in self._stands:
+            self._stands[driven.name] = Stand(self._client, driven, self._gravity)
 
     def set_lights(self, lights: Sequence[Light]) -> None:
         """Replace the lights."""

@@ -1,0 +1,79 @@
+"""Arithmetic that behaviours share: turns between orientations, velocities towards a pose.
+
+Poses and velocities in, velocities out; knows no engine and no particular behaviour.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.behaviours.base import MAX_SPEED_M_S, STEP_S, Action, BodyState
+from sailenv_ros.geometry import Pose
+
+__all__ = ["MAX_TURN_RAD_S", "limited", "random_direction", "towards", "turn_vector", "vector3"]
+
+MAX_TURN_RAD_S = 30.0
+"""No behaviour turns a body faster."""
+
+Vector = NDArray[np.float64]
+
+
+def vector3(values: Vector) -> tuple[float, float, float]:
+    """Give three numbers as a tuple of Python's own."""
+    return float(values[0]), float(values[1]), float(values[2])
+
+
+def limited(values: Vector, most: float) -> Vector:
+    """Shorten a vector to a length of at most `most`, in its own direction."""
+    length = float(np.linalg.norm(values))
+    return values if length <= most else values * (most / length)
+
+
+def random_direction(rng: np.random.Generator) -> Vector:
+    """Draw a unit vector, every direction being equally likely."""
+    height = rng.uniform(-1.0, 1.0)
+    angle = rng.uniform(0.0, 2.0 * math.pi)
+    radius = math.sqrt(1.0 - height * height)
+    return np.array([radius * math.cos(angle), radius * math.sin(angle), height])
+
+
+def turn_vector(start: Pose, end: Pose) -> Vector:
+    """Give the shorter turn from one orientation to another.
+
+    Returns
+    -------
+    turn : (3,) float64
+        Axis in the world frame times angle [rad], the angle at most pi.
+    """
+    x, y, z, w = (float(part) for part in start.orientation_xyzw)
+    p, q, r, s = (float(part) for part in end.orientation_xyzw)
+    # end * conjugate(start), written out.
+    axis = np.array(
+        [
+            -s * x + p * w - q * z + r * y,
+            -s * y + p * z + q * w - r * x,
+            -s * z - p * y + q * x + r * w,
+        ]
+    )
+    cosine = s * w + p * x + q * y + r * z
+    if cosine < 0.0:
+        axis, cosine = -axis, -cosine
+    sine = float(np.linalg.norm(axis))
+    if sine < 1e-12:
+        return 2.0 * axis
+    return axis * (2.0 * math.atan2(sine, cosine) / sine)
+
+
+def towards(body: BodyState, goal: Pose) -> Action:
+    """Give the velocities that bring a body to a pose by the end of the step.
+
+    What is too far for one step at the highest speed takes several.
+    """
+    way = np.asarray(goal.position_m) - np.asarray(body.pose.position_m)
+    return Action(
+        linear_velocity=vector3(limited(way / STEP_S, MAX_SPEED_M_S)),
+        angular_velocity=vector3(limited(turn_vector(body.pose, goal) / STEP_S, MAX_TURN_RAD_S)),
+    )

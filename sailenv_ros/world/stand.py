@@ -1,0 +1,112 @@
+"""A mover's rigid body: a ball that commands push about and that walls stop.
+
+A `Mover` with a command in, its next pose out. The ball is in the engine alone: it is no object,
+has no instance id and is never drawn. It meets things only while a command moves it, so a mover
+that was put somewhere stays exactly there.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sailenv_ros.geometry import Pose
+from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient
+from sailenv_ros.world.mover import Mover
+
+__all__ = ["STAND_RADIUS_M", "Stand"]
+
+STAND_RADIUS_M = 0.15
+"""Room that a camera wants around it."""
+
+STAND_MASS_KG = 1.0
+
+MAX_PITCH_DEG = 89.0
+
+_LINK_OF_BASE = -1
+_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+_STILL = (0.0, 0.0, 0.0)
+_NOTHING, _EVERYTHING = 0, -1
+
+
+class Stand:
+    """The body of one mover.
+
+    Parameters
+    ----------
+    client : BulletClient
+    mover : Mover
+    gravity : (3,) tuple of float
+        What it must not be pulled by [m/s2].
+    """
+
+    def __init__(
+        self, client: BulletClient, mover: Mover, gravity: tuple[float, float, float]
+    ) -> None:
+        self._client = client
+        self._mover = mover
+        self._lift = tuple(-STAND_MASS_KG * g for g in gravity)
+        self._moves = False
+        shape = client.createCollisionShape(client.constants.GEOM_SPHERE, radius=STAND_RADIUS_M)
+        self._id = client.createMultiBody(baseMass=STAND_MASS_KG, baseCollisionShapeIndex=shape)
+        # It slides along walls, does not roll, and bounces off nothing.
+        client.changeDynamics(
+            self._id,
+            _LINK_OF_BASE,
+            lateralFriction=0.0,
+            restitution=0.0,
+            linearDamping=0.0,
+            angularDamping=0.0,
+        )
+        self._meet(_NOTHING)
+
+    def before_step(self, time_ns: int) -> None:
+        """Push the body for the step that begins at a simulated time [ns]."""
+        command = self._mover.command_at(time_ns)
+        if command is None:
+            self._stop()
+            return
+        here = self._mover.pose_at(time_ns)
+        self._client.resetBasePositionAndOrientation(self._id, here.position_m, _UPRIGHT)
+        self._client.resetBaseVelocity(self._id, _along(here, command.linear_m_s), _STILL)
+        frame = self._client.constants.WORLD_FRAME
+        self._client.applyExternalForce(self._id, _LINK_OF_BASE, self._lift, here.position_m, frame)
+        if not self._moves:
+            self._meet(_EVERYTHING)
+            self._moves = True
+
+    def after_step(self, time_ns: int) -> None:
+        """Tell the mover where the step that began at a simulated time [ns] has brought it."""
+        command = self._mover.command_at(time_ns)
+        if command is None:
+            return
+        position, _ = self._client.getBasePositionAndOrientation(self._id)
+        here = self._mover.pose_at(time_ns)
+        _, pitch_rate, yaw_rate = command.angular_rad_s
+        if not pitch_rate and not yaw_rate:
+            self._mover.moved(Pose(position, here.orientation_xyzw))
+            return
+        roll, pitch, yaw = here.rpy_deg
+        pitch += math.degrees(pitch_rate) / STEPS_PER_SECOND
+        pitch = max(-MAX_PITCH_DEG, min(MAX_PITCH_DEG, pitch))
+        yaw += math.degrees(yaw_rate) / STEPS_PER_SECOND
+        self._mover.moved(Pose.from_rpy_deg(position, (roll, pitch, yaw)))
+
+    def _stop(self) -> None:
+        # It falls meanwhile, by a hair at each step, and meets nothing: nobody can tell.
+        self._client.resetBaseVelocity(self._id, _STILL, _STILL)
+        if self._moves:
+            self._meet(_NOTHING)
+            self._moves = False
+
+    def _meet(self, what: int) -> None:
+        group = 1 if what else 0
+        self._client.setCollisionFilterGroupMask(self._id, _LINK_OF_BASE, group, what)
+
+
+def _along(here: Pose, linear_m_s: tuple[float, float, float]) -> list[float]:
+    """Turn a walker's speeds forward, left and up into the world's axes."""
+    yaw = math.radians(here.rpy_deg[2])
+    forward, left, up = linear_m_s
+    x = math.cos(yaw) * forward - math.sin(yaw) * left
+    y = math.sin(yaw) * forward + math.cos(yaw) * left
+    return [x, y, up]

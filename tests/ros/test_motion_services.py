@@ -1,0 +1,171 @@
+"""Behaviours, controllers and cmd_vel over DDS; the tree of transforms."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import sys
+import types
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Twist, Vector3
+
+from sailenv_msgs.msg import Behaviour, SceneInfo
+from sailenv_msgs.srv import AddBehaviour, GetPose, RemoveBehaviours, SetMoverController, Step
+from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.geometry import Pose
+from sailenv_ros.nodes.tf_tree import TfTree
+from tests.support.node_process import NodeProcess
+from tests.support.ros_probe import LATCHED, Probe, Topic
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.ros
+
+NAMESPACE = "/motion_services"
+
+
+@pytest.fixture(scope="module")
+def probe() -> Iterator[Probe]:
+    """A participant beside a lockstep simulator."""
+    with NodeProcess(NAMESPACE, mode="lockstep"), Probe(NAMESPACE) as probe:
+        yield probe
+
+
+@pytest.fixture
+def scene(probe: Probe) -> Iterator[Topic]:
+    topic = probe.listen(SceneInfo, "scene_info", LATCHED)
+    until(lambda: topic.messages, "scene_info")
+    yield topic
+    probe.listen_no_more()
+
+
+def test_behaviours_come_and_go_by_service(probe: Probe, scene: Topic) -> None:
+    """`moving` in scene_info follows; a wrong parameter is refused with its name."""
+    floor, cube = scene.last.instances[0], scene.last.instances[1]
+    assert floor.is_static
+    shake = Behaviour(type="poltergeist", parameters_json=json.dumps({"mean_interval": 1.0}))
+    probe.done(RemoveBehaviours, "remove_behaviours", RemoveBehaviours.Request(id=cube.id))
+    until(lambda: not scene.last.instances[1].moving, "the object to be left alone")
+    request = AddBehaviour.Request(id=cube.id, behaviour=shake)
+    probe.done(AddBehaviour, "add_behaviour", request)
+    until(lambda: scene.last.instances[1].moving, "the object to be moved")
+    wrong = Behaviour(type="poltergeist", parameters_json=json.dumps({"mean_interval": -1.0}))
+    answer = probe.call(
+        AddBehaviour, "add_behaviour", AddBehaviour.Request(id=cube.id, behaviour=wrong)
+    )
+    assert not answer.success
+    assert "mean_interval" in answer.message
+    answer = probe.call(
+        AddBehaviour, "add_behaviour", AddBehaviour.Request(id=floor.id, behaviour=shake)
+    )
+    assert not answer.success
+    assert "static" in answer.message
+
+
+def test_cmd_vel_drives_the_mover_once_it_is_a_rigid_body(probe: Probe, scene: Topic) -> None:
+    """Refused words for controllers; then a Twist moves the agent that follows, forward."""
+    answer = probe.call(
+        SetMoverController, "set_mover_controller", SetMoverController.Request(controller="magic")
+    )
+    assert not answer.success
+    assert "waypoint, rigidbody" in answer.message
+    request = SetMoverController.Request(controller="rigidbody")
+    probe.done(SetMoverController, "set_mover_controller", request)
+    until(lambda: scene.last.movers[0].controller == "rigidbody", "the controller in scene_info")
+    before = probe.done(GetPose, "agent/get_pose").pose.pose.position
+    commands = probe.node.create_publisher(Twist, f"{NAMESPACE}/mover/cmd_vel", 1)
+    until(commands.get_subscription_count, "the simulator to listen to mover/cmd_vel")
+
+    def moved() -> float:
+        commands.publish(Twist(linear=Vector3(x=0.0, y=0.0, z=0.4)))
+        probe.done(Step, "step", Step.Request(steps=12))
+        return float(probe.done(GetPose, "agent/get_pose").pose.pose.position.z - before.z)
+
+    until(lambda: moved() > 0.1, "the mover to rise")
+    probe.node.destroy_publisher(commands)
+
+
+# -- transforms --------------------------------------------------------------------------------
+
+
+@dataclass
+class FakeNode:
+    """Keeps what is published, by topic."""
+
+    sent: dict[str, list[Any]] = field(default_factory=dict)
+
+    def create_publisher(self, kind: type, topic: str, *args: Any, **kwargs: Any) -> Any:
+        messages = self.sent.setdefault(topic, [])
+        return types.SimpleNamespace(publish=messages.append, get_subscription_count=lambda: 1)
+
+
+@dataclass
+class FakeMessage:
+    """As tf2_msgs/TFMessage, which not every installation has."""
+
+    transforms: list[Any]
+
+
+@pytest.fixture
+def tf_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An installation that has tf2_msgs."""
+    find = importlib.util.find_spec
+    package = types.ModuleType("tf2_msgs")
+    messages = types.ModuleType("tf2_msgs.msg")
+    messages.TFMessage = FakeMessage  # type: ignore[attr-defined]  # made here
+    monkeypatch.setitem(sys.modules, "tf2_msgs", package)
+    monkeypatch.setitem(sys.modules, "tf2_msgs.msg", messages)
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: name if name == "tf2_msgs" else find(name)
+    )
+
+
+def matrix(stamped: Any) -> Any:
+    t, r = stamped.transform.translation, stamped.transform.rotation
+    return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w)).matrix()
+
+
+@pytest.mark.usefixtures("tf_installed")
+def test_the_tree_leads_from_the_world_to_the_optical_frame() -> None:
+    """world → agent → agent_camera → optical, multiplied, is the camera's own matrix."""
+    node = FakeNode()
+    tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
+    tree.set_agents(("left", "right"))
+    tree.set_agents(("left", "right"))
+    (fixed,) = node.sent["/tf_static"]
+    pose = Pose.from_rpy_deg((1, 2, 3), (10, 20, 30))
+    tree.publish("right", pose, Time(sec=4))
+    (moving,) = node.sent["/tf"]
+    links = {
+        (link.header.frame_id, link.child_frame_id): matrix(link)
+        for link in (*fixed.transforms, *moving.transforms)
+    }
+    camera = Camera(intrinsics=CameraIntrinsics(), pose=pose)
+    product = (
+        links["world", "right"]
+        @ links["right", "right_camera"]
+        @ links["right_camera", optical(links, "right_camera")]
+    )
+    np.testing.assert_allclose(product, camera.world_from_camera, atol=1e-12)
+    assert len(fixed.transforms) == 4
+    assert moving.transforms[0].header.stamp.sec == 4
+
+
+def optical(links: Any, parent: str) -> str:
+    return next(child for start, child in links if start == parent)
+
+
+def test_without_tf2_msgs_nothing_is_published(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tree is then silent, and says that nobody wants it."""
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    node = FakeNode()
+    tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
+    tree.set_agents(("left",))
+    tree.publish("left", Pose(), Time())
+    assert not tree.wanted
+    assert node.sent == {}
