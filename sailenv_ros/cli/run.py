@@ -16,7 +16,6 @@ from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.scenes import DEFAULT_SCENE
 
 __all__ = ["add_parser", "run"]
 
@@ -32,7 +31,7 @@ def add_parser(subparsers: Any) -> None:
         description="Starts the simulator and lets clients of the original SAILenv connect.",
     )
     parser.set_defaults(run=run)
-    parser.add_argument("scene", nargs="?", default=DEFAULT_SCENE, help="name or file")
+    parser.add_argument("scene", nargs="?", help="name or file (default: a furnished room)")
     parser.add_argument("--no-ros", action="store_true", help="without topics and services")
     parser.add_argument("--host", default=DEFAULT_HOST, help="address (default: %(default)s)")
     parser.add_argument(
@@ -53,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
 def _become_the_node(args: argparse.Namespace) -> int:
     """Replace this process by the node's, which has a main program of its own."""
     values: dict[str, object] = {
-        "scene": args.scene,
+        "scene": args.scene or "",
         "seed": args.seed,
         "gateway.host": args.host,
         "gateway.port": args.port,

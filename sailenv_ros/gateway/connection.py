@@ -98,6 +98,9 @@ class Connection:
 
     async def _converse(self) -> None:
         _keep_alive(self._writer)
+        # To drain is then to send everything: a view's length goes out in one piece, which the
+        # original client takes for granted.
+        self._writer.transport.set_write_buffer_limits(high=0)
         while not self._session.ended:
             message = self._messages.take()
             if message is None:

@@ -30,6 +30,11 @@ class ObjectAnswers:
 
     _info: Callable[[], SceneInfo]
 
+    @property
+    def agent(self) -> str:
+        """Name of this session's agent."""
+        raise NotImplementedError
+
     def get_spawnables(self) -> Answer:
         """Tell the names of what can be spawned, as people write them: ``Chair 01``."""
         names = yield Ask("spawnable_display_names")
@@ -50,8 +55,8 @@ class ObjectAnswers:
     ) -> Answer:
         """Put an object into the scene; tell its instance id, or nothing if it was refused.
 
-        Objects have no parents here and no frustum to stay in, so `use_parent` and
-        `frustum_limited` have no effect. What has a dynamic has a body.
+        Objects have no parents here, so `use_parent` has no effect. What has a dynamic has a
+        body; what is limited to the frustum and bounces stays in this agent's view.
         """
         try:
             description = mapping_of_json("description of the dynamic", dynamic)
@@ -59,7 +64,9 @@ class ObjectAnswers:
                 "pose": pose_from_unity(position, rotation),
                 "scale": scale_from_unity("scale", scale),
                 "static": remove_dynamics and not has_dynamic,
-                "behaviours": behaviours_of_dynamic(dynamic_type, description),
+                "behaviours": behaviours_of_dynamic(
+                    dynamic_type, description, keep_in_view=self.agent if frustum_limited else ""
+                ),
             }
             instance_id = yield Ask("spawn_object", (name,), settings)
         except SailenvError as error:
@@ -77,9 +84,8 @@ class ObjectAnswers:
         return (yield from in_words(_moved_object(id, position, rotation)))
 
     def spawn_view_frustum(self) -> Answer:
-        """Do nothing: there is no frustum to keep objects in. Nothing is answered."""
+        """Do nothing: what stays in a view needs no body around it. Nothing is answered."""
         yield from ()
-        _log.warning("a client wants a view frustum that objects stay in; there is none here")
         return []
 
     def load_scenario(self, scenario: str) -> Answer:
@@ -95,7 +101,7 @@ class ObjectAnswers:
         count = len(objects) if isinstance(objects, list) else 0
         try:
             scene = scene_of_wire(str(wanted.get("scene_name")), self._info())
-            entries = entries_of_scenario(wanted)
+            entries = entries_of_scenario(wanted, self.agent)
             ids = yield Ask("load_scenario", ({"scene": scene, "objects": entries},))
         except SailenvError as error:
             _log.warning("a scenario was refused: %s", one_line(error))

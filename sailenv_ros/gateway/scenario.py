@@ -15,6 +15,8 @@ from sailenv_ros.gateway.unity import pose_from_unity, vector_from_unity
 
 __all__ = ["behaviours_of_dynamic", "entries_of_scenario", "mapping_of_json"]
 
+BOUNCING = "uniform_movement_random_bounce"
+
 _DIRECTIONS = ("start_direction",)
 _ENTRY_KEYS = ("id", "prefab", "position", "rotation", "dynamic", "frustum_limited")
 
@@ -36,17 +38,39 @@ def mapping_of_json(what: str, text: str) -> dict[str, Any]:
     return value
 
 
-def behaviours_of_dynamic(type_: str, description: object) -> list[dict[str, Any]]:
-    """Give a dynamic as a list of behaviours: of one, or empty where there is none."""
+def behaviours_of_dynamic(
+    type_: str, description: object, *, keep_in_view: str = ""
+) -> list[dict[str, Any]]:
+    """Give a dynamic as a list of behaviours: of one, or empty where there is none.
+
+    Parameters
+    ----------
+    type_ : str
+    description : object
+        Its parameters, as JSON has them. A ``seed`` is left out: all random numbers here come of
+        the simulation's own.
+    keep_in_view : str
+        The agent whose view is not to be left by what bounces; empty for none.
+    """
     if not type_:
         return []
     if not isinstance(description, Mapping):
         raise InvalidRequest(f"description of the dynamic {type_!r}", description, "a JSON object")
-    return [{"type": type_, **{str(key): _turned(key, v) for key, v in description.items()}}]
+    given = {str(key): _turned(key, v) for key, v in description.items() if key != "seed"}
+    if keep_in_view and type_ == BOUNCING:
+        given["keep_in_view"] = keep_in_view
+    return [{"type": type_, **given}]
 
 
-def entries_of_scenario(scenario: Mapping[str, Any]) -> list[dict[str, Any]]:
+def entries_of_scenario(scenario: Mapping[str, Any], agent: str) -> list[dict[str, Any]]:
     """Give a scenario's objects as a scene file describes them, in their order.
+
+    Parameters
+    ----------
+    scenario : mapping
+        As JSON has it.
+    agent : str
+        Whose view the objects stay in that are ``frustum_limited``.
 
     Raises
     ------
@@ -57,7 +81,7 @@ def entries_of_scenario(scenario: Mapping[str, Any]) -> list[dict[str, Any]]:
     if not isinstance(objects, list):
         raise InvalidRequest("objects of the scenario", objects, "a list")
     _require_all_together(scenario.get("timings"))
-    return [_entry(number, entry) for number, entry in enumerate(objects)]
+    return [_entry(number, entry, agent) for number, entry in enumerate(objects)]
 
 
 def _require_all_together(timings: object) -> None:
@@ -71,7 +95,7 @@ def _require_all_together(timings: object) -> None:
         raise InvalidRequest("timings of the scenario", timings, accepted)
 
 
-def _entry(number: int, entry: object) -> dict[str, Any]:
+def _entry(number: int, entry: object, agent: str) -> dict[str, Any]:
     what = f"object {number} of the scenario"
     if not isinstance(entry, Mapping) or not isinstance(entry.get("prefab"), str):
         raise InvalidRequest(what, entry, f"a JSON object with prefab and of {_ENTRY_KEYS}")
@@ -84,7 +108,9 @@ def _entry(number: int, entry: object) -> dict[str, Any]:
     if not isinstance(dynamic, Mapping):
         raise InvalidRequest(f"dynamic of {what}", dynamic, "a JSON object with type, description")
     behaviours = behaviours_of_dynamic(
-        str(dynamic.get("type") or ""), dynamic.get("description") or {}
+        str(dynamic.get("type") or ""),
+        dynamic.get("description") or {},
+        keep_in_view=agent if entry.get("frustum_limited") else "",
     )
     return {
         "asset": entry["prefab"],

@@ -152,10 +152,12 @@ class GatewayServer:
         started.set_result(server.sockets[0].getsockname()[1])
         await self._stop.wait()
         server.close()
-        tasks = [task for task in self._connections.values() if task is not None]
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        await asyncio.sleep(0)  # those that were accepted just now begin, so as to be known
+        # Again and again: until Python 3.12, wait_for loses a cancellation that meets a result.
+        while tasks := [task for task in self._connections.values() if task is not None]:
+            for task in tasks:
+                task.cancel()
+            await asyncio.wait(tasks, timeout=0.1)
 
     async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if len(self._connections) >= self._limits.connections:

@@ -36,7 +36,7 @@ def scenario(**entry: Any) -> dict[str, Any]:
 def test_an_object_stands_where_unity_says() -> None:
     """Position and rotation are turned; what is left out is 0; without a dynamic it is static."""
     entry = scenario(position={"x": 1, "y": 2, "z": 3}, rotation={"y": 90})
-    (made,) = entries_of_scenario(entry)
+    (made,) = entries_of_scenario(entry, "eye")
     assert made["asset"] == "Cube"
     assert made["position"] == [3.0, -1.0, 2.0]
     assert made["orientation"] == pytest.approx([0.0, 0.0, -(0.5**0.5), 0.5**0.5])
@@ -53,7 +53,6 @@ def test_vectors_of_a_dynamic_are_turned_too() -> None:
         "type": "uniform_movement_random_bounce",
         "start_direction": [1.0, -0.0, 0.0],
         "speed": 2.0,
-        "seed": 7,
     }
     way = {"waypoints": [{"position": {"x": 1}, "rotation": {"y": -90}}], "total_time": 5}
     (linear,) = behaviours_of_dynamic("linear_waypoints", way)
@@ -61,6 +60,15 @@ def test_vectors_of_a_dynamic_are_turned_too() -> None:
     assert linear["waypoints"][0]["rotation"] == pytest.approx([0.0, 0.0, 90.0])
     assert linear["total_time"] == 5
     assert behaviours_of_dynamic("", {"speed": 1}) == []
+
+
+def test_what_is_limited_to_the_frustum_stays_in_the_clients_view() -> None:
+    """Of what bounces, that is: other dynamics know no view."""
+    for type_, kept in (("uniform_movement_random_bounce", "eye"), ("linear_waypoints", None)):
+        entry = scenario(dynamic={"type": type_, "description": {}}, frustum_limited=True)
+        (made,) = entries_of_scenario(entry, "eye")
+        assert made["behaviours"][0].get("keep_in_view") == kept
+        assert made["static"] is False
 
 
 @pytest.mark.parametrize(
@@ -83,14 +91,14 @@ def test_vectors_of_a_dynamic_are_turned_too() -> None:
 def test_a_malformed_scenario_is_refused(wrong: dict[str, Any], match: str) -> None:
     """The sentence names the place."""
     with pytest.raises(InvalidRequest, match=match):
-        entries_of_scenario(wrong)
+        entries_of_scenario(wrong, "eye")
 
 
 @given(ANYTHING)
 def test_any_json_gives_entries_or_a_refusal(value: Any) -> None:
     """Whatever a client writes, there is nothing but objects or one error of ours."""
     try:
-        entries = entries_of_scenario(mapping_of_json("scenario", json.dumps(value)))
+        entries = entries_of_scenario(mapping_of_json("scenario", json.dumps(value)), "eye")
     except InvalidRequest:
         return
     assert all(isinstance(entry["asset"], str) for entry in entries)

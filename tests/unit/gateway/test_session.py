@@ -156,12 +156,20 @@ def test_the_later_revision_moves_objects_and_loads_scenarios(
     session: Session, simulation: Simulation
 ) -> None:
     """Ids of a scenario in order, an object moved by Unity's axes, refusals told as such."""
-    objects = [{"prefab": "Cube"}, {"prefab": "Sphere", "position": {"y": 3}}]
+    bounce = {"start_direction": {"z": 1}, "speed": 0.5, "angular_speed": 10, "seed": 3}
+    dynamic = {"type": "uniform_movement_random_bounce", "description": bounce}
+    objects = [
+        {"prefab": "Cube"},
+        {"prefab": "Sphere", "position": {"y": 3}, "dynamic": dynamic, "frustum_limited": True},
+    ]
     wanted = {"scene_name": "optical/scene", "objects": objects}
     (answer,) = answered(session, simulation, b"\x1d" + text(json.dumps(wanted)))
     first = int.from_bytes(answer[:4], "little")
     ids = [answer[4 : 4 + first].decode(), answer[8 + first :].decode()]
     assert [simulation.get_object(int(number)).asset for number in ids] == ["cube", "sphere"]
+    (behaviour,) = simulation.get_object(int(ids[1])).behaviours
+    assert behaviour["keep_in_view"] == session.agent
+    assert behaviour["start_direction"] == pytest.approx((1.0, 0.0, 0.0))
     move = b"\x1e" + struct.pack("<i6f", int(ids[0]), 1.0, 2.0, 3.0, 0.0, 90.0, 0.0)
     assert answered(session, simulation, move) == [text("ok")]
     assert simulation.get_object(int(ids[0])).pose.position_m == (3.0, -1.0, 2.0)

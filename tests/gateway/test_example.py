@@ -1,0 +1,38 @@
+"""The example of the original client does what it says."""
+
+from __future__ import annotations
+
+import runpy
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from sailenv_ros.gateway import GatewayServer
+from sailenv_ros.simulation import Simulation
+from tests.support.original_client import OriginalAgent
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "05_original_client.py"
+
+
+@pytest.mark.gl
+def test_the_example_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """It prints what it saw, writes a picture, and leaves neither agent nor cube behind."""
+    assert OriginalAgent  # imported before the example does, on Pythons that need a hand with it
+    picture = tmp_path / "seen.png"
+    with Simulation("object_view") as simulation, GatewayServer(simulation, port=0) as gateway:
+        monkeypatch.setattr(sys, "argv", [str(EXAMPLE), str(gateway.port), str(picture)])
+        runpy.run_path(str(EXAMPLE), run_name="__main__")
+        left = [instance.name for instance in simulation.info.instances]
+        scene = simulation.info.scene
+        simulation.change_scene(scene)
+        assert [instance.name for instance in simulation.info.instances] == left
+        assert scene == "optical"
+    out = capsys.readouterr().out
+    assert "Error" not in out
+    assert "floor" in out
+    with Image.open(picture) as image:
+        assert image.size == (320, 240)
