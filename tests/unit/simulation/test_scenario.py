@@ -115,7 +115,7 @@ def test_a_scenario_runs_in_its_order(core: SimulationCore, as_text: Any) -> Non
     [
         ({"actors": []}, "actors"),
         ({"objects": {}}, "list"),
-        ({"objects": [3]}, r"objects\[0\]"),
+        ({"objects": [3]}, "must be a mapping, got 3"),
         ({"objects": [cube(asset="cube")]}, "left out"),
         ({"objects": [cube("levitate")]}, "levitate"),
         ({"objects": [{"prefab": "Cube", "dynamic": 3}]}, "type and description"),
