@@ -12,9 +12,13 @@ PACKAGE = "sailenv_ros"
 REQUIREMENTS = [
     "coacd>=1.0.7",
     "glcontext>=3.0",
+    # Compresses what clients of the gateway want gzipped, many times faster than zlib.
+    "isal>=1.6",
+    "lz4>=4.3",
     "mapbox-earcut>=1.0.3",
     # Has no final release yet; compiled where it is installed, in some seconds.
     "meshoptimizer>=0.2.30a0",
+    "mcap>=1.2",
     "moderngl>=5.10",
     "numba>=0.59",
     "numpy>=1.26",
@@ -28,6 +32,7 @@ REQUIREMENTS = [
     "rich>=13.0",
     "scipy>=1.11",
     "trimesh>=4.5",
+    "zstandard>=0.22",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.
 ROS = [
@@ -48,14 +53,20 @@ DEV = [
     "hypothesis",
     "import-linter",
     "jsonschema",
+    "mcap-ros2-support",
     "mypy",
+    "pycocotools",
     "pytest>=8.0",
     "pytest-timeout",
     "pytest-xdist",
+    "rosbags",
     "ruff",
+    # The original's client, which the gateway's tests drive; it declares no dependencies.
+    "sailenv==0.5b0",
     "types-jsonschema",
     "types-PyYAML",
 ]
+CONFIG = ["yaml", "xml", "json", "rviz"]
 
 
 def data_files() -> list[tuple[str, list[str]]]:
@@ -64,13 +75,14 @@ def data_files() -> list[tuple[str, list[str]]]:
     files = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
-        (f"{share}/config", sorted(glob("config/*.yaml") + glob("config/*.xml"))),
+        (f"{share}/config", sorted(path for kind in CONFIG for path in glob(f"config/*.{kind}"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
         (f"{share}/scenes", sorted(glob("scenes/*.yaml") + glob("scenes/*.json"))),
     ]
     # pip ignores setup.cfg's install_scripts, colcon does not.
     if "bdist_wheel" in sys.argv:
-        files.append((f"lib/{PACKAGE}", ["resource/sim_node"]))
+        programs = ["resource/sim_node", "resource/recorder", "resource/player"]
+        files.append((f"lib/{PACKAGE}", programs))
     return files
 
 
@@ -97,6 +109,8 @@ setup(
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",
             "sim_node = sailenv_ros.nodes.sim_node:main",
+            "recorder = sailenv_ros.nodes.recorder:main",
+            "player = sailenv_ros.nodes.player:main",
         ]
     },
     zip_safe=False,

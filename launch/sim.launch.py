@@ -1,4 +1,4 @@
-"""Starts the simulator: `ros2 launch sailenv_ros sim.launch.py scene:=optical`."""
+"""Starts the simulator: `ros2 launch sailenv_ros sim.launch.py scene:=room_02`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ def generate_launch_description() -> LaunchDescription:
     )
     return LaunchDescription(
         [
-            DeclareLaunchArgument("scene", default_value="optical", description="First scene."),
+            DeclareLaunchArgument(
+                "scene", default_value="", description="First scene; empty for room_01."
+            ),
             DeclareLaunchArgument(
                 "mode", default_value="realtime", choices=["realtime", "lockstep"]
             ),

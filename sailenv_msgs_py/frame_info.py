@@ -8,10 +8,18 @@ from std_msgs.msg import Header
 
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs_py.stamps import stamp_from_ns
-from sailenv_msgs_py.transforms import optical_pose_to_msg
+from sailenv_msgs_py.transforms import optical_pose_to_msg, pose_from_msg
+from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.frame import Frame
+from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose, invert
 
-__all__ = ["WORLD_FRAME_ID", "frame_info_to_msg", "header_of_frame", "optical_frame_id"]
+__all__ = [
+    "WORLD_FRAME_ID",
+    "camera_of_frame_info",
+    "frame_info_to_msg",
+    "header_of_frame",
+    "optical_frame_id",
+]
 
 WORLD_FRAME_ID = "world"
 """Name of the coordinate frame that everything is placed in."""
@@ -47,3 +55,16 @@ def frame_info_to_msg(
         depth_range_m=float(depth_range_m),
         render_s=float(frame.timings_s.get("render", 0.0)),
     )
+
+
+def camera_of_frame_info(msg: FrameInfo, intrinsics: CameraIntrinsics) -> Camera:
+    """Read where the camera of those intrinsics stood.
+
+    Raises
+    ------
+    InvalidRequest
+        If a number of the pose is not finite or its quaternion not of unit length.
+    """
+    world_from_optical = pose_from_msg(msg.camera_pose).matrix()
+    pose = Pose.from_matrix(world_from_optical @ invert(BODY_FROM_OPTICAL))
+    return Camera(intrinsics=intrinsics, pose=pose)

@@ -20,6 +20,7 @@ from sailenv_ros.errors import InvalidRequest
 __all__ = [
     "BODY_FROM_OPTICAL",
     "IDENTITY",
+    "POSITION_LIMIT_M",
     "Pose",
     "interpolate",
     "invert",

@@ -12,6 +12,7 @@ import time
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from sailenv_msgs.srv import (
@@ -26,6 +27,7 @@ from sailenv_ros.agent.frame_pictures import FramePictures
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.agent.pose_requests import PoseRequests
 from sailenv_ros.agent.received import frame_of_bundle
+from sailenv_ros.agent.recorded import RecordedAgent
 from sailenv_ros.agent.topics import AgentTopics
 from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
@@ -150,6 +152,24 @@ depth_frame_active : bool
         except BaseException:
             self.close()
             raise
+
+    @staticmethod
+    def from_recording(path: str | Path, agent: str = "") -> RecordedAgent:
+        """Open a recording as an agent whose `get_frame` gives what was seen then.
+
+        Parameters
+        ----------
+        path : str or Path
+            A bag folder, or one MCAP file.
+        agent : str
+            Name of the agent; empty if there is only one.
+
+        Raises
+        ------
+        RecordingError, UnknownName
+            If it cannot be read, or has no such agent.
+        """
+        return RecordedAgent(path, agent)
 
     # -- life ------------------------------------------------------------------------------
 

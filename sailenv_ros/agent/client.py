@@ -23,7 +23,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import Instance as LabelledInstance
 from sailenv_ros.scene_info import SceneInfo
 
-__all__ = ["Instance", "SimulatorClient"]
+__all__ = ["Instance", "SimulatorClient", "instance_of"]
 
 MAX_DOMAIN_ID = 232
 """The largest ROS domain whose ports exist."""
@@ -110,7 +110,7 @@ class SimulatorClient(ObjectRequests, LightRequests):
     def instances(self) -> dict[int, Instance]:
         """The objects of the scene by their ids, the values of the instance view."""
         info = self._info
-        return {i.id: _instance(i, i.id in info.moving) for i in info.instances}
+        return {i.id: instance_of(i, i.id in info.moving) for i in info.instances}
 
     @property
     def category_colours(self) -> dict[int, tuple[int, int, int]]:
@@ -172,7 +172,8 @@ class SimulatorClient(ObjectRequests, LightRequests):
         release(self._link)
 
 
-def _instance(instance: LabelledInstance, moving: bool) -> Instance:
+def instance_of(instance: LabelledInstance, moving: bool) -> Instance:
+    """Give an announced object as the facade shows it."""
     return Instance(
         name=instance.name,
         category_id=instance.category_id,

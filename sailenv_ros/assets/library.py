@@ -68,6 +68,12 @@ class AssetLibrary:
         """Catalogue names and display names: all that `get` takes."""
         return tuple(self._name_of)
 
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        """Display name of each catalogue name, in the order of the sources."""
+        # The display name is the last alias that an asset is given.
+        return {name: alias for alias, name in self._name_of.items()}
+
     def canonical(self, name: str) -> str:
         """Give the catalogue name of a catalogue name or display name.
 

@@ -140,6 +140,9 @@ def thinned_out(raw: RawMesh, target: int, *, seed: int) -> RawMesh:
     of_triangle = components(raw)
     sizes = np.bincount(of_triangle)
     order = np.random.default_rng(seed).permutation(len(sizes))
+    # The leaves that reach farthest stay: the plant keeps its size.
+    outer = np.unique(of_triangle[_outermost(raw)])
+    order = np.concatenate([outer, order[~np.isin(order, outer)]])
     kept = order[np.cumsum(sizes[order]) <= target]
     if not len(kept):
         return simplified(raw, target, max_error=0.2)
@@ -212,6 +215,13 @@ def box_uvs(raw: RawMesh, tile_m: float) -> RawMesh:
         triangles=np.arange(len(corners)).reshape(-1, 3),
         normals=None if raw.normals is None else raw.normals[corners],
     )
+
+
+def _outermost(raw: RawMesh) -> Indices:
+    """Give the triangles with the lowest and highest corner along each axis."""
+    points = raw.positions[raw.triangles]
+    lowest, highest = points.min(axis=1).argmin(axis=0), points.max(axis=1).argmax(axis=0)
+    return np.concatenate([lowest, highest])
 
 
 def _piece_sizes(points: Floats, of_triangle: Indices) -> Floats:

@@ -20,7 +20,12 @@ __all__ = ["COMMANDS", "main"]
 COMMANDS = {
     "behaviours": "list how objects can move of themselves, with every parameter",
     "assets": "build the furniture, list and picture objects, add one's own",
+    "bag": "say what a recording holds, restore a damaged one",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "export": "write a recording as a data set: png, coco, kitti, flo, mp4",
+    "play": "publish a recording on the topics it was recorded from",
+    "record": "record what agents see in an MCAP bag",
+    "run": "start the simulator, with or without ROS",
     "scene": "check, render, list and begin scenes, export the schema of the format",
 }
 """What each subcommand does, by its name, which is its module's too."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +15,17 @@ from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownNa
 from sailenv_ros.resources import resource_path
 from sailenv_ros.scene.catalogue import SUFFIXES, SceneCatalogue
 from sailenv_ros.scene.loader import load_scene
-from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, schema_text, write_schema
+from sailenv_ros.scene.reference import write_reference
+from sailenv_ros.scene.schema import (
+    SCHEMA_FILE,
+    is_stale,
+    scene_schema,
+    schema_text,
+    write_schema,
+)
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.world.rehearsal import obstructions, overlaps, shifts
 
 __all__ = ["add_parser", "run"]
 
@@ -29,6 +39,11 @@ def add_parser(subparsers: Any) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     check = actions.add_parser("check", help="report every fault of scene files, with its place")
     check.add_argument("scenes", nargs="+", metavar="FILE", help="a YAML file, or a scene's name")
+    check.add_argument(
+        "--physics",
+        action="store_true",
+        help="build it too: what overlaps, what does not stay in place, what is in the mover's way",
+    )
     actions.add_parser("list", help="list the scenes that come with the package")
     scene_render.add_arguments(
         actions.add_parser("render", help="render a scene from a viewpoint into a picture file")
@@ -50,7 +65,7 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Do what was asked; 0 if all is well, 1 if there are faults."""
     if args.action == "check":
-        return _check(args.scenes)
+        return _check(args.scenes, physics=args.physics)
     if args.action == "list":
         return _list()
     if args.action == "render":
@@ -76,15 +91,42 @@ def _new(file: Path) -> int:
     return 0
 
 
-def _check(scenes: list[str]) -> int:
+def _check(scenes: list[str], *, physics: bool) -> int:
     library, status = SceneLibrary(), 0
     for scene in scenes:
         try:
-            print(f"{scene}: ok ({_counts(_load(library, scene))})")
+            counts = _counts(_load(library, scene))
+            faults = list(_physical_faults(library, scene)) if physics else []
+            for fault in faults:
+                print(f"{scene}: {fault}")
+            status = 1 if faults else status
+            if not faults:
+                print(f"{scene}: ok ({counts})")
         except (SceneError, AssetError, UnknownName) as problem:
             print(problem)
             status = 1
     return status
+
+
+def _physical_faults(library: SceneLibrary, scene: str) -> Iterator[str]:
+    world = library.build(scene, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    try:
+        for overlap in overlaps(world):
+            depth_mm = 1000.0 * overlap.depth_m
+            yield f"{overlap.first!r} and {overlap.second!r} overlap by {depth_mm:.0f} mm"
+        for way in obstructions(world):
+            clearance_cm = 100.0 * way.clearance_m
+            yield (
+                f"the mover {way.mover!r} passes {way.name!r} at {clearance_cm:.0f} cm "
+                f"({way.time_s:g} s on its way)"
+            )
+        for shift in shifts(world):
+            yield (
+                f"{shift.name!r} does not stay in place: after 2 s it has moved by "
+                f"{100.0 * shift.distance_m:.0f} cm and turned by {shift.angle_deg:.0f} deg"
+            )
+    finally:
+        world.close()
 
 
 def _load(library: SceneLibrary, scene: str) -> SceneSpec:
@@ -132,4 +174,8 @@ def _schema(output: Path | None, *, check: bool) -> int:
         print(f"{path}: cannot be written: {problem.strerror}")
         return 1
     print(path)
+    page = path.parents[1] / "docs" / "scene_format.md"
+    if output is None and page.is_file():  # a checkout; an installed package has no docs
+        write_reference(page, scene_schema(behaviours))
+        print(page)
     return 0

@@ -83,7 +83,8 @@ def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
     """Give the frame of a time; it has a past, so that flow shows what moves."""
     step = max(FLOW_STEPS, round(time_s * STEPS_PER_S))
     now = simulation.sim_time_ns * STEPS_PER_S // 10**9
-    simulation.step(max(0, step - FLOW_STEPS - now))
+    if step - FLOW_STEPS > now:
+        simulation.step(step - FLOW_STEPS - now)
     simulation.capture("eye", views)
     simulation.step(FLOW_STEPS)
     return simulation.capture("eye", views)

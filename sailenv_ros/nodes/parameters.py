@@ -6,9 +6,10 @@ They say how to run, never what a scene is. Those in `LIVE` may be changed while
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -18,10 +19,12 @@ from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
+from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import TimeMode
 
-__all__ = ["LIVE", "SimParameters", "declare_parameters"]
+__all__ = ["LIVE", "Parameter", "SimParameters", "declare_parameters", "declare_table"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,11 +42,15 @@ class SimParameters:
     render_device : int or None
     scene_paths : tuple of Path
     publish_clock : bool
+    gateway_host : str
+    gateway_port : int
+        0 for none.
+    gateway_protocol : {'0.5', '0.6'}
     agent : AgentSpec or None
         The agent that is there from the start.
     """
 
-    scene: str
+    scene: str | None
     mode: TimeMode
     real_time_factor: float
     seed: int
@@ -52,6 +59,9 @@ class SimParameters:
     render_device: int | None
     scene_paths: tuple[Path, ...]
     publish_clock: bool
+    gateway_host: str
+    gateway_port: int
+    gateway_protocol: str
     agent: AgentSpec | None
 
 
@@ -82,8 +92,9 @@ LIVE = ("real_time_factor", "agent.rate_hz")
 
 _PARAMETERS: dict[str, _Parameter] = {
     "scene": _Parameter(
-        "optical",
-        "Name of the first scene, or the path of a scene file; later: the service change_scene.",
+        "",
+        "Name of the first scene, or the path of a scene file; later: the service change_scene. "
+        "Empty: room_01, or optical where the furniture has not been built.",
     ),
     "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
     "mode": _Parameter(
@@ -108,6 +119,15 @@ _PARAMETERS: dict[str, _Parameter] = {
     ),
     "render_device": _Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
     "publish_clock": _Parameter(True, "True: publish simulated time on /clock."),
+    "gateway.port": _Parameter(
+        DEFAULT_PORT, "TCP port for clients of the original SAILenv; 0: none.", 0, 65535
+    ),
+    "gateway.host": _Parameter(
+        DEFAULT_HOST, "Address that port listens on; 0.0.0.0: all, without any password."
+    ),
+    "gateway.protocol": _Parameter(
+        "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
+    ),
     "agent.name": _Parameter("agent", "Name of the first agent; empty: start without one."),
     "agent.width": _Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
     "agent.height": _Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
@@ -137,10 +157,9 @@ def declare_parameters(node: Node) -> SimParameters:
     InvalidRequest
         If a value that was given has the wrong type or is out of range, or a name is unknown.
     """
-    _refuse_unknown(node)
-    values = {name: _declare(node, name, entry) for name, entry in _PARAMETERS.items()}
+    values = declare_table(node, _PARAMETERS)
     return SimParameters(
-        scene=values["scene"],
+        scene=values["scene"] or None,
         mode=cast(TimeMode, values["mode"]),
         real_time_factor=values["real_time_factor"],
         seed=values["seed"],
@@ -149,8 +168,27 @@ def declare_parameters(node: Node) -> SimParameters:
         render_device=None if values["render_device"] < 0 else values["render_device"],
         scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
         publish_clock=values["publish_clock"],
+        gateway_host=values["gateway.host"],
+        gateway_port=values["gateway.port"],
+        gateway_protocol=values["gateway.protocol"],
         agent=_agent(values),
     )
+
+
+Parameter = _Parameter
+"""One parameter of a node: default, description, range or choices."""
+
+
+def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
+    """Declare the parameters of any node of this package; give their values by name.
+
+    Raises
+    ------
+    InvalidRequest
+        If a value that was given has the wrong type or is out of range, or a name is unknown.
+    """
+    _refuse_unknown(node, table)
+    return {name: _declare(node, name, entry) for name, entry in table.items()}
 
 
 def _declare(node: Node, name: str, entry: _Parameter) -> Any:
@@ -173,13 +211,13 @@ def _given(node: Node, name: str) -> Any:
     return node._parameter_overrides[name].value  # rclpy tells it nowhere else
 
 
-def _refuse_unknown(node: Node) -> None:
+def _refuse_unknown(node: Node, table: Mapping[str, Parameter]) -> None:
     """Refuse a misspelt parameter, which ROS would pass over in silence."""
     for name in node._parameter_overrides:  # rclpy tells it nowhere else
-        ours = name in _PARAMETERS
+        ours = name in table
         of_ros = name.startswith("qos_overrides.") or node.has_parameter(name)
         if not ours and not of_ros:
-            raise UnknownName("parameter", name, _PARAMETERS)
+            raise UnknownName("parameter", name, table)
 
 
 def _agent(values: dict[str, Any]) -> AgentSpec | None:

@@ -8,6 +8,7 @@ scene is wrong, 3 where another simulator has the namespace already.
 from __future__ import annotations
 
 import argparse
+import errno
 import logging
 import os
 import sys
@@ -22,6 +23,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, SimulationClosed
+from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
@@ -94,6 +96,7 @@ class SimNode:
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
+        self._gateway = _gateway(simulation, parameters)
 
     @property
     def simulation(self) -> Simulation:
@@ -109,6 +112,8 @@ class SimNode:
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
+        if self._gateway is not None:
+            self._gateway.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._endpoints.close()
@@ -234,6 +239,24 @@ def _simulation(parameters: SimParameters) -> Simulation:
         simulation.close()
         raise
     return simulation
+
+
+def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer | None:
+    if not parameters.gateway_port:
+        return None
+    try:
+        return GatewayServer(
+            simulation,
+            host=parameters.gateway_host,
+            port=parameters.gateway_port,
+            protocol=parameters.gateway_protocol,
+        )
+    except InvalidRequest as problem:
+        # Another simulator on this machine is no reason not to start; anything else is.
+        if getattr(problem.__cause__, "errno", None) != errno.EADDRINUSE:
+            raise
+        _log.warning("clients of the original SAILenv cannot connect here: %s", problem)
+        return None
 
 
 def _close_loaded(loading: Future[Simulation]) -> None:

@@ -33,9 +33,9 @@ EMISSION_SCALE = 16.0
 class MaterialBuffers:
     """The materials of the scene that is shown, in one context."""
 
-    def __init__(self, context: moderngl.Context) -> None:
+    def __init__(self, context: moderngl.Context, *, software: bool) -> None:
         self._context = context
-        self._textures = TextureArrays(context)
+        self._textures = TextureArrays(context, software=software)
         self._shown: list[Material] = []
         self._row_of: dict[int, int] = {}
         self._buffer = context.buffer(np.zeros(1, ROW).tobytes())

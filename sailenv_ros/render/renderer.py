@@ -58,7 +58,7 @@ class Renderer:
             with self._context:
                 self._programs = ProgramCache(self._context)
                 self._geometry = GeometryBuffers(self._context)
-                self._materials = MaterialBuffers(self._context)
+                self._materials = MaterialBuffers(self._context, software=self._device.software)
                 self._geometry_pass = GeometryPass(self._context, self._programs)
                 self._shadow_pass = ShadowPass(self._context, self._programs)
                 self._lighting_pass = LightingPass(self._context, self._programs)

@@ -302,6 +302,7 @@ class SimulationCore(AgentRequests, MotionRequests, WorldRequests):
         self._epoch += 1
         self._agents.begin_epoch(world, as_registered=as_registered)
         self._agents.add_missing(brought, world)
+        self._discard_frames()
         self._announce()
         self.on_step(world.sim_time_ns)
 
@@ -312,6 +313,12 @@ class SimulationCore(AgentRequests, MotionRequests, WorldRequests):
         if paused != self._paused:
             self._paused = paused
             self._announce()
+
+    def _discard_frames(self) -> None:
+        """Drop waiting frames whose ids the next scene_info will not know."""
+        for record in self._agents:
+            for stream in record.streams:
+                stream.discard()
 
     def _next_revision(self) -> int:
         self._revision += 1

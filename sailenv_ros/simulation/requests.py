@@ -53,6 +53,7 @@ REQUESTS = frozenset(
         "set_real_time_factor",
         "set_rotation",
         "spawn_object",
+        "spawnable_display_names",
         "step",
         "toggle_follow",
         "upload_model",
@@ -220,6 +221,11 @@ class Requests:
     def get_object(self, obj: int | str, *, timeout_s: float = 30.0) -> ObjectState:
         """Say what and where an object is."""
         result: ObjectState = self._ask("get_object", timeout_s, obj)
+        return result
+
+    def spawnable_display_names(self, *, timeout_s: float = 30.0) -> tuple[str, ...]:
+        """Give the names of what can be spawned as people write them, e.g. ``Chair 01``."""
+        result: tuple[str, ...] = self._ask("spawnable_display_names", timeout_s)
         return result
 
     def lights(self, *, timeout_s: float = 30.0) -> tuple[Light, ...]:

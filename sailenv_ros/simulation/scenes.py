@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -12,7 +13,8 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
-from sailenv_ros.assets.sources import installed_packs, installed_sources
+from sailenv_ros.assets.places import standard_pack_folder
+from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
 from sailenv_ros.errors import InvalidRequest
@@ -26,12 +28,31 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_placement
 from sailenv_ros.world.world import World
 
-__all__ = ["DEFAULT_SCENE", "SceneLibrary"]
+__all__ = ["DEFAULT_SCENE", "SCENE_WITHOUT_FURNITURE", "SceneLibrary", "default_scene"]
 
 MAX_UPLOADS = 256
 """Models that users may add, so that they cannot fill the memory without end."""
 
-DEFAULT_SCENE = "optical"
+DEFAULT_SCENE = "room_01"
+SCENE_WITHOUT_FURNITURE = "optical"
+
+_log = logging.getLogger(__name__)
+
+
+def default_scene() -> str:
+    """Give the scene to begin with if none is asked for.
+
+    `DEFAULT_SCENE`, or one without furniture where that has not been built, with a warning.
+    """
+    if any(pack.folder == standard_pack_folder() for pack in installed_packs()):
+        return DEFAULT_SCENE
+    _log.warning(
+        "beginning with the scene %s, because %s needs the furniture; fetch it with: %s",
+        SCENE_WITHOUT_FURNITURE,
+        DEFAULT_SCENE,
+        BUILD_COMMAND,
+    )
+    return SCENE_WITHOUT_FURNITURE
 
 
 class SceneLibrary:
@@ -61,6 +82,11 @@ class SceneLibrary:
     def spawnables(self) -> tuple[str, ...]:
         """Names of the assets."""
         return self._assets.names
+
+    @property
+    def spawnable_display_names(self) -> tuple[str, ...]:
+        """Names of the assets as people write them, in the same order."""
+        return tuple(self._assets.display_names.values())
 
     @cached_property
     def categories(self) -> CategoryTable:

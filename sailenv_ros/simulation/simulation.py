@@ -22,7 +22,7 @@ from sailenv_ros.simulation.backends import make_backend
 from sailenv_ros.simulation.core import SimulationCore, checked_real_time_factor
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.requests import REQUESTS, Requests, wait_for
-from sailenv_ros.simulation.scenes import DEFAULT_SCENE, SceneLibrary
+from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.upload_queue import UploadQueue
 from sailenv_ros.world.world import World
@@ -45,8 +45,9 @@ class Simulation(Requests):
 
     Parameters
     ----------
-    scene : str or Path
-        Name of a scene, or a scene file.
+    scene : str, Path or None
+        Name of a scene, or a scene file; None takes ``room_01``, or ``optical`` where the
+        furniture has not been built.
     mode : {'realtime', 'lockstep'}
         ``realtime``: simulated time follows the wall clock times a factor. ``lockstep``: nothing
         moves until `step`; the same seed and calls give the same bytes.
@@ -71,7 +72,7 @@ class Simulation(Requests):
 
     def __init__(
         self,
-        scene: str | Path = DEFAULT_SCENE,
+        scene: str | Path | None = None,
         *,
         mode: TimeMode = "realtime",
         real_time_factor: float = 1.0,
@@ -106,7 +107,7 @@ class Simulation(Requests):
             try:
                 return SimulationCore(
                     SceneLibrary(scene_paths),
-                    scene,
+                    default_scene() if scene is None else scene,
                     renderer,
                     mode=mode,
                     real_time_factor=real_time_factor,

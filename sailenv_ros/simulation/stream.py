@@ -105,6 +105,13 @@ class FrameStream:
             self._frame = frame
             self._ready.notify_all()
 
+    def discard(self) -> None:
+        """Drop a frame that was not taken yet: it shows what is no more; called by the loop."""
+        with self._ready:
+            if self._frame is not None:
+                self._dropped += 1
+                self._frame = None
+
     def end(self, why: str) -> None:
         """Say that no more frames will come; called by the loop."""
         with self._ready:

@@ -80,6 +80,7 @@ class WorldRequests:
     def despawn_object(self, obj: int | str) -> None:
         """Take an object, named by id or name, out of the scene; its id is not used again."""
         self._world.despawn(self._world.find(obj))
+        self._discard_frames()
         self._announce()
 
     def move_object(self, obj: int | str, pose: Pose, *, teleport: bool = False) -> None:
@@ -90,6 +91,10 @@ class WorldRequests:
     def get_object(self, obj: int | str) -> ObjectState:
         """Say what and where an object is."""
         return self._world.object_state(self._world.find(obj))
+
+    def spawnable_display_names(self) -> tuple[str, ...]:
+        """Give the names of what can be spawned as people write them, e.g. ``Chair 01``."""
+        return self._library.spawnable_display_names
 
     def add_model(self, asset: Asset, *, rename: bool) -> str:
         """Put an imported model into the catalogue; give the name that it is spawned by.
@@ -159,6 +164,9 @@ class WorldRequests:
     # -- of the simulation -----------------------------------------------------------------
 
     def _announce(self) -> None:
+        raise NotImplementedError
+
+    def _discard_frames(self) -> None:
         raise NotImplementedError
 
     def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:

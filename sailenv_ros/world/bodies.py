@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import MAX_SPEED_M_S, Action, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, PhysicsError
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.objects import ObjectState
@@ -137,12 +137,16 @@ class Body:
         return self._matrix_of(position, quat)
 
     def pose(self) -> Pose:
-        """Give the pose of the body frame now."""
+        """Give the pose of the body frame now; what has fallen out of the world is at its edge."""
         if self.placement.static:
             return self._static_pose
         if not any(self._centre):
-            return Pose(*self._client.getBasePositionAndOrientation(self._id))
-        return Pose.from_matrix(self.world_from_body())
+            position, quat = self._client.getBasePositionAndOrientation(self._id)
+            self._require_finite(position, quat)
+            return Pose(np.clip(position, -POSITION_LIMIT_M, POSITION_LIMIT_M), quat)
+        matrix = self.world_from_body().copy()
+        np.clip(matrix[:3, 3], -POSITION_LIMIT_M, POSITION_LIMIT_M, out=matrix[:3, 3])
+        return Pose.from_matrix(matrix)
 
     def put(self, pose: Pose) -> None:
         """Set the pose and stop the body."""
@@ -345,11 +349,14 @@ class Body:
         matrix = pose.matrix()
         return (matrix[:3, :3] @ np.asarray(self._centre) + matrix[:3, 3]).tolist()  # type: ignore[no-any-return]  # tolist is Any
 
-    def _matrix_of(self, position: Any, quat: Any) -> NDArray[np.float64]:
+    def _require_finite(self, position: Any, quat: Any) -> None:
         if not np.isfinite(position).all() or not np.isfinite(quat).all():
             raise PhysicsError(
                 f"the motion of {self.placement.name!r} is no longer finite; reset the scene"
             )
+
+    def _matrix_of(self, position: Any, quat: Any) -> NDArray[np.float64]:
+        self._require_finite(position, quat)
         matrix = Pose((0.0, 0.0, 0.0), quat).matrix()
         matrix[:3, 3] = np.asarray(position) - matrix[:3, :3] @ np.asarray(self._centre)
         return matrix

@@ -1,4 +1,4 @@
-"""Whether a scene is put together as its maker meant: what overlaps, what falls, what is in the way.
+"""Whether a scene is put together as was meant: what overlaps, what falls, what is in the way.
 
 A built `World` in, findings out. The world is stepped, so it is one for this alone.
 """

@@ -62,13 +62,16 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
         "scenes/*.json",
         "config/*.yaml",
         "config/*.xml",
+        "config/*.json",
+        "config/*.rviz",
         "launch/*.py",
     ):
         for source in ROOT.glob(pattern):
             assert f"{data}/share/sailenv_ros/{source.relative_to(ROOT)}" in held
     assert f"{data}/share/ament_index/resource_index/packages/sailenv_ros" in held
     assert f"{data}/share/sailenv_ros/package.xml" in held
-    assert held[f"{data}/lib/sailenv_ros/sim_node"].external_attr >> 16 & 0o111 == 0o111
+    for program in ("sim_node", "recorder", "player"):
+        assert held[f"{data}/lib/sailenv_ros/{program}"].external_attr >> 16 & 0o111 == 0o111
     assert not any(name.startswith("tests/") for name in held)
 
 

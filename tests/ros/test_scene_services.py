@@ -14,20 +14,30 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from std_msgs.msg import ColorRGBA
 
-from sailenv_msgs.msg import Behaviour, Light, SceneInfo
+from sailenv_msgs.msg import AgentInfo, Behaviour, Light, SceneInfo
 from sailenv_msgs.srv import (
+    Capture,
+    ChangeScene,
+    DeleteAgent,
     DespawnObject,
     GetAmbientLight,
     GetLight,
     GetObject,
+    GetPose,
     LoadScenario,
     MoveObject,
+    RegisterAgent,
     Reset,
     SetAmbientLight,
     SetBackground,
     SetLight,
+    SetPose,
+    SetPosition,
+    SetRate,
+    SetRotation,
     SpawnObject,
     Step,
+    UploadModel,
 )
 from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import LATCHED, Eye, Probe, Topic
@@ -311,6 +321,43 @@ ANY_REQUEST = st.one_of(
     st.builds(LoadScenario.Request, document=TEXTS),
     st.builds(Step.Request, steps=st.integers(-2, 4)),
 )
+ANY_AGENT_REQUEST = st.one_of(
+    st.builds(
+        RegisterAgent.Request,
+        agent=st.builds(
+            AgentInfo,
+            name=st.one_of(st.sampled_from(["eye", "other", "third"]), TEXTS),
+            width=st.one_of(st.just(32), st.integers(0, 2**32 - 1)),
+            height=st.one_of(st.just(24), st.integers(0, 2**32 - 1)),
+            vertical_fov_deg=st.one_of(st.just(60.0), st.floats()),
+            rate_hz=st.one_of(st.just(0.0), st.floats()),
+            views=st.lists(st.one_of(st.sampled_from(["rgb", "flow"]), TEXTS), max_size=2),
+            following=st.booleans(),
+            mover=st.one_of(st.just(""), TEXTS),
+        ),
+        has_pose=st.booleans(),
+        pose=POSES,
+    ),
+    st.builds(DeleteAgent.Request, name=st.one_of(st.sampled_from(["other", "third"]), TEXTS)),
+    st.builds(SetPosition.Request, position=POINTS, teleport=st.booleans()),
+    st.builds(SetRotation.Request, roll_deg=st.floats(), pitch_deg=NUMBERS, yaw_deg=NUMBERS),
+    st.builds(SetPose.Request, pose=POSES),
+    st.builds(SetRate.Request, rate_hz=st.one_of(st.just(0.0), st.floats())),
+    st.builds(
+        Capture.Request,
+        views=st.lists(st.one_of(st.sampled_from(["depth", "instance"]), TEXTS), max_size=2),
+    ),
+    st.builds(ChangeScene.Request, scene=TEXTS),
+    st.builds(Reset.Request, keep_seed=st.booleans(), seed=st.integers(-(2**63), 2**63 - 1)),
+    st.builds(
+        UploadModel.Request,
+        filename=st.sampled_from(["a.zip", "b.glb", "c"]),
+        name=TEXTS,
+        category=TEXTS,
+        height_m=st.floats(),
+        data=st.lists(st.integers(0, 255), max_size=40),
+    ),
+)
 SERVICES = {
     kind.Request: (kind, name)
     for kind, name in (
@@ -324,23 +371,36 @@ SERVICES = {
         (SetBackground, "set_background"),
         (LoadScenario, "load_scenario"),
         (Step, "step"),
+        (RegisterAgent, "register_agent"),
+        (DeleteAgent, "delete_agent"),
+        (SetPosition, "eye/set_position"),
+        (SetRotation, "eye/set_rotation"),
+        (SetPose, "eye/set_pose"),
+        (SetRate, "eye/set_rate"),
+        (Capture, "eye/capture"),
+        (ChangeScene, "change_scene"),
+        (Reset, "reset"),
+        (UploadModel, "upload_model"),
     )
 }
 
 
+@pytest.mark.slow
 @settings(
     max_examples=100,
     deadline=None,
     phases=(Phase.explicit, Phase.reuse, Phase.generate),
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
-@given(requests=st.lists(ANY_REQUEST, min_size=5, max_size=20))
+@given(requests=st.lists(st.one_of(ANY_REQUEST, ANY_AGENT_REQUEST), min_size=10, max_size=30))
 def test_hostile_requests_are_answered(probe: Probe, scene: Topic, requests: list[Any]) -> None:
     """Each is done or refused in one sentence that blames no fault, and the node goes on."""
+    eye = AgentInfo(name="eye", width=32, height=24, rate_hz=0.0)
+    probe.call(RegisterAgent, "register_agent", RegisterAgent.Request(agent=eye))
     for request in requests:
         kind, service = SERVICES[type(request)]
         answer = probe.call(kind, service, request)
         assert answer.success == (not answer.message)
         assert "\n" not in answer.message
         assert "a fault in the simulator" not in answer.message
-    probe.done(GetLight, "get_light", GetLight.Request(name=scene.last.lights[0].name))
+    probe.done(GetPose, "eye/get_pose")

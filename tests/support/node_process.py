@@ -38,7 +38,8 @@ class NodeProcess:
     ) -> None:
         self.namespace = namespace
         ros = ["--ros-args", "-r", f"__ns:={namespace}", *remaps]
-        for name, value in {"publish_clock": False, **parameters}.items():
+        defaults = {"publish_clock": False, "scene": "optical", "gateway__port": 0}
+        for name, value in {**defaults, **parameters}.items():
             # Keywords cannot hold dots: agent__width stands for agent.width.
             ros += ["-p", f"{name.replace('__', '.')}:={json.dumps(value)}"]
         self._process = subprocess.Popen(

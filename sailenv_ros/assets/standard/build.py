@@ -33,6 +33,9 @@ SKIES = "skies"
 Progress = Callable[[str, int, int], None]
 """Called with what was done, how many are done, and of how many."""
 
+_TOOLS = ("glb", "hulls", "meshes", "model_files", "obj_polygons", "solids")
+"""Modules beside this folder whose code shapes the result."""
+
 _LIBRARIES = ("trimesh", "meshoptimizer", "coacd", "mapbox_earcut", "numpy")
 
 
@@ -165,7 +168,8 @@ def _keep_credits(furniture: Path, recipe: Recipe, scratch: Path) -> None:
 def _fingerprint() -> str:
     """Hash all that the pack depends on: recipe, our code, the libraries' versions."""
     digest = hashlib.sha256(resource_path("config", "standard_pack.yaml").read_bytes())
-    for source in sorted(Path(__file__).parents[1].rglob("*.py")):
+    own = Path(__file__).parent
+    for source in (*sorted(own.rglob("*.py")), *(own.parent / f"{name}.py" for name in _TOOLS)):
         digest.update(source.read_bytes())
     for library in _LIBRARIES:
         digest.update(f"{library} {metadata.version(library)}".encode())

@@ -66,5 +66,5 @@ def test_what_is_no_picture_is_refused(tmp_path: Path) -> None:
         contact_sheet({})
     with pytest.raises(InvalidRequest, match="picture 'flow'"):
         contact_sheet({"flow": np.zeros((4, 4, 2), np.float32)})
-    with pytest.raises(InvalidRequest, match=r"ends in \.png"):
-        save_contact_sheet(tmp_path / "sheet.jpg", FOUR)
+    with pytest.raises(InvalidRequest, match=r"ends in \.png or \.jpg"):
+        save_contact_sheet(tmp_path / "sheet.gif", FOUR)

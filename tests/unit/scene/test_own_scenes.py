@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from sailenv_ros.assets import AssetLibrary, ObjectFit, load_categories
+from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose, interpolate
 from sailenv_ros.scene import SceneCatalogue, SceneKnowledge, SceneSpec, load_scene
 
-LIBRARY = AssetLibrary()
+LIBRARY = AssetLibrary(installed_sources())
 KNOWLEDGE = SceneKnowledge(
     assets=LIBRARY.all_names,
     categories=tuple(category.name for category in load_categories().values()),

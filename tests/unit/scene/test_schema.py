@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -13,7 +14,7 @@ from hypothesis import given
 from pydantic import BaseModel
 
 from sailenv_ros.behaviours import behaviour_kinds
-from sailenv_ros.scene import SceneCatalogue
+from sailenv_ros.scene import SceneCatalogue, reference
 from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, scene_schema, schema_text
 from sailenv_ros.scene.yaml_nodes import compose
 from tests.unit.scene.strategies import scenes, unhurried
@@ -130,3 +131,9 @@ def test_every_key_is_described() -> None:
 def test_the_text_is_json_in_the_order_of_the_models() -> None:
     schema = json.loads(schema_text(BEHAVIOURS))
     assert list(schema["properties"])[:3] == ["version", "name", "title"]
+
+
+def test_the_reference_page_is_not_stale() -> None:
+    """Documentation of every key is written by the command that writes the schema."""
+    page = Path(__file__).parents[3] / "docs" / "scene_format.md"
+    assert not reference.is_stale(page, scene_schema(BEHAVIOURS))

@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken, SailenvError, UnknownName
+from sailenv_ros.errors import (
+    DeadlineExceeded,
+    InvalidEntry,
+    InvalidRequest,
+    NameTaken,
+    SailenvError,
+    UnknownName,
+)
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
@@ -82,6 +89,21 @@ def test_ids_are_never_used_again(core: SimulationCore) -> None:
         seen.add(id_)
         core.despawn_object("ball")
         assert id_ not in ids_of(core)
+
+
+def test_a_waiting_frame_does_not_outlive_what_it_shows(core: SimulationCore) -> None:
+    """A frame that nobody has taken is dropped when an object of it goes, or the scene does."""
+    core.set_rate("eye", 30.0)
+    id_ = core.spawn_object("cube", pose=AHEAD)
+    stream = core.open_stream("eye", ("instance",), lambda _: None)
+    for end in (lambda: core.despawn_object(id_), core.reset, lambda: core.change_scene("optical")):
+        core.render_due()
+        core.step(8)
+        end()
+        with pytest.raises(DeadlineExceeded):
+            stream.get(0.0)
+    core.step(8)
+    assert stream.get(0.0).epoch == core.info.epoch
 
 
 def test_an_object_without_a_name_is_given_one(core: SimulationCore) -> None:

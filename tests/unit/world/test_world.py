@@ -179,3 +179,12 @@ def test_a_closed_world_says_so() -> None:
     world.close()
     with pytest.raises(PhysicsError, match="closed world"):
         world.step()
+
+
+def test_what_falls_out_of_the_world_stays_at_its_edge() -> None:
+    """An object 10 km below does not end the simulation: behaviours and clients see the edge."""
+    turning = start_behaviour("rotate_rigidbody", {}, seed=0, object_name="ball", place=0)
+    world = make_world(placed("ball", (0, 0, -9999.0), asset=UNIT_BALL, behaviours=(turning,)))
+    world.step(480)
+    assert height(world) < -1e4
+    assert world.object_state(1).pose.position_m[2] == -1e4

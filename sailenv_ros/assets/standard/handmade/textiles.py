@@ -109,7 +109,7 @@ def hanging_towel(width: float, length: float, colour: Vector3) -> list[RawPart]
         ],
         axis=-1,
     ).reshape(-1, 3)
-    positions[:, 2] = np.maximum(positions[:, 2], 0.0)
+    positions[:, 2] -= positions[:, 2].min()
     index = np.arange(positions.shape[0]).reshape(rows + 1, columns + 1)
     a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
     triangles = np.concatenate(

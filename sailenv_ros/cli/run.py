@@ -1,0 +1,98 @@
+"""`sailenv run`: start the simulator, as a ROS 2 node or, where there is no ROS, without."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any, get_args
+
+from sailenv_ros.errors import SimulationClosed
+from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
+from sailenv_ros.gateway.commands import Protocol
+from sailenv_ros.memory import keep_freed_memory
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.scenes import DEFAULT_SCENE
+
+__all__ = ["add_parser", "run"]
+
+LOOK_S = 0.25
+"""Time between two looks at whether the simulation goes on [s]."""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add the command to those of `sailenv`."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "run",
+        help="start the simulator, with or without ROS",
+        description="Starts the simulator and lets clients of the original SAILenv connect.",
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("scene", nargs="?", default=DEFAULT_SCENE, help="name or file")
+    parser.add_argument("--no-ros", action="store_true", help="without topics and services")
+    parser.add_argument("--host", default=DEFAULT_HOST, help="address (default: %(default)s)")
+    parser.add_argument(
+        "--port", type=int, default=DEFAULT_PORT, help="TCP port (default: %(default)s)"
+    )
+    parser.add_argument("--protocol", choices=get_args(Protocol), default="0.5")
+    parser.add_argument("--seed", type=int, default=0, help="of every random number")
+    parser.add_argument(
+        "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run until it is ended by Ctrl-C or SIGTERM; 0 then."""
+    return _run_alone(args) if args.no_ros else _become_the_node(args)
+
+
+def _become_the_node(args: argparse.Namespace) -> int:
+    """Replace this process by the node's, which has a main program of its own."""
+    values: dict[str, object] = {
+        "scene": args.scene,
+        "seed": args.seed,
+        "gateway.host": args.host,
+        "gateway.port": args.port,
+        "gateway.protocol": f"'{args.protocol}'",  # a text, not a number
+    }
+    if args.scenes:
+        values["scene_paths"] = "[" + ", ".join(f"'{path}'" for path in args.scenes) + "]"
+    given = [word for name, value in values.items() for word in ("-p", f"{name}:={value}")]
+    command = [sys.executable, "-m", "sailenv_ros.nodes.sim_node", "--ros-args", *given]
+    sys.stdout.flush()
+    os.execv(sys.executable, command)
+
+
+def _run_alone(args: argparse.Namespace) -> int:
+    logging.basicConfig(level=logging.INFO, format="%(levelname)s: %(message)s")
+    keep_freed_memory()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with Simulation(args.scene, seed=args.seed, scene_paths=args.scenes) as simulation:
+        server = GatewayServer(
+            simulation, host=args.host, port=args.port, protocol=args.protocol
+        )  # fmt: skip
+        with server:
+            print(f"scene {simulation.info.scene!r}; renderer: {simulation.info.renderer}")
+            print(
+                f"listening on {server.host}:{server.port} for clients of the original SAILenv "
+                f"(protocol {args.protocol}); Ctrl-C ends it",
+                flush=True,
+            )
+            _wait_for_the_end(simulation)
+            # A second Ctrl-C shall not break the clean-up off.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+            signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    return 0
+
+
+def _wait_for_the_end(simulation: Simulation) -> None:
+    try:
+        while not simulation.closed:
+            time.sleep(LOOK_S)
+    except KeyboardInterrupt:
+        return
+    raise SimulationClosed("of a fault, which the log shows")

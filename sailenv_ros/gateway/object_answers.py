@@ -1,0 +1,122 @@
+"""Answers about objects and models; part of `Session`."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Generator
+from typing import Any
+
+from sailenv_ros.errors import SailenvError
+from sailenv_ros.gateway.codec import pack_string, pack_strings
+from sailenv_ros.gateway.scenario import (
+    behaviours_of_dynamic,
+    entries_of_scenario,
+    mapping_of_json,
+)
+from sailenv_ros.gateway.scene_names import scene_of_wire
+from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
+from sailenv_ros.gateway.unity import pose_from_unity, scale_from_unity
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["ObjectAnswers"]
+
+_log = logging.getLogger(__name__)
+
+Vector3 = tuple[float, float, float]
+
+
+class ObjectAnswers:
+    """Answers about objects; the method's name is the command's."""
+
+    _info: Callable[[], SceneInfo]
+
+    def get_spawnables(self) -> Answer:
+        """Tell the names of what can be spawned, as people write them: ``Chair 01``."""
+        names = yield Ask("spawnable_display_names")
+        return [pack_strings(names)]
+
+    def spawn_object(
+        self,
+        name: str,
+        position: Vector3,
+        rotation: Vector3,
+        remove_dynamics: bool,
+        scale: Vector3,
+        use_parent: bool,
+        frustum_limited: bool = False,
+        has_dynamic: bool = False,
+        dynamic_type: str = "",
+        dynamic: str = "{}",
+    ) -> Answer:
+        """Put an object into the scene; tell its instance id, or nothing if it was refused.
+
+        Objects have no parents here and no frustum to stay in, so `use_parent` and
+        `frustum_limited` have no effect. What has a dynamic has a body.
+        """
+        try:
+            description = mapping_of_json("description of the dynamic", dynamic)
+            settings = {
+                "pose": pose_from_unity(position, rotation),
+                "scale": scale_from_unity("scale", scale),
+                "static": remove_dynamics and not has_dynamic,
+                "behaviours": behaviours_of_dynamic(dynamic_type, description),
+            }
+            instance_id = yield Ask("spawn_object", (name,), settings)
+        except SailenvError as error:
+            # The client knows no more than "not spawned"; the reason is for the terminal.
+            _log.warning("%r was not spawned: %s", name, one_line(error))
+            return [pack_string("")]
+        return [pack_string(str(instance_id))]
+
+    def despawn_object(self, id: int) -> Answer:
+        """Take an object out of the scene."""
+        return (yield from in_words(_despawned(id)))
+
+    def move_object(self, id: int, position: Vector3, rotation: Vector3) -> Answer:
+        """Move an object."""
+        return (yield from in_words(_moved_object(id, position, rotation)))
+
+    def spawn_view_frustum(self) -> Answer:
+        """Do nothing: there is no frustum to keep objects in. Nothing is answered."""
+        yield from ()
+        _log.warning("a client wants a view frustum that objects stay in; there is none here")
+        return []
+
+    def load_scenario(self, scenario: str) -> Answer:
+        """Begin a scene with more objects; tell their ids, or nothing for each if refused.
+
+        Raises
+        ------
+        InvalidRequest
+            If nobody can know how many answers the client waits for.
+        """
+        wanted = mapping_of_json("scenario", scenario)
+        objects = wanted.get("objects", [])
+        count = len(objects) if isinstance(objects, list) else 0
+        try:
+            scene = scene_of_wire(str(wanted.get("scene_name")), self._info())
+            entries = entries_of_scenario(wanted)
+            ids = yield Ask("load_scenario", ({"scene": scene, "objects": entries},))
+        except SailenvError as error:
+            _log.warning("a scenario was refused: %s", one_line(error))
+            return [pack_string("")] * count
+        return [pack_string(str(instance_id)) for instance_id in ids]
+
+    def send_obj_zip(self, filename: str, data: bytes) -> Answer:
+        """Import a model; tell the name that spawns it, or what is wrong after ``error:``."""
+        try:
+            name = yield Ask("upload_model", (data,), {"name": "", "filename": filename})
+        except SailenvError as error:
+            _log.warning("the model %r was refused: %s", filename, one_line(error))
+            return [pack_string(f"error: {one_line(error)}")]
+        return [pack_string(name)]
+
+
+def _moved_object(
+    instance_id: int, position: Vector3, rotation: Vector3
+) -> Generator[Step, Any, None]:
+    yield Ask("move_object", (instance_id, pose_from_unity(position, rotation)))
+
+
+def _despawned(instance_id: int) -> Generator[Step, Any, None]:
+    yield Ask("despawn_object", (instance_id,))

@@ -1,0 +1,166 @@
+"""One client's conversation: messages in, steps to carry out and bytes to send out; no socket.
+
+An answer is a generator (see `steps`). Whoever drives it decides how to wait; it needs no thread
+and no simulation, which is how it is tested against anything that a peer may send.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import Any
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import NameTaken, ProtocolError
+from sailenv_ros.frame import Frame
+from sailenv_ros.gateway.codec import Message, pack_floats, pack_ints, pack_string, pack_strings
+from sailenv_ros.gateway.light_answers import LightAnswers
+from sailenv_ros.gateway.object_answers import ObjectAnswers
+from sailenv_ros.gateway.payloads import packed_frame, views_of_flags
+from sailenv_ros.gateway.scene_names import scene_of_wire, wire_scenes
+from sailenv_ros.gateway.steps import Answer, Ask, Step, Work, in_words
+from sailenv_ros.gateway.unity import (
+    pose_from_unity,
+    unity_angles_deg,
+    unity_from_vector,
+    vector_from_unity,
+)
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["AGENT_PREFIX", "Session"]
+
+AGENT_PREFIX = "client_"
+"""Begins the names of the agents that clients of the gateway are."""
+
+Vector3 = tuple[float, float, float]
+
+
+class Session(LightAnswers, ObjectAnswers):
+    """One connection, which is one agent.
+
+    Parameters
+    ----------
+    info : callable
+        Gives the scene as it was announced last.
+    next_id : callable
+        Gives a number that no other session of the same simulator has.
+    """
+
+    def __init__(self, info: Callable[[], SceneInfo], next_id: Callable[[], int]) -> None:
+        self._info = info
+        self._next_id = next_id
+        self._agent: AgentSpec | None = None
+        self._use_gzip = False
+        self._ended = False
+
+    @property
+    def agent(self) -> str:
+        """Name of the agent; empty before the registration was asked for and after the end."""
+        return "" if self._agent is None else self._agent.name
+
+    @property
+    def ended(self) -> bool:
+        """True once the client has said that it goes."""
+        return self._ended
+
+    def answer(self, message: Message) -> Answer:
+        """Begin the answer to a message; the errors that a client cannot be told are raised."""
+        answer: Callable[..., Answer] = getattr(self, message.name)
+        return answer(**message.fields)
+
+    # -- life ------------------------------------------------------------------------------
+
+    def register(self, width: int, height: int, use_gzip: bool) -> Answer:
+        """Become an agent; tell its number and the scenes."""
+        intrinsics = CameraIntrinsics(width=width, height=height)
+        number = yield from self._registered(intrinsics)
+        self._use_gzip = use_gzip
+        return [pack_ints(number), pack_strings(wire_scenes(self._info()))]
+
+    def _registered(self, intrinsics: CameraIntrinsics) -> Generator[Step, Any, int]:
+        while True:
+            number = self._next_id()
+            # Known before it is there, so that whoever breaks this off can remove it.
+            self._agent = AgentSpec(
+                name=f"{AGENT_PREFIX}{number}", intrinsics=intrinsics, rate_hz=0.0
+            )
+            try:
+                self._agent = yield Ask("register_agent", (self._agent,))
+            except NameTaken:
+                self._agent = None  # it is somebody else's
+            else:
+                return number
+
+    def delete(self) -> Answer:
+        """Remove the agent; nothing is answered."""
+        self._ended = True
+        yield Ask("delete_agent", (self.agent,))
+        self._agent = None
+        return []
+
+    # -- frames ----------------------------------------------------------------------------
+
+    def frame(self, flags: int) -> Answer:
+        """Render the views asked for, now, and tell the time since the frame before."""
+        if self._agent is None:
+            raise ProtocolError("a frame was asked for before the registration")
+        views = views_of_flags(flags)
+        # Someone may want nothing but the time.
+        frame: Frame = yield Ask("capture", (self.agent, views or ("instance",)))
+        depth_range_m, use_gzip = self._agent.depth_range_m, self._use_gzip
+
+        def pack() -> list[bytes]:
+            return packed_frame(frame, views, depth_range_m=depth_range_m, use_gzip=use_gzip)
+
+        pieces: list[bytes] = yield Work(pack)
+        return pieces
+
+    # -- scene -----------------------------------------------------------------------------
+
+    def change_scene(self, name: str) -> Answer:
+        """Change the scene, for everybody."""
+        return (yield from in_words(self._changed_scene(name)))
+
+    def _changed_scene(self, name: str) -> Generator[Step, Any, None]:
+        yield Ask("change_scene", (scene_of_wire(name, self._info()),))
+
+    def get_categories(self) -> Answer:
+        """Tell the number and name of each category."""
+        yield from ()
+        table = self._info().categories
+        entries = [pack_ints(number) + pack_string(table[number].name) for number in table]
+        return [pack_ints(len(entries)), *entries]
+
+    # -- pose ------------------------------------------------------------------------------
+
+    def get_position(self) -> Answer:
+        """Tell where the agent is."""
+        here = yield Ask("get_pose", (self.agent,))
+        return [pack_floats(*unity_from_vector(here.pose.position_m))]
+
+    def set_position(self, position: Vector3) -> Answer:
+        """Move the agent, or the mover that it follows."""
+        return (yield from in_words(self._moved(position)))
+
+    def _moved(self, position: Vector3) -> Generator[Step, Any, None]:
+        yield Ask("set_position", (self.agent, vector_from_unity("position", position)))
+
+    def get_rotation(self) -> Answer:
+        """Tell how the agent is turned."""
+        here = yield Ask("get_pose", (self.agent,))
+        return [pack_floats(*unity_angles_deg(here.pose))]
+
+    def set_rotation(self, rotation: Vector3) -> Answer:
+        """Turn the agent, or the mover that it follows."""
+        return (yield from in_words(self._turned(rotation)))
+
+    def _turned(self, rotation: Vector3) -> Generator[Step, Any, None]:
+        turn = pose_from_unity((0.0, 0.0, 0.0), rotation)
+        yield Ask("set_rotation", (self.agent, turn.rpy_deg))
+
+    def toggle_follow(self) -> Answer:
+        """Follow the mover, or stop."""
+        return (yield from in_words(self._toggled()))
+
+    def _toggled(self) -> Generator[Step, Any, None]:
+        yield Ask("toggle_follow", (self.agent,))

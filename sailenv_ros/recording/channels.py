@@ -1,0 +1,229 @@
+"""The table of channels: which topics there are, of which types, and their messages in CDR.
+
+`Frame` and `SceneInfo` → serialized messages, and serialized messages → ROS messages. The one
+module of recording that knows ROS; images pass through it without being looked at byte by byte.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+
+from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
+from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.images import image_from_view
+from sailenv_msgs_py.scene_info import scene_info_to_msg
+from sailenv_msgs_py.transforms import pose_stamped_to_msg
+from sailenv_ros.errors import RecordingError
+from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.recording.chunks import Buffer
+from sailenv_ros.recording.schemas import message_class, schema_text, type_hash
+from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = [
+    "AGENT_TOPICS",
+    "CLOCK",
+    "FRAME_INFO",
+    "IMAGE",
+    "SCENE_INFO",
+    "agent_topics",
+    "clock_message",
+    "frame_messages",
+    "message_of",
+    "scene_info_message",
+    "stamp_of",
+    "topic",
+]
+
+IMAGE = "sensor_msgs/msg/Image"
+FRAME_INFO = "sailenv_msgs/msg/FrameInfo"
+SCENE_INFO = "sailenv_msgs/msg/SceneInfo"
+CLOCK = "rosgraph_msgs/msg/Clock"
+
+AGENT_TOPICS = {
+    **dict.fromkeys(VIEWS, IMAGE),
+    "camera_info": "sensor_msgs/msg/CameraInfo",
+    "frame_info": FRAME_INFO,
+    "pose": "geometry_msgs/msg/PoseStamped",
+}
+"""Type of each topic of an agent, by its name below the agent's."""
+
+_QOS = {
+    SCENE_INFO: OfferedQos(depth=1, durability="transient_local"),
+    CLOCK: OfferedQos(depth=1, reliability="best_effort"),
+}
+_BULKY = (IMAGE, "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2")
+
+_STAMPED = frozenset(AGENT_TOPICS.values())
+"""Types that begin with a header, and so with their stamp."""
+
+_LITTLE_ENDIAN_CDR = b"\x00\x01"
+
+Parts = tuple[Buffer, ...]
+
+
+def topic(name: str, type_name: str, qos: OfferedQos | None = None) -> RecordedTopic:
+    """Give the topic of that name with everything a recording says of it."""
+    return RecordedTopic(
+        name=name,
+        type=type_name,
+        schema=schema_text(type_name),
+        qos=qos or _QOS.get(type_name, OfferedQos()),
+        type_hash=type_hash(type_name),
+        bulky=type_name in _BULKY,
+    )
+
+
+def agent_topics(namespace: str, agent: str, views: Iterable[str]) -> list[RecordedTopic]:
+    """Give the topics that an agent's frames are recorded on."""
+    wanted = set(views)
+    return [
+        topic(f"{namespace}/{agent}/{name}", type_name)
+        for name, type_name in AGENT_TOPICS.items()
+        if name in wanted or name not in VIEWS
+    ]
+
+
+def frame_messages(frame: Frame, depth_range_m: float) -> Iterator[tuple[str, Parts]]:
+    """Give everything that is recorded of a frame, by topics' names below the agent's.
+
+    The images' bytes are the frame's own; the info closes the frame, as it does on DDS.
+    """
+    header = header_of_frame(frame)
+    views = [view for view in VIEWS if view in frame.views]
+    for view in views:
+        yield view, _image_parts(image_from_view(view, frame[view], header, copy=False))
+    camera_info = camera_info_from_intrinsics(frame.camera.intrinsics, header)
+    yield "camera_info", (serialize_message(camera_info),)
+    pose = pose_stamped_to_msg(frame.camera.pose, header.stamp, WORLD_FRAME_ID)
+    yield "pose", (serialize_message(pose),)
+    info = frame_info_to_msg(frame, header, views=views, depth_range_m=depth_range_m)
+    yield "frame_info", (serialize_message(info),)
+
+
+def scene_info_message(info: SceneInfo) -> Parts:
+    """Give the message that tells of the scene."""
+    return (serialize_message(scene_info_to_msg(info)),)
+
+
+def message_of(type_name: str, data: Buffer) -> Any:
+    """Read a serialized message.
+
+    Raises
+    ------
+    RecordingError
+        If the type is not installed or the bytes are not such a message.
+    """
+    try:
+        if type_name == IMAGE and bytes(data[:2]) == _LITTLE_ENDIAN_CDR:
+            return _image(memoryview(data))
+        return _deserialize(type_name, data)
+    except (struct.error, ValueError, UnicodeDecodeError) as problem:
+        raise RecordingError(f"a message of {type_name} cannot be read: {problem}") from None
+
+
+def _deserialize(type_name: str, data: Buffer) -> Any:
+    kind = message_class(type_name)
+    try:
+        return deserialize_message(bytes(data), kind)
+    except Exception as problem:  # rclpy raises its own, by the middleware
+        raise RecordingError(f"a message of {type_name} cannot be read: {problem}") from None
+
+
+def _image_parts(image: Image) -> Parts:
+    """Serialize an image around its bytes: all fields before them, then the bytes themselves."""
+    pixels = memoryview(image.data)
+    stamp = image.header.stamp
+    head = bytearray(_LITTLE_ENDIAN_CDR + b"\0\0")
+    _put(head, "<i", stamp.sec)
+    _put(head, "<I", stamp.nanosec)
+    _put_text(head, image.header.frame_id)
+    _put(head, "<I", image.height)
+    _put(head, "<I", image.width)
+    _put_text(head, image.encoding)
+    _put(head, "<B", image.is_bigendian)
+    _put(head, "<I", image.step)
+    _put(head, "<I", len(pixels))
+    return bytes(head), pixels
+
+
+def _put(head: bytearray, code: str, value: int) -> None:
+    """Append a number at a multiple of its size, counted from behind the four bytes of CDR."""
+    head += bytes(-(len(head) - 4) % struct.calcsize(code))
+    head += struct.pack(code, value)
+
+
+def _put_text(head: bytearray, text: str) -> None:
+    raw = text.encode() + b"\0"
+    _put(head, "<I", len(raw))
+    head += raw
+
+
+def _image(data: memoryview) -> Image:
+    """Read an image; its bytes are copied once and nobody else has them."""
+    reader = _CdrReader(data)
+    fields = _image_fields(reader)
+    size = reader.number("<I")
+    if reader.at + size > len(data):
+        raise ValueError(f"{size} bytes of pixels are said, {len(data) - reader.at} are there")
+    image = Image(**fields)
+    # The attribute's setter would look at every byte.
+    image._data = bytearray(data[reader.at : reader.at + size])
+    return image
+
+
+def _image_fields(reader: _CdrReader) -> dict[str, Any]:
+    stamp = Time(sec=reader.number("<i"), nanosec=reader.number("<I"))
+    return {
+        "header": Header(stamp=stamp, frame_id=reader.text()),
+        "height": reader.number("<I"),
+        "width": reader.number("<I"),
+        "encoding": reader.text(),
+        "is_bigendian": reader.number("<B"),
+        "step": reader.number("<I"),
+    }
+
+
+@dataclass(slots=True)
+class _CdrReader:
+    """Reads plain CDR of little-endian byte order, where numbers lie at multiples of their size."""
+
+    data: memoryview
+    at: int = 4
+
+    def number(self, code: str) -> int:
+        size = struct.calcsize(code)
+        self.at += -(self.at - 4) % size
+        (value,) = struct.unpack_from(code, self.data, self.at)
+        self.at += size
+        return int(value)
+
+    def text(self) -> str:
+        length = self.number("<I")
+        raw = bytes(self.data[self.at : self.at + length])
+        if len(raw) != length or not raw.endswith(b"\0"):
+            raise ValueError("a text does not end where it says")
+        self.at += length
+        return raw[:-1].decode()
+
+
+def stamp_of(type_name: str, data: Buffer) -> int | None:
+    """Give the simulated time of a serialized message of an agent [ns]; None of other types."""
+    if type_name not in _STAMPED or bytes(data[:2]) != _LITTLE_ENDIAN_CDR or len(data) < 12:
+        return None
+    seconds, rest = struct.unpack_from("<iI", data, 4)
+    return int(seconds) * 1_000_000_000 + int(rest)
+
+
+def clock_message(time_ns: int) -> bytes:
+    """Give a serialized message that says what time it is [ns]."""
+    seconds, rest = divmod(time_ns, 1_000_000_000)
+    return _LITTLE_ENDIAN_CDR + b"\0\0" + struct.pack("<iI", seconds, rest)

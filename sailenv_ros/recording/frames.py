@@ -1,0 +1,218 @@
+"""The frames of a recording: which there are of an agent, and each one by its number or time.
+
+`RecordingReader` in; frames as their messages or as `Frame` out. Images have a stamp and no
+number; as for a live client, those recorded between two frames' infos belong to the second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_msgs_py.camera_info import intrinsics_from_camera_info
+from sailenv_msgs_py.frame_info import camera_of_frame_info
+from sailenv_msgs_py.images import view_from_image
+from sailenv_msgs_py.scene_info import scene_info_from_msg
+from sailenv_msgs_py.stamps import ns_from_stamp
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.recording.channels import FRAME_INFO, IMAGE, SCENE_INFO, message_of
+from sailenv_ros.recording.reader import RecordingReader
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["RecordedFrames", "recorded_agents"]
+
+
+def recorded_agents(reader: RecordingReader) -> dict[str, str]:
+    """Give the agents whose frames were recorded, with what their topics' names begin with."""
+    suffix = "/frame_info"
+    names = [t.name for t in reader.topics if t.type == FRAME_INFO and t.name.endswith(suffix)]
+    return {name.split("/")[-2]: name[: -len(suffix)] for name in sorted(names)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Entry:
+    """Where a frame's messages lie: rows of the reader."""
+
+    log_ns: int
+    stamp_ns: int
+    info: Any
+    images: Mapping[str, int]
+
+
+class RecordedFrames(Sequence[Frame]):
+    """The complete frames of one agent, in the order they were recorded.
+
+    Parameters
+    ----------
+    reader : RecordingReader
+        Stays the caller's.
+    agent : str
+        Its name; empty if there is only one.
+
+    Raises
+    ------
+    RecordingError
+        If no agent's frames were recorded.
+    UnknownName
+        If there is no such agent, or several and none was named.
+    """
+
+    def __init__(self, reader: RecordingReader, agent: str = "") -> None:
+        self._reader = reader
+        agents = recorded_agents(reader)
+        if not agents:
+            raise RecordingError(f"{reader.path} has no frames of an agent in it (no frame_info)")
+        if agent not in agents and (agent or len(agents) > 1):
+            raise UnknownName("agent", agent, agents)
+        self.agent = agent or next(iter(agents))
+        self._prefix = agents[self.agent]
+        self._topics = {t.name: t for t in reader.topics}
+        self.views = tuple(
+            view
+            for view in VIEWS
+            if getattr(self._topics.get(f"{self._prefix}/{view}"), "type", "") == IMAGE
+        )
+        self._infos = self._scene_infos()
+        self._entries: list[_Entry] = []
+        self.incomplete = 0
+        self._find_frames()
+        self._stamps = np.array([entry.stamp_ns for entry in self._entries], np.int64)
+
+    # -- which there are -------------------------------------------------------------------
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    @property
+    def stamps_ns(self) -> NDArray[np.int64]:
+        """Simulated time of each frame [ns]; begins again where the scene did."""
+        return self._stamps.copy()
+
+    def index_at(self, time_s: float) -> int:
+        """Give the number of the last frame at or before a simulated time [s].
+
+        Where the scene began anew several times, that of the last time.
+
+        Raises
+        ------
+        RecordingError
+            If all are later.
+        """
+        earlier = np.flatnonzero(self._stamps <= round(time_s * 1e9))
+        if not len(earlier):
+            raise RecordingError(f"{self._reader.path} has no frame at or before {time_s:g} s")
+        latest = earlier[self._stamps[earlier] == self._stamps[earlier].max()]
+        return int(latest[-1])
+
+    def position(self, index: int) -> int:
+        """Check an index, of which negative ones count from the end.
+
+        Raises
+        ------
+        InvalidRequest, IndexError
+            If it is no integer, or there is no such frame.
+        """
+        if isinstance(index, bool) or not isinstance(index, int | np.integer):
+            raise InvalidRequest("index", index, "an integer")
+        if not -len(self) <= index < len(self):
+            # Python's own: it is what ends a loop over a sequence.
+            raise IndexError(f"there is no frame {index}; there are {len(self)}")
+        return int(index) % len(self)
+
+    # -- what they hold --------------------------------------------------------------------
+
+    def __getitem__(self, index: Any) -> Any:
+        """Read one frame as `Frame`, or several of a slice as a list."""
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(len(self)))]
+        info, images = self.messages(index)
+        scene_info = self.scene_info(index)
+        return Frame(
+            agent=self.agent,
+            scene=info.scene,
+            epoch=info.epoch,
+            revision=info.revision,
+            sequence=info.sequence,
+            stamp_ns=ns_from_stamp(info.header.stamp),
+            dt_ns=info.dt_ns,
+            camera=camera_of_frame_info(info, self._intrinsics(info, scene_info)),
+            views={view: view_from_image(view, image) for view, image in images.items()},
+            timings_s={"render": info.render_s},
+        )
+
+    def __iter__(self) -> Iterator[Frame]:
+        return (self[number] for number in range(len(self)))
+
+    def messages(self, index: int) -> tuple[Any, dict[str, Any]]:
+        """Read a frame's info and its images by their views, in the order of `VIEWS`."""
+        entry = self._entries[self.position(index)]
+        return entry.info, {view: self._message(entry.images[view]) for view in entry.images}
+
+    def scene_info(self, index: int) -> SceneInfo | None:
+        """Give what was told of the scene when the frame was made; None if it was not recorded."""
+        entry = self._entries[self.position(index)]
+        told = [info for log_ns, info in self._infos if log_ns <= entry.log_ns]
+        if told and told[-1].revision >= entry.info.revision:
+            return told[-1]
+        newer = [info for _, info in self._infos if info.revision >= entry.info.revision]
+        return newer[0] if newer else (told[-1] if told else None)
+
+    def intrinsics(self, index: int) -> CameraIntrinsics:
+        """Give the intrinsics of the camera that a frame was seen by."""
+        info = self._entries[self.position(index)].info
+        return self._intrinsics(info, self.scene_info(index))
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _intrinsics(self, info: Any, scene_info: SceneInfo | None) -> CameraIntrinsics:
+        specs = [] if scene_info is None else scene_info.agents
+        for spec in specs:
+            if spec.name == self.agent:
+                return spec.intrinsics
+        # Of an agent that no scene_info names the camera_info tells, but for rounding, the same.
+        name = f"{self._prefix}/camera_info"
+        rows = self._reader.rows(name) if name in self._topics else None
+        if rows is None or not rows.size:
+            raise RecordingError(f"{self._reader.path} has neither {name} nor a scene_info with it")
+        camera_info = self._message(int(rows[0]))
+        return intrinsics_from_camera_info(camera_info, near_m=info.near_m, far_m=info.far_m)
+
+    def _message(self, row: int) -> Any:
+        topic, raw = self._reader.message(row)
+        return message_of(topic.type, raw.data)
+
+    def _scene_infos(self) -> list[tuple[int, SceneInfo]]:
+        name = f"{self._prefix.rpartition('/')[0]}/scene_info"
+        if getattr(self._topics.get(name), "type", "") != SCENE_INFO:
+            return []
+        rows = self._reader.rows(name)
+        return [
+            (int(self._reader.log_ns(int(row))), scene_info_from_msg(self._message(int(row))))
+            for row in rows
+        ]
+
+    def _find_frames(self) -> None:
+        rows = {view: self._reader.rows(f"{self._prefix}/{view}") for view in self.views}
+        times = {view: self._reader.log_ns(found) for view, found in rows.items()}
+        after = dict.fromkeys(self.views, 0)
+        for row in self._reader.rows(f"{self._prefix}/frame_info"):
+            info, log_ns = self._message(int(row)), int(self._reader.log_ns(int(row)))
+            images = {}
+            for view in self.views:
+                until = int(np.searchsorted(times[view], log_ns, side="right"))
+                if view in info.views and until > after[view]:
+                    images[view] = int(rows[view][until - 1])
+                after[view] = until
+            if set(images) == set(info.views) & set(self.views) and images:
+                stamp_ns = ns_from_stamp(info.header.stamp)
+                self._entries.append(
+                    _Entry(log_ns=log_ns, stamp_ns=stamp_ns, info=info, images=images)
+                )
+            else:
+                self.incomplete += 1

@@ -1,0 +1,201 @@
+"""A lockstep `Simulation` → a recording, without DDS: every frame exactly once, as fast as it goes.
+
+The same scene, seed and options give the same bytes. While one frame is written the next one is
+being rendered.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Any
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.frame import Frame, checked_views
+from sailenv_ros.recording.channels import (
+    SCENE_INFO,
+    agent_topics,
+    frame_messages,
+    scene_info_message,
+    topic,
+)
+from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.requests import wait_for
+
+__all__ = ["FrameRecorder", "due_steps", "record_lockstep"]
+
+STEPS_PER_S = 240
+"""Physics steps per simulated second."""
+
+FRAME_TIMEOUT_S = 120.0
+"""How long one frame may take to be rendered [s]."""
+
+
+class FrameRecorder:
+    """Writes frames and scene infos as the node would publish them; times are simulated.
+
+    A new epoch, whose time begins at 0 again, is recorded behind the one before.
+
+    Parameters
+    ----------
+    writer : RecordingWriter
+        Stays the caller's.
+    namespace : str
+        What the topics' names begin with.
+    """
+
+    def __init__(self, writer: RecordingWriter, namespace: str = "/sailenv") -> None:
+        self._writer = writer
+        self._namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
+        self._epoch: int | None = None
+        self._base_ns = 0
+        self._last_ns = 0
+        self._known: set[str] = set()
+
+    def write_info(self, info: SceneInfo) -> None:
+        """Record what clients are told of the scene."""
+        name = f"{self._namespace}/scene_info"
+        if not self._known:
+            self._writer.add_topic(topic(name, SCENE_INFO))
+        self._known.add(name)
+        log_ns = self._log_ns(info.epoch, info.sim_time_ns)
+        self._writer.write(name, scene_info_message(info), log_ns)
+
+    def write_frame(self, frame: Frame, depth_range_m: float) -> None:
+        """Record a frame; its views are those that it has."""
+        for entry in agent_topics(self._namespace, frame.agent, frame.views):
+            if entry.name not in self._known:
+                self._known.add(entry.name)
+                self._writer.add_topic(entry)
+        log_ns = self._log_ns(frame.epoch, frame.stamp_ns)
+        for name, parts in frame_messages(frame, depth_range_m):
+            self._writer.write(f"{self._namespace}/{frame.agent}/{name}", parts, log_ns)
+
+    def _log_ns(self, epoch: int, stamp_ns: int) -> int:
+        if epoch != self._epoch:
+            # Log times never go back, so that every reader gives the epochs one after another.
+            self._base_ns = self._last_ns + 1 if self._epoch is not None else 0
+            self._epoch = epoch
+        self._last_ns = max(self._last_ns, self._base_ns + stamp_ns)
+        return self._last_ns
+
+
+@dataclass(frozen=True, slots=True)
+class _Shot:
+    step: int
+    spec: AgentSpec
+
+
+def due_steps(rate_hz: float, count: int) -> list[int]:
+    """Give the physics steps at which an agent's frames fall due, from 0 on."""
+    # A step late rather than early, as the streams of a simulation do it.
+    return [math.ceil(number * STEPS_PER_S / rate_hz - 1e-9) for number in range(count)]
+
+
+def record_lockstep(
+    simulation: Simulation,
+    writer: RecordingWriter,
+    *,
+    frames: int,
+    agents: Sequence[str] = (),
+    views: Sequence[str] = (),
+    namespace: str = "/sailenv",
+    on_frame: Callable[[int], None] = lambda count: None,
+) -> int:
+    """Record so many frames of each agent.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        In lockstep mode; nobody else should step it meanwhile.
+    writer : RecordingWriter
+    frames : int
+        Of each agent.
+    agents : sequence of str
+        Names; none means all.
+    views : sequence of str
+        Views of every frame; none means each agent's own.
+    namespace : str
+        What the topics' names begin with.
+    on_frame : callable
+        Called with the number of frames that have been written, after each.
+
+    Returns
+    -------
+    count : int
+        Frames that were written.
+
+    Raises
+    ------
+    InvalidRequest
+        If the simulation is not in lockstep mode, or a number or name cannot be accepted.
+    RecordingError
+        If it cannot be written on; what was written is readable.
+    """
+    specs = _chosen(simulation.info, agents)
+    if simulation.info.mode != "lockstep":
+        raise InvalidRequest("mode of the simulation", simulation.info.mode, "'lockstep'")
+    if frames < 1:
+        raise InvalidRequest("frames", frames, "1 or more")
+    wanted = checked_views(views) if views else None
+    shots = sorted(
+        (_Shot(step, spec) for spec in specs for step in due_steps(spec.rate_hz, frames)),
+        key=lambda shot: shot.step,
+    )
+    ranges = {spec.name: spec.depth_range_m for spec in specs}
+    infos: list[SceneInfo] = []
+    recorder = FrameRecorder(writer, namespace)
+    stop_listening = simulation.on_info(infos.append)
+    count = 0
+    try:
+        for frame in _frames(simulation, shots, wanted):
+            while infos:
+                recorder.write_info(infos.pop(0))
+            recorder.write_frame(frame, ranges[frame.agent])
+            count += 1
+            on_frame(count)
+    finally:
+        stop_listening()
+    return count
+
+
+def _chosen(info: SceneInfo, names: Sequence[str]) -> list[AgentSpec]:
+    by_name = {spec.name: spec for spec in info.agents}
+    for name in names:
+        if name not in by_name:
+            raise UnknownName("agent", name, by_name)
+    chosen = [by_name[name] for name in dict.fromkeys(names)] if names else list(by_name.values())
+    if not chosen:
+        raise InvalidRequest("agents", (), "at least one; the scene has none")
+    for spec in chosen:
+        if not spec.rate_hz:
+            raise InvalidRequest(f"rate_hz of agent {spec.name!r}", 0.0, "above 0 to be recorded")
+    return chosen
+
+
+def _frames(
+    simulation: Simulation, shots: Sequence[_Shot], views: tuple[str, ...] | None
+) -> Iterator[Frame]:
+    """Give the frames in order; each is asked for before the one before is used."""
+    step = 0
+    asked: Future[Any] | None = None
+    for shot in shots:
+        if shot.step > step:
+            simulation.request("step", shot.step - step)
+            step = shot.step
+        following = simulation.request("capture", shot.spec.name, views)
+        if asked is not None:
+            yield _await(asked)
+        asked = following
+    if asked is not None:
+        yield _await(asked)
+
+
+def _await(asked: Future[Any]) -> Frame:
+    frame: Frame = wait_for(asked, "a frame to be rendered", FRAME_TIMEOUT_S)
+    return frame

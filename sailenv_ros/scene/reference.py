@@ -1,0 +1,129 @@
+"""The reference page of the scene format, written from its JSON Schema.
+
+A schema in, Markdown out: one table for each kind of entry, with what every key takes, its default
+and what it means. It stands in `docs/scene_format.md` below a marker.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+__all__ = ["MARKER", "is_stale", "reference", "write_reference"]
+
+MARKER = "<!-- All below is written by: sailenv scene schema. -->"
+
+_TITLES = {
+    "AgentSpecModel": "An agent",
+    "AreaLightSpec": "An area light",
+    "BehaviourSpec": "A behaviour",
+    "CategorySpec": "A category",
+    "CurtainSpec": "Curtains",
+    "DirectionalLightSpec": "A directional light",
+    "DoorSpec": "A door",
+    "EnvironmentSpec": "The environment",
+    "MoverSpec": "A mover",
+    "ObjectSpec": "An object",
+    "PointLightSpec": "A point light",
+    "RoomSpec": "The room",
+    "SkirtingSpec": "The skirting",
+    "SpotLightSpec": "A spot light",
+    "SurfaceSpec": "A surface",
+    "WallMaterialsSpec": "Walls that differ",
+    "WaypointSpec": "A waypoint",
+    "WindowSpec": "A window",
+}
+
+
+def reference(schema: Mapping[str, Any]) -> str:
+    """Give the reference as Markdown.
+
+    Parameters
+    ----------
+    schema : mapping
+        What `scene.schema.scene_schema` gives.
+    """
+    lines = [MARKER, "", "## Reference", "", "### The scene", ""]
+    lines += _table(schema)
+    for name, title in _TITLES.items():
+        definition = schema["$defs"].get(name)
+        if definition is not None and definition.get("properties"):
+            lines += ["", f"### {title}", ""]
+            lines += _table(definition)
+    return "\n".join(lines) + "\n"
+
+
+def write_reference(path: Path, schema: Mapping[str, Any]) -> None:
+    """Replace what stands below the marker."""
+    head, _, _ = path.read_text(encoding="utf-8").partition(MARKER)
+    path.write_text(head + reference(schema), encoding="utf-8")
+
+
+def is_stale(path: Path, schema: Mapping[str, Any]) -> bool:
+    """Tell if `write_reference` would change the page."""
+    _, marker, rest = path.read_text(encoding="utf-8").partition(MARKER)
+    return marker + rest != reference(schema)
+
+
+def _table(model: Mapping[str, Any]) -> Iterator[str]:
+    yield "| Key | Takes | Default | Meaning |"
+    yield "|---|---|---|---|"
+    required = model.get("required", ())
+    for key, entry in model["properties"].items():
+        default = "**needed**" if key in required else _default(entry)
+        meaning = entry.get("description", "").replace("|", "\\|")
+        yield f"| `{key}` | {_takes(entry)} | {default} | {meaning} |"
+
+
+def _default(entry: Mapping[str, Any]) -> str:
+    value = entry.get("default")
+    if value is None or value in ([], {}, ""):
+        return ""
+    rounded = json.loads(json.dumps(value), parse_float=lambda number: round(float(number), 4))
+    text = json.dumps(rounded, ensure_ascii=False)
+    return f"`{text}`" if len(text) <= 40 else "see there"
+
+
+def _takes(entry: Mapping[str, Any]) -> str:
+    if "$ref" in entry:
+        return _link(entry["$ref"])
+    if "const" in entry:
+        return f"`{entry['const']}`"
+    if "enum" in entry:
+        return ", ".join(f"`{value}`" for value in entry["enum"])
+    for several in ("anyOf", "oneOf", "allOf"):
+        if several in entry:
+            kinds = [_takes(kind) for kind in entry[several] if kind != {"type": "null"}]
+            return " or ".join(dict.fromkeys(kinds))
+    return _plain(entry)
+
+
+def _plain(entry: Mapping[str, Any]) -> str:
+    kind = entry.get("type")
+    if kind == "array":
+        items = entry.get("items")
+        each = _takes(items) if isinstance(items, Mapping) else "values"
+        count = entry.get("minItems") if entry.get("minItems") == entry.get("maxItems") else None
+        return f"{count} × {each}" if count else f"list of {each}"
+    if kind in ("number", "integer"):
+        return _number(entry)
+    return {"boolean": "true, false", "string": "text", "object": "keys"}.get(str(kind), "")
+
+
+def _number(entry: Mapping[str, Any]) -> str:
+    low = entry.get("minimum", entry.get("exclusiveMinimum"))
+    high = entry.get("maximum", entry.get("exclusiveMaximum"))
+    noun = "whole number" if entry.get("type") == "integer" else "number"
+    if low is None or high is None or high >= 1e4:
+        return noun if low is None or low < 0 else f"{noun} ≥ {low:g}"
+    return f"{noun} {low:g} to {high:g}"
+
+
+def _link(reference_path: str) -> str:
+    name = reference_path.rpartition("/")[2]
+    title = _TITLES.get(name, name)
+    anchor = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+    return f"[{title.lower()}](#{anchor})"

@@ -1,0 +1,47 @@
+"""Pictures of assets and scenes show what they are asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.cli.main import main
+from sailenv_ros.simulation.portraits import FLOOR_COLOUR, PortraitStudio
+
+
+def test_a_portrait_fills_the_picture_whatever_the_size() -> None:
+    """A ball is in the middle, with floor around it; the size of an asset does not matter."""
+    assert len(FLOOR_COLOUR) == 3
+    with PortraitStudio() as studio:
+        picture = studio.portrait(Primitives().load("sphere"), width=160, height=120)
+        assert picture.shape == (120, 160, 3)
+        assert picture.dtype == np.uint8
+        again = studio.portrait(Primitives().load("sphere"), width=160, height=120)
+    np.testing.assert_array_equal(picture, again)
+    centre, corner = picture[50:60, 75:85].astype(int), picture[-8:, -8:].astype(int)
+    assert abs(centre.mean() - corner.mean()) > 10
+
+
+def test_a_scene_is_rendered_with_its_five_views(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The sheet has a tile for each view, of the size that was asked for."""
+    out = tmp_path / "views.png"
+    size = ["--width", "64", "--height", "48", "--columns", "5"]
+    assert main(["scene", "render", "optical", "-o", str(out), *size, "--time", "1"]) == 0
+    assert str(out) in capsys.readouterr().out
+    with Image.open(out) as sheet:
+        assert sheet.size == (5 * 64 + 6 * 6, 48 + 2 * 6)
+
+
+def test_a_viewpoint_can_be_given(tmp_path: Path) -> None:
+    """Looking up into the sky shows no instance."""
+    out = tmp_path / "sky.png"
+    place = ["--position", "0", "0", "9", "--look-at", "0", "1", "90", "--views", "instance"]
+    assert main(["scene", "render", "optical", "-o", str(out), *place]) == 0
+    with Image.open(out) as sheet:
+        assert np.asarray(sheet)[100:400, 100:500].std() == 0.0

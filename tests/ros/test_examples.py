@@ -1,0 +1,111 @@
+"""Every example runs as it stands, prints what it promises and writes the picture it names."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+WRITES_A_PICTURE = (
+    "01_moving_camera",
+    "02_bounding_boxes",
+    "03_flow_against_opencv",
+    "06_lights",
+)
+
+
+def run(example: str, *arguments: str) -> str:
+    """Run an example as a program of its own; give what it prints."""
+    command = [sys.executable, str(EXAMPLES / f"{example}.py"), *arguments]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    finished = subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=110, check=False
+    )
+    assert finished.returncode == 0, finished.stderr
+    return finished.stdout
+
+
+@pytest.mark.parametrize("example", WRITES_A_PICTURE)
+def test_a_picture_is_written_where_it_was_asked_for(example: str, tmp_path: Path) -> None:
+    """The name on the command line is the file's."""
+    path = tmp_path / "picture.png"
+    assert str(path) in run(example, str(path))
+    assert path.stat().st_size > 2_000
+
+
+def test_the_camera_s_way_is_in_the_flow(tmp_path: Path) -> None:
+    """The first frame has no past; all later ones have flow nearly everywhere."""
+    out = run("01_moving_camera", str(tmp_path / "a.png"))
+    valid = [int(share) for share in re.findall(r"(\d+)% valid", out)]
+    assert len(valid) == 10
+    assert valid[0] == 0
+    assert min(valid[1:]) > 80
+
+
+def test_estimated_flow_is_near_the_exact(tmp_path: Path) -> None:
+    """Direction and sign agree: the estimate's error is less than the motion's length."""
+    out = run("03_flow_against_opencv", str(tmp_path / "a.png"))
+    length = float(re.search(r"exact flow: ([\d.]+) px", out)[1])  # type: ignore[index]  # it is there
+    error = float(re.search(r"the estimate: ([\d.]+) px", out)[1])  # type: ignore[index]  # it is there
+    assert 0.0 < error < length
+
+
+def test_spawned_objects_fall_move_and_go() -> None:
+    """The ball comes to rest on the shelf's height or below, the shelf moves up, all go."""
+    out = run("04_spawn_objects")
+    heights = [float(height) for height in re.findall(r"ball is at (-?[\d.]+) m", out)]
+    assert len(heights) == 4
+    assert heights[-1] < heights[0]
+    assert float(re.search(r"moves up: (-?\d+) px/s", out)[1]) > 0  # type: ignore[index]  # it is there
+    assert "gone: True" in out
+
+
+def test_lights_change_the_picture(tmp_path: Path) -> None:
+    """An evening sun is red, a fifth of it darker, blue light makes it bluer."""
+    rows = re.findall(
+        r"^(.+?) +red +([\d.]+) +green +([\d.]+) +blue +([\d.]+)$",
+        run("06_lights", str(tmp_path / "a.png")),
+        re.MULTILINE,
+    )
+    seen = {what.strip(): tuple(map(float, colour)) for what, *colour in rows}
+    assert len(seen) == 6
+    evening, dark = seen["an evening sun"], seen["a fifth of it"]
+    blue = seen["with blue light from everywhere"]
+    assert evening[0] - evening[2] > seen["as the scene is"][0] - seen["as the scene is"][2]
+    assert sum(dark) < sum(evening)
+    assert blue[2] > dark[2]
+
+
+def test_a_scenario_moves_as_it_says() -> None:
+    """Both cubes turn at their rates, the ball falls, and a reset brings all back."""
+    out = run("07_scenario")
+    yaw = dict(re.findall(r"0\.25 s: (slow|fast) +at .* yaw +(-?[\d.]+) deg", out))
+    assert float(yaw["slow"]) == pytest.approx(7.5, abs=0.1)
+    assert float(yaw["fast"]) == pytest.approx(45.0, abs=0.3)
+    assert "after a reset: ['slow', 'fast', 'sphere_1']" in out
+
+
+def test_many_agents_see_one_instant() -> None:
+    """Four agents, three instants."""
+    out = run("08_many_agents")
+    assert len(re.findall(r"ids are seen", out)) == 12
+
+
+def test_the_training_loop_learns() -> None:
+    """It gets more right at the end than at the beginning."""
+    shares = re.search(r"first five frames: (\d+)%, the last five: (\d+)%", run("09_training_loop"))
+    assert shares is not None
+    assert int(shares[2]) > int(shares[1])
+
+
+def test_the_dataset_gives_every_frame() -> None:
+    """Twelve frames, with PyTorch's workers or without."""
+    assert "frames: 12" in run("10_pytorch_dataset")

@@ -1,0 +1,105 @@
+"""`docs/interfaces.md` beside a running node: every topic, service and parameter, and no other."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sailenv_ros.nodes.parameters import _PARAMETERS, LIVE
+from tests.support.node_process import NodeProcess
+from tests.support.ros_probe import Probe
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.ros
+
+PAGE = Path(__file__).parents[2] / "docs" / "interfaces.md"
+NAMESPACE = "/page"
+
+OF_ROS = re.compile(r".*/sim_node/|/parameter_events$|/rosout$")
+"""What every ROS node has."""
+
+
+def table(heading: str) -> list[list[str]]:
+    """Give the cells of the first table below a heading of the page, without its head."""
+    section = PAGE.read_text().split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in row[1:-1].split("|")] for row in rows[2:]]
+
+
+def names_and_types(heading: str) -> dict[str, str]:
+    """Give the names of a table with their types, as ROS spells them."""
+    kind = "srv" if heading == "Services" else "msg"
+    found = {}
+    for name, type_, *_ in table(heading):
+        name = name.strip("`").replace("<agent>", "agent")
+        package, _, word = type_.strip("`").partition("/")
+        found[name if name.startswith("/") else f"{NAMESPACE}/{name}"] = f"{package}/{kind}/{word}"
+    return found
+
+
+@pytest.fixture(scope="module")
+def probe() -> Iterator[Probe]:
+    """A participant beside a simulator as it starts by itself."""
+    with NodeProcess(NAMESPACE, publish_clock=True), Probe(NAMESPACE) as probe:
+        yield probe
+
+
+def offered(ask: Callable[[str, str], Any], expected: dict[str, str]) -> dict[str, str]:
+    """Ask the graph until it has everything that is expected; give all that is there."""
+    found: dict[str, str] = {}
+
+    def all_there() -> bool:
+        try:
+            pairs = ask("sim_node", NAMESPACE)
+        except Exception:  # the node is not known yet
+            return False
+        found.update({name: types[0] for name, types in pairs if not OF_ROS.match(name)})
+        return expected.keys() <= found.keys()
+
+    until(all_there, f"all of {sorted(expected)}")
+    return found
+
+
+def test_the_page_has_every_topic(probe: Probe) -> None:
+    """Names and types are those of the node."""
+    expected = names_and_types("Topics")
+    assert offered(probe.node.get_publisher_names_and_types_by_node, expected) == expected
+
+
+def test_the_page_has_every_service(probe: Probe) -> None:
+    """Names and types are those of the node."""
+    expected = names_and_types("Services")
+    found = offered(probe.node.get_service_names_and_types_by_node, expected)
+    assert {name: type_ for name, type_ in found.items() if "sim_node" not in name} == expected
+
+
+def shown_range(entry: Any) -> str:
+    if entry.choices and not isinstance(entry.default, list):
+        return ", ".join(f"`{choice}`" for choice in entry.choices)
+    if entry.low is None:
+        return ""
+    high = "2⁶³ − 1" if entry.high == 2**63 - 1 else f"{entry.high:g}"
+    return f"{entry.low:g} … {high}"
+
+
+def shown_default(value: object) -> str:
+    if isinstance(value, list | str):
+        parts = [value] if isinstance(value, str) else value
+        return ", ".join(f"`{part}`" for part in parts if part)
+    return str(value).lower()
+
+
+def test_the_page_has_every_parameter() -> None:
+    """Type, default, range and whether it is live are those that the node declares."""
+    types = {bool: "bool", int: "integer", float: "double", str: "string", list: "string_array"}
+    expected = {
+        name: (types[type(entry.default)], shown_default(entry.default), shown_range(entry))
+        for name, entry in _PARAMETERS.items()
+    }
+    rows = {name.strip("`"): tuple(cells) for name, *cells in table("Parameters of `sim_node`")}
+    assert {name: row[:3] for name, row in rows.items()} == expected
+    assert {name for name, row in rows.items() if "*live*" in row[3]} == set(LIVE)

@@ -1,0 +1,47 @@
+"""The gateway in sim_node: beside topics and services, on the port of its parameter."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+
+from tests.support.node_process import NodeProcess
+from tests.support.original_client import original_client
+
+pytestmark = pytest.mark.ros
+
+
+def _free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port: int = probe.getsockname()[1]
+    return port
+
+
+def test_the_node_serves_the_original_client() -> None:
+    """The log says where, a frame comes, and the node ends with a client still there."""
+    port = _free_port()
+    with NodeProcess("/gate", gateway__port=port) as node:
+        assert f"connect to 127.0.0.1, port {port}" in node.log
+        with original_client(port, width=32, height=24) as agent:
+            assert agent.get_frame()["flow"].shape == (24, 32, 2)
+            node.close()
+        assert node.status() == 0
+        assert "Traceback" not in node.log
+
+
+def test_a_port_in_use_is_no_reason_not_to_start() -> None:
+    """The node says that the original's clients cannot connect to it, and runs."""
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with NodeProcess("/gate", gateway__port=port) as node:
+            assert "cannot connect here" in node.log
+            assert node.alive
+
+
+def test_an_address_that_is_none_is_a_reason() -> None:
+    """A wrong host ends the node with status 2 and one sentence."""
+    settings = {"gateway__port": _free_port(), "gateway__host": "203.0.113.1"}
+    with NodeProcess("/gate", ready=False, **settings) as node:
+        assert node.status(60.0) == 2
+        assert "address of the gateway" in node.log

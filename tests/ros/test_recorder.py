@@ -1,0 +1,143 @@
+"""The recorder node over real DDS: what a live agent saw, byte for byte, and nothing in silence."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rosbags.rosbag2 import Reader
+
+from sailenv_ros import Agent
+from sailenv_ros.errors import RecordingError
+from sailenv_ros.recording.reader import RecordingReader
+from sailenv_ros.recording.recovery import recover
+from tests.support.node_process import NodeProcess
+from tests.support.tool_process import ToolProcess
+from tests.support.waiting import until
+from tests.unit.recording.test_reader import same_dict
+
+pytestmark = [pytest.mark.ros, pytest.mark.gl]
+
+NAMESPACE = "/recorded"
+
+
+@pytest.fixture(scope="module")
+def node() -> Iterator[NodeProcess]:
+    """A lockstep simulator without an agent."""
+    with NodeProcess(NAMESPACE, mode="lockstep", agent__name="") as node:
+        yield node
+
+
+def recorder(output: Path, **parameters: object) -> ToolProcess:
+    settings = {"output": str(output), "progress_interval_s": 0.2, **parameters}
+    return ToolProcess("recorder", NAMESPACE, "Ctrl-C ends it", **settings)
+
+
+def recorded(process: ToolProcess) -> int:
+    """Give the number of frames of the latest line of progress."""
+    told = [line for line in process.lines if " frames (" in line]
+    return int(told[-1].split(" frames (")[0].split()[-1]) if told else 0
+
+
+def test_a_recording_gives_what_the_live_agent_saw(node: NodeProcess, tmp_path: Path) -> None:
+    """Every frame of the recording is the dict that `get_frame` gave, byte for byte."""
+    live: dict[int, dict[str, Any]] = {}
+    bag = tmp_path / "bag"
+    with (
+        Agent(width=64, height=48, name="eye", namespace=NAMESPACE) as agent,
+        recorder(bag, views=["rgb", "depth", "category", "instance", "flow"]) as process,
+    ):
+        instances, categories = agent.instances, agent.categories
+
+        def seen() -> bool:
+            agent.step(8)
+            frame = agent.get_frame()
+            live[frame["sequence"]] = frame
+            return recorded(process) >= 3
+
+        until(seen, "frames to be recorded")
+        for _ in range(6):
+            seen()
+        first = agent.get_frame()  # of the same instant as the one before: told apart all the same
+        last = agent.get_frame()
+        live.update({first["sequence"]: first, last["sequence"]: last})
+        before = recorded(process)
+        until(lambda: recorded(process) >= min(before + 1, 8), "the last frames to be taken")
+        assert process.end() == 0, process.log
+    assert process.said("dropped 0")
+    with Agent.from_recording(bag) as read:
+        frames = [read.get_frame() for _ in range(len(read))]
+        assert read.instances == instances
+        assert read.categories == categories
+        assert read.scene == "optical"
+    numbers = [frame["sequence"] for frame in frames]
+    assert numbers == list(range(numbers[0], last["sequence"] + 1))
+    assert len(numbers) >= 8
+    for frame in frames:
+        if frame["sequence"] in live:
+            same_dict(frame, live[frame["sequence"]])
+    with Reader(bag) as other:
+        assert other.message_count == sum(1 for _ in other.messages())
+
+
+def test_an_agent_that_is_not_meant_is_left_out(node: NodeProcess, tmp_path: Path) -> None:
+    """Only the agents and views that were named are recorded, and no other is rendered for it."""
+    bag = tmp_path / "bag"
+    with (
+        Agent(width=32, height=24, name="one", namespace=NAMESPACE) as one,
+        Agent(width=32, height=24, name="two", namespace=NAMESPACE) as two,
+        recorder(bag, agents=["two"], views=["rgb"], clock=False) as process,
+    ):
+
+        def seen() -> bool:
+            one.step(8)
+            one.get_frame()
+            two.get_frame()
+            return recorded(process) >= 3
+
+        until(seen, "frames to be recorded")
+        assert process.end(signal.SIGTERM) == 0, process.log
+    with RecordingReader(bag) as reader:
+        assert {topic.name for topic in reader.topics} == {f"{NAMESPACE}/scene_info"} | {
+            f"{NAMESPACE}/two/{name}" for name in ("rgb", "camera_info", "frame_info", "pose")
+        }
+
+
+def test_a_killed_recorder_leaves_what_can_be_restored(node: NodeProcess, tmp_path: Path) -> None:
+    """After kill -9 the bag is refused by the name of the command that restores it."""
+    bag = tmp_path / "bag"
+    with (
+        Agent(width=320, height=240, name="eye", namespace=NAMESPACE) as agent,
+        recorder(bag) as process,
+    ):
+
+        def seen() -> bool:
+            agent.step(8)
+            agent.get_frame()
+            return recorded(process) >= 5
+
+        until(seen, "frames to be recorded")
+        assert process.end(signal.SIGKILL) == -signal.SIGKILL
+    with pytest.raises(RecordingError, match="sailenv bag recover"):
+        Agent.from_recording(bag)
+    recover(bag)
+    with Agent.from_recording(bag) as read:
+        assert len(read) >= 3
+        assert read[0]["main"].shape == (240, 320, 3)
+
+
+def test_what_cannot_be_written_is_told_at_once(node: NodeProcess, tmp_path: Path) -> None:
+    """An existing bag, a wrong name, an unknown parameter: status 2 and one sentence."""
+    (tmp_path / "bag").mkdir()
+    for parameters, sentence in (
+        ({"output": str(tmp_path / "bag")}, "exists already"),
+        ({"output": str(tmp_path / "b"), "views": ["rgbd"]}, "did you mean 'rgb'"),
+        ({"output": str(tmp_path / "c"), "outpt": "x"}, "did you mean 'output'"),
+        ({"output": "/proc/bag"}, "cannot be made"),
+    ):
+        with ToolProcess("recorder", NAMESPACE, "", **parameters) as process:
+            assert process.status() == 2
+            assert process.said(sentence), process.log

@@ -1,0 +1,190 @@
+"""The standard pack holds what a furnished world needs, sized and finished as it should be."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_ros.assets import AssetLibrary, load_categories
+from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.sources import UnbuiltPack, installed_sources
+from sailenv_ros.assets.standard.build import (
+    SKIES,
+    build_standard_pack,
+    is_current,
+    licence_files,
+)
+from sailenv_ros.assets.standard.catalogues import Catalogues
+from sailenv_ros.assets.standard.fetch import fetched
+from sailenv_ros.assets.standard.handmade import HANDMADE
+from sailenv_ros.assets.standard.recipe import read_recipe, standard_recipe
+from sailenv_ros.errors import AssetError
+from sailenv_ros.model import Asset, ConvexShape
+
+NAMES = tuple(standard_recipe().assets)
+THE_FOURTEEN = {
+    "bed",
+    "book",
+    "chair",
+    "couch",
+    "dining table",
+    "fork",
+    "laptop",
+    "airplane",
+    "potted plant",
+    "remote",
+    "spoon",
+    "tennis racket",
+    "toilet",
+    "tv",
+}
+METALS = ("fork_01", "knife_01", "spoon_01", "towel_01", "waste_bin_01", "sink_01")
+
+
+@pytest.fixture(scope="module")
+def pack() -> AssetPack:
+    return AssetPack(build_standard_pack())
+
+
+@pytest.fixture(scope="module")
+def assets(pack: AssetPack) -> dict[str, Asset]:
+    return {name: pack.load(name) for name in NAMES}
+
+
+def test_there_are_objects_enough() -> None:
+    """At least 70 objects in 40 categories, among them the fourteen of the paper's experiment."""
+    counted = Counter(entry.category for entry in standard_recipe().assets.values())
+    assert counted.total() >= 70
+    assert len(counted) >= 40
+    assert set(counted) >= THE_FOURTEEN
+    assert set(counted) <= {category.name for category in load_categories().values()}
+
+
+def test_names_are_the_originals_where_those_are_known() -> None:
+    """Scripts written for the original find its names."""
+    recipe = standard_recipe()
+    names = {recipe.display_name(name) for name in recipe.assets}
+    assert names >= {"Chair 01", "Pillow 01", "Dish 01", "Tennis Racket 01"}
+    assert set(AssetLibrary().all_names) >= {"Cylinder", "Cube"}
+    assert len(names) == len(recipe.assets)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_object_is_finished(name: str, pack: AssetPack, assets: dict[str, Asset]) -> None:
+    """It stands on its base, has few triangles, unit normals, a mass and something to collide."""
+    asset, entry = assets[name], pack.entries[name]
+    low, high = asset.model.bounds()
+    np.testing.assert_allclose(high - low, entry.size, atol=2e-4)
+    assert low[2] == pytest.approx(0.0, abs=2e-3)
+    assert 0 < asset.model.triangle_count < 20_000
+    assert asset.mass_kg > 0.0
+    assert entry.licence
+    assert entry.author
+    assert entry.source
+    for part in asset.model.parts:
+        lengths = np.linalg.norm(part.mesh.normals, axis=1)
+        np.testing.assert_allclose(lengths, 1.0, atol=1e-3)
+        assert part.material.alpha != "blend"
+    for shape in asset.collision:
+        if isinstance(shape, ConvexShape):
+            assert (shape.points >= low - 0.01).all()
+            assert (shape.points <= high + 0.01).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_object_has_its_catalogues_size(name: str, assets: dict[str, Asset]) -> None:
+    """The catalogue's width, depth and height are the model's, within a millimetre and 1 %."""
+    entry = standard_recipe().assets[name]
+    library, _, what = entry.source.partition("/")
+    if library == "made":
+        assert what in HANDMADE
+        return
+    listed = Catalogues(fetched("sweethome3d-furniture")).entry(entry.source)
+    size = np.ptp(assets[name].model.bounds(), axis=0)
+    np.testing.assert_allclose(size, listed.size_m, rtol=0.02, atol=1e-3)
+
+
+def test_metal_is_metal_and_screens_are_black_glass(assets: dict[str, Asset]) -> None:
+    """Materials are what their names say."""
+    for name in METALS:
+        assert max(p.material.metallic for p in assets[name].model.parts) == pytest.approx(1.0)
+    for name in ("tv_01", "tv_02", "laptop_01"):
+        screens = [
+            p.material for p in assets[name].model.parts if "screen" in p.material.name.lower()
+        ]
+        assert screens
+        for screen in screens:
+            assert max(screen.base_colour[:3]) < 0.05
+            assert screen.roughness < 0.2
+    for name in ("chair_02", "pillow_01", "towel_02", "bed_02"):
+        assert max(p.material.roughness for p in assets[name].model.parts) > 0.9
+
+
+def test_leaves_are_seen_from_both_sides(assets: dict[str, Asset]) -> None:
+    """Leaves are sheets."""
+    for name in ("plant_01", "plant_03", "plant_05"):
+        leaves = [p for p in assets[name].model.parts if p.material.name.lower().startswith("lea")]
+        assert leaves
+        assert all(part.material.double_sided for part in leaves)
+
+
+def test_credits_and_skies_are_kept(pack: AssetPack) -> None:
+    """The licence text of every library that was used lies in the pack, and the skies do."""
+    texts = {path.parent.name for path in licence_files(pack.folder)}
+    used = {entry.source.partition("/")[0] for entry in standard_recipe().assets.values()}
+    assert texts >= (used - {"made"}) | {"blender-data"}
+    assert len(list((pack.folder / SKIES).glob("*.exr"))) == 8
+
+
+def test_building_again_changes_nothing(pack: AssetPack) -> None:
+    """A pack that is up to date is left as it is."""
+    before = {path: path.stat().st_mtime_ns for path in pack.folder.iterdir()}
+    assert is_current()
+    assert build_standard_pack() == pack.folder
+    assert {path: path.stat().st_mtime_ns for path in pack.folder.iterdir()} == before
+
+
+def test_without_the_pack_its_names_tell_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One sentence names the command; the solids are there all the same."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    library = AssetLibrary(installed_sources())
+    assert library.get("Cube").name == "cube"
+    with pytest.raises(AssetError, match="sailenv assets build"):
+        library.get("Chair 01")
+    assert set(UnbuiltPack().display_names) == set(NAMES)
+
+
+def test_a_failed_build_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without its sources the error says what to install, and no half pack stays."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(
+        "sailenv_ros.assets.standard.fetch.SOURCES",
+        {"sweethome3d-furniture": "nowhere", "blender-data": "nowhere"},
+    )
+    with pytest.raises(AssetError, match=r"install Debian's or Ubuntu's package"):
+        build_standard_pack()
+    assert not (tmp_path / "packs").exists()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "version: 2\ntitle: a\nassets: {}",
+        "version: 1\ntitle: a\nassets: {a: {category: chair, source: x, mass: -1}}",
+        "version: 1\ntitle: a\n"
+        "assets: {a: {category: chair, source: x, mass: 1, materials: {a: b}}}",
+        "- 1",
+        "a: [",
+    ],
+)
+def test_a_broken_recipe_is_refused(tmp_path: Path, text: str) -> None:
+    """Unknown finishes, impossible masses and broken YAML are errors that name the file."""
+    (tmp_path / "recipe.yaml").write_text(text)
+    with pytest.raises(AssetError, match=r"recipe\.yaml"):
+        read_recipe(tmp_path / "recipe.yaml")
