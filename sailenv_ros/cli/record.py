@@ -47,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
 def _add_lockstep(group: Any) -> None:
     group.add_argument("--lockstep", action="store_true", help="simulate and render here")
     group.add_argument("--frames", type=int, metavar="N", help="frames of each agent")
-    group.add_argument("--scene", default="optical", help="name or file (default: %(default)s)")
+    group.add_argument("--scene", help="name or file (default: what the simulator starts with)")
     group.add_argument("--seed", type=int, default=0)
     group.add_argument("--width", type=int, default=640, help="of an agent made here [px]")
     group.add_argument("--height", type=int, default=480, help="of an agent made here [px]")

@@ -11,7 +11,7 @@ import numpy as np
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
@@ -91,4 +91,5 @@ def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
 
 
 def _pictures(frame: Frame, table: CategoryTable) -> dict[str, np.ndarray[Any, Any]]:
-    return {name: view_picture(name, values, table=table) for name, values in frame.views.items()}
+    shown = (name for name in VIEWS if name in frame.views)  # in the order of their definition
+    return {name: view_picture(name, frame.views[name], table=table) for name in shown}

@@ -6,7 +6,6 @@ Knows neither ROS nor files.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -149,7 +148,3 @@ class RecordingOptions:
             raise InvalidRequest("split_bytes", self.split_bytes, "0 (one file) or more [B]")
         if not (math.isfinite(self.split_s) and self.split_s >= 0.0):
             raise InvalidRequest("split_s", self.split_s, "0 (one file) or more [s]")
-
-    def changed(self, **fields: Any) -> RecordingOptions:
-        """Give the same options but for these."""
-        return dataclasses.replace(self, **fields)

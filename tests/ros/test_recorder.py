@@ -27,7 +27,7 @@ NAMESPACE = "/recorded"
 @pytest.fixture(scope="module")
 def node() -> Iterator[NodeProcess]:
     """A lockstep simulator without an agent."""
-    with NodeProcess(NAMESPACE, mode="lockstep", agent__name="") as node:
+    with NodeProcess(NAMESPACE, scene="optical", mode="lockstep", agent__name="") as node:
         yield node
 
 

@@ -98,6 +98,7 @@ def test_the_command_makes_a_bag(tmp_path: Path, capsys: pytest.CaptureFixture[s
     """`sailenv record --lockstep` prints the bag's path, and how it went on standard error."""
     bag = tmp_path / "bag"
     words = ["record", "--lockstep", "--frames", "3", "--width", "16", "--height", "12"]
+    words += ["--scene", "optical"]
     assert main([*words, "--backend", "tiny", "-o", str(bag)]) == 0
     said = capsys.readouterr()
     assert said.out.strip() == str(bag)
