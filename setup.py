@@ -16,6 +16,7 @@ REQUIREMENTS = [
     "isal>=1.6",
     "lz4>=4.3",
     "mapbox-earcut>=1.0.3",
+    "OpenEXR>=3.3",
     # Has no final release yet; compiled where it is installed, in some seconds.
     "meshoptimizer>=0.2.30a0",
     "mcap>=1.2",

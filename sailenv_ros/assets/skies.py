@@ -6,7 +6,6 @@ to one scale, so that a scene looks alike under another sky.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -85,14 +84,15 @@ def bake_sky(photograph: Path, target: Path) -> None:
     AssetError
         If it cannot be read.
     """
-    # OpenCV reads OpenEXR only where this is set, and looks when it first meets such a file.
-    os.environ.setdefault("OPENCV_IO_ENABLE_OPENEXR", "1")
-    import cv2
+    # Imported here: only who builds a pack needs it.
+    import OpenEXR
 
-    pixels = cv2.imread(str(photograph), cv2.IMREAD_UNCHANGED)
-    if pixels is None or pixels.ndim != 3:
-        raise AssetError(photograph.name, "the panorama cannot be read")
-    radiance = np.maximum(np.asarray(pixels[..., 2::-1], dtype=np.float64), 0.0)
+    try:
+        with OpenEXR.File(str(photograph)) as file:
+            pixels = np.asarray(file.channels()["RGB"].pixels, dtype=np.float64)
+    except (RuntimeError, OSError, KeyError) as problem:
+        raise AssetError(photograph.name, f"the panorama cannot be read ({problem})") from None
+    radiance = np.maximum(pixels, 0.0)
     light = radiance @ LUMINANCE
     sky = light[: len(light) // 2]
     limit = SUN_RADIANCE * float(np.median(sky))

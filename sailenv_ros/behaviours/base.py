@@ -49,6 +49,9 @@ class BehaviourParameters(BaseModel):
     start: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
         default=0.0, description="time after the object's appearance at which it begins [s]"
     )
+    seed: Annotated[int, Number(least=0, most=2**63 - 1, whole=True)] | None = Field(
+        default=None, description="of its random numbers, instead of the simulation's"
+    )
 
     def told(self) -> dict[str, Any]:
         """Give the parameters as a scene file would write them, defaults too."""

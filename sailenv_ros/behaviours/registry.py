@@ -111,10 +111,15 @@ def start_behaviour(
         )
     kind = _kind(type_)
     assert kind is not None
-    entropy = (seed & 0xFFFFFFFF, zlib.crc32(object_name.encode()), place)
+    checked = kind.parameters.model_validate(dict(parameters))
+    used_seed = seed if checked.seed is None else checked.seed
+    # Both halves of the seed, so that seeds that agree in one still differ.
+    entropy = [used_seed & 0xFFFFFFFF, zlib.crc32(object_name.encode()), place]
+    if used_seed >> 32:
+        entropy.append(used_seed >> 32)
     return RunningBehaviour(
         kind=kind,
-        parameters=kind.parameters.model_validate(dict(parameters)),
+        parameters=checked,
         rng=np.random.default_rng(np.random.SeedSequence(entropy)),
         start_s=start_s,
     )

@@ -17,7 +17,9 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light, light_named
 from sailenv_ros.model import Asset
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.entries import free_name, plain_value
+from sailenv_ros.scene.entries import free_name
+from sailenv_ros.simulation.agent_table import AgentTable
+from sailenv_ros.simulation.scenario import scenario_entries
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.world import World
@@ -33,6 +35,7 @@ _LIGHT_FIELDS = tuple(field.name for field in fields(Light) if field.name != "na
 class WorldRequests:
     """What clients may ask of the present world; `SimulationCore` has the world."""
 
+    _agents: AgentTable
     _library: SceneLibrary
     _world: World
     _seed: int
@@ -147,16 +150,13 @@ class WorldRequests:
         """Begin a scene with more objects than its own; give their instance ids, in order."""
         wanted: Mapping[str, Any] = {"scene": scenario} if isinstance(scenario, str) else scenario
         if not isinstance(wanted, Mapping):
-            raise InvalidRequest("scenario", wanted, "a mapping with scene and objects")
-        for key in wanted:
-            if key not in ("scene", "objects"):
-                raise UnknownName("key of a scenario", str(key), ("scene", "objects"))
-        scene = wanted.get("scene", self._world.scene)
-        if not isinstance(scene, str):
-            raise InvalidRequest("scene", scene, "the name of a scene")
-        more = plain_value(wanted.get("objects", []))
-        if not isinstance(more, list):
-            raise InvalidRequest("objects", more, "a list of objects")
+            raise InvalidRequest("scenario", wanted, "a mapping with scene, objects, timings")
+        names = [wanted[key] for key in ("scene", "scene_name") if key in wanted]
+        scene = names[0] if names else self._world.scene
+        if not isinstance(scene, str) or len(names) > 1:
+            raise InvalidRequest("scene", names, "the name of a scene")
+        viewer = next((agent.name for agent in self._agents.specs), "")
+        more = scenario_entries(wanted, viewer=viewer)
         self._begin(scene, self._seed, as_registered=False, more=more)
         ids = [drawn.instance.id for drawn in self._world.contents.instances]
         return tuple(ids[len(ids) - len(more) :])

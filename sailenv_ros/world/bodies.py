@@ -102,6 +102,7 @@ class Body:
     def __init__(self, client: BulletClient, placement: Placement, gravity: Vector3) -> None:
         self.placement = placement
         self._behaviours = placement.behaviours
+        self._is_fast = False
         self._client = client
         self._centre = tuple(
             c * s for c, s in zip(placement.asset.centre_of_mass_m, placement.scale, strict=True)
@@ -227,11 +228,14 @@ class Body:
 
     def act(self, time_s: float, confines: Confines) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""
+        acted = False
         for running in self._behaviours:
             if not running.is_idle(time_s):
                 self._apply(running.act(time_s, self._state(running, confines)))
-        if self._behaviours:
-            self._tame()
+                acted = True
+        # What rests is not asked for its speed: that would cost more than all else.
+        if acted or self._is_fast:
+            self._is_fast = self._tame()
         if self._lift is not None:
             self._push(self._lift)
 
@@ -299,12 +303,18 @@ class Body:
             confines=planes,
         )
 
-    def _tame(self) -> None:
-        """Keep it out of walls, into which driven bodies are pressed anew at each step."""
+    def _tame(self) -> bool:
+        """Keep it out of walls, into which driven bodies are pressed anew at each step.
+
+        Returns
+        -------
+        is_fast : bool
+            True if it must be looked after at the next step, too.
+        """
         linear, angular = self.velocity()
         speed = float(np.linalg.norm(linear))
         if speed < CAREFUL_SPEED_M_S:
-            return
+            return False
         tamed = linear * min(1.0, MAX_SPEED_M_S / speed)
         for normal, depth_m in self._walls():
             # As fast into the wall as the engine bears, or out of it where it is in too deep.
@@ -312,6 +322,7 @@ class Body:
             tamed = tamed + max(0.0, least - float(tamed @ normal)) * normal
         if (tamed != linear).any():
             self._client.resetBaseVelocity(self._id, tamed.tolist(), angular.tolist())
+        return True
 
     def _walls(self) -> Iterator[tuple[NDArray[np.float64], float]]:
         """Yield the normals of static bodies that it stands in, and how deep [m]."""

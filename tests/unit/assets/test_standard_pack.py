@@ -13,7 +13,6 @@ from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.skies import SKIES
 from sailenv_ros.assets.sources import UnbuiltPack, installed_sources
 from sailenv_ros.assets.standard.build import (
-
     build_standard_pack,
     is_current,
     licence_files,
