@@ -1,0 +1,101 @@
+"""A photographed sky stands where it should: east, north, west, south, above, nowhere else."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_ros.assets import load_categories
+from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.assets.skies import load_sky, sky_files
+from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.lights import Environment, SkyMap
+from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.world.bodies import Placement
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.world import World
+
+COLOURS = {"east": (1, 0, 0), "north": (0, 1, 0), "west": (0, 0, 1), "south": (1, 1, 0)}
+TOWARDS = {"east": (1, 0, 0), "north": (0, 1, 0), "west": (-1, 0, 0), "south": (0, -1, 0)}
+GREY = (0.2, 0.2, 0.2)
+
+
+def painted_sky() -> SkyMap:
+    """Quarters of one colour around the middle columns, black above and below 60°."""
+    radiance = np.zeros((60, 120, 3), np.float16)
+    for quarter, name in enumerate(("east", "south", "west", "north")):
+        columns = (np.arange(120 // 4) + 60 - 15 + 30 * quarter) % 120
+        radiance[10:50, columns] = COLOURS[name]
+    return SkyMap(radiance=radiance, zenith=GREY, horizon=GREY, ground=GREY)
+
+
+@pytest.fixture(scope="module")
+def world() -> Iterator[World]:
+    cube = Primitives().load("cube")
+    world = World(
+        scene="sky",
+        epoch=1,
+        next_revision=itertools.count(1).__next__,
+        placements=[
+            Placement(name="cube", asset=cube, category_id=1, pose=Pose((0, 0, -50)), static=True)
+        ],
+        movers=[Mover(name="mover", start=Pose(), track=None, controller="waypoint")],
+        categories=load_categories(),
+        environment=Environment(sky=painted_sky(), sky_map="painted"),
+    )
+    yield world
+    world.close()
+
+
+@pytest.mark.parametrize("name", COLOURS)
+def test_each_quarter_is_where_it_belongs(name: str, world: World) -> None:
+    """Looking along an axis of the world shows the colour of that quarter in the middle."""
+    camera = Camera(
+        intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=60.0),
+        pose=look_at((0, 0, 0), TOWARDS[name]),
+    )
+    renderer = Renderer()
+    try:
+        rendered = renderer.render(world.snapshot(), None, camera, ("rgb", "instance"))
+    finally:
+        renderer.close()
+    middle = rendered.views["rgb"][12:21, 12:21].reshape(-1, 3).mean(axis=0)
+    bright = tuple(int(channel > 150) for channel in middle)
+    assert bright == COLOURS[name]
+    assert (rendered.views["instance"] == 0).all()
+
+
+def test_above_is_the_first_row(world: World) -> None:
+    """The zenith of this sky is black."""
+    camera = Camera(
+        intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=30.0),
+        pose=look_at((0, 0, 0), (0.01, 0, 1)),
+    )
+    renderer = Renderer()
+    try:
+        rendered = renderer.render(world.snapshot(), None, camera, ("rgb",))
+    finally:
+        renderer.close()
+    assert rendered.views["rgb"].max() < 5
+
+
+def test_skies_are_found_and_checked(tmp_path: Path) -> None:
+    """Each file is loaded once; other shapes and unknown names are refused."""
+    (tmp_path / "skies").mkdir()
+    np.save(tmp_path / "skies" / "good.npy", np.ones((4, 8, 3), np.float16))
+    np.save(tmp_path / "skies" / "odd.npy", np.ones((4, 9, 3), np.float16))
+    (tmp_path / "skies" / "junk.npy").write_bytes(b"junk")
+    files = sky_files([tmp_path])
+    assert load_sky("good", files) is load_sky("good", files)
+    assert load_sky("good", files).zenith == (1.0, 1.0, 1.0)
+    for name in ("odd", "junk"):
+        with pytest.raises(AssetError, match=name):
+            load_sky(name, files)
+    with pytest.raises(UnknownName, match="did you mean 'good'"):
+        load_sky("goood", files)
