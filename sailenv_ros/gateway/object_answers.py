@@ -102,7 +102,10 @@ class ObjectAnswers:
         try:
             scene = scene_of_wire(str(wanted.get("scene_name")), self._info())
             entries = entries_of_scenario(wanted, self.agent)
-            ids = yield Ask("load_scenario", ({"scene": scene, "objects": entries},))
+            described = {"scene": scene, "objects": entries}
+            if wanted.get("timings") is not None:
+                described["timings"] = wanted["timings"]
+            ids = yield Ask("load_scenario", (described,))
         except SailenvError as error:
             _log.warning("a scenario was refused: %s", one_line(error))
             return [pack_string("")] * count

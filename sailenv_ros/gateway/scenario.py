@@ -47,8 +47,7 @@ def behaviours_of_dynamic(
     ----------
     type_ : str
     description : object
-        Its parameters, as JSON has them. A ``seed`` is left out: all random numbers here come of
-        the simulation's own.
+        Its parameters, as JSON has them.
     keep_in_view : str
         The agent whose view is not to be left by what bounces; empty for none.
     """
@@ -56,7 +55,7 @@ def behaviours_of_dynamic(
         return []
     if not isinstance(description, Mapping):
         raise InvalidRequest(f"description of the dynamic {type_!r}", description, "a JSON object")
-    given = {str(key): _turned(key, v) for key, v in description.items() if key != "seed"}
+    given = {str(key): _turned(key, value) for key, value in description.items()}
     if keep_in_view and type_ == BOUNCING:
         given["keep_in_view"] = keep_in_view
     return [{"type": type_, **given}]
@@ -75,24 +74,12 @@ def entries_of_scenario(scenario: Mapping[str, Any], agent: str) -> list[dict[st
     Raises
     ------
     InvalidRequest
-        If an object is malformed, or the timings let objects appear later: all appear at once.
+        If an object is malformed. The timings are checked by whoever takes them.
     """
     objects = scenario.get("objects", [])
     if not isinstance(objects, list):
         raise InvalidRequest("objects of the scenario", objects, "a list")
-    _require_all_together(scenario.get("timings"))
     return [_entry(number, entry, agent) for number, entry in enumerate(objects)]
-
-
-def _require_all_together(timings: object) -> None:
-    accepted = "all_together with a wait_time of 0: objects appear with the scene"
-    if timings is None:
-        return
-    if not isinstance(timings, Mapping) or timings.get("type", "all_together") != "all_together":
-        raise InvalidRequest("timings of the scenario", timings, accepted)
-    description = timings.get("description") or {}
-    if not isinstance(description, Mapping) or description.get("wait_time", 0) != 0:
-        raise InvalidRequest("timings of the scenario", timings, accepted)
 
 
 def _entry(number: int, entry: object, agent: str) -> dict[str, Any]:
