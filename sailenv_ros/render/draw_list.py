@@ -14,7 +14,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.model import Material
+from sailenv_ros.model import Material, Mesh
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.textures import array_of
@@ -77,13 +77,36 @@ class BatchKind:
         return cls(maps, material.alpha == "mask", material.double_sided)
 
 
-@dataclass(frozen=True, slots=True)
 class Batch:
-    """Consecutive draws of one kind."""
+    """Draws of one kind: those that an eye may see, the nearest first.
 
-    kind: BatchKind
-    commands: moderngl.Buffer
-    count: int
+    Parameters
+    ----------
+    parts : (N,) int
+        Numbers of its parts among all.
+    commands : (N,) COMMAND
+    """
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        kind: BatchKind,
+        parts: NDArray[np.intp],
+        commands: NDArray[np.void],
+    ) -> None:
+        self.kind = kind
+        self.count = len(parts)
+        self.commands = context.buffer(commands.tobytes(), dynamic=True)
+        self._parts = parts
+        self._all = commands
+
+    def choose(self, visible: NDArray[np.bool_], distance: NDArray[np.float64]) -> None:
+        """Keep the draws of visible parts, in the order of their distance."""
+        kept = np.flatnonzero(visible[self._parts])
+        order = kept[np.argsort(distance[self._parts[kept]], kind="stable")]
+        self.count = len(order)
+        if self.count:
+            self.commands.write(self._all[order].tobytes())
 
 
 class DrawList:
@@ -121,11 +144,17 @@ class DrawList:
             commands[number] = (lies.index_count, 1, lies.first_index, lies.first_vertex, number)
         self.row_buffer = context.buffer(reserve=self._rows.nbytes, dynamic=True)
         self.draw_numbers = context.buffer(np.arange(max(1, len(parts)), dtype=np.int32).tobytes())
+        self._corners = np.array([_corners(part.mesh) for *_, part in parts]).reshape(-1, 8, 4)
         kinds = [kind for kind, *_ in parts]
-        self.batches = tuple(_batches(context, kinds, commands))
+        everything = np.arange(len(parts))
+        self.batches = tuple(_batches(context, kinds, everything, commands))
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
-        shadows = [kind for kind, casts in zip(kinds, casting, strict=True) if casts]
-        self.caster_batches = tuple(_batches(context, shadows, commands[casting]))
+        chosen = _those(kinds, casting)
+        self.caster_batches = tuple(
+            _batches(context, chosen, everything[casting], commands[casting])
+        )
+        self._visible = np.ones(len(parts), bool)
+        self._distance = np.zeros(len(parts))
 
     def place(
         self,
@@ -133,7 +162,7 @@ class DrawList:
         clip_from_eye: NDArray[np.float64],
         eye_from_world: NDArray[np.float64],
     ) -> None:
-        """Write the matrices of one eye (a camera or a light) into the rows.
+        """Write the matrices of one eye (a camera or a light), and choose what it may see.
 
         Parameters
         ----------
@@ -151,6 +180,9 @@ class DrawList:
             # GLSL stores columns, NumPy rows: the transpose is what GLSL reads as the matrix.
             rows["clip_from_object"] = clip.transpose(0, 2, 1)[self._instance_rows]
             rows["optical_normal_from_object"][:, :, :3] = normal[self._instance_rows]
+            self._visible, self._distance = _seen(clip[self._instance_rows], self._corners)
+            for batch in self.batches:
+                batch.choose(self._visible, self._distance)
         self.row_buffer.write(self._rows.tobytes())
 
     def close(self) -> None:
@@ -158,6 +190,11 @@ class DrawList:
         batches = (*self.batches, *self.caster_batches)
         for buffer in (self.row_buffer, self.draw_numbers, *(b.commands for b in batches)):
             buffer.release()
+
+    def choose_casters(self, instances: NDArray[np.bool_]) -> None:
+        """Keep those casters of some instances that the eye of `place` may see."""
+        for batch in self.caster_batches:
+            batch.choose(self._visible & instances[self._instance_rows], self._distance)
 
 
 def casts(drawn: DrawnInstance) -> bool:
@@ -167,9 +204,38 @@ def casts(drawn: DrawnInstance) -> bool:
     return float(np.linalg.norm(high - low)) <= largest
 
 
+def _those(kinds: list[BatchKind], chosen: NDArray[np.bool_]) -> list[BatchKind]:
+    return [kind for kind, wanted in zip(kinds, chosen, strict=True) if wanted]
+
+
+def _corners(mesh: Mesh) -> NDArray[np.float64]:
+    """Give (8, 4): the homogeneous corners of the box around a mesh."""
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1).reshape(8, 3)
+    return np.concatenate([corners, np.ones((8, 1))], axis=1).astype(np.float64)
+
+
+def _seen(
+    clip_from_part: NDArray[np.float64], corners: NDArray[np.float64]
+) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Tell which boxes reach into the picture, and how far their middles are.
+
+    A box is out of it if all its corners lie beyond one of the four sides. The picture is taken a
+    hundredth wider than it is, so that no rounding on the GPU can make a difference.
+    """
+    clip = corners @ clip_from_part.transpose(0, 2, 1)
+    x, y, w = clip[..., 0], clip[..., 1], clip[..., 3]
+    wide = 1.01 * w
+    beyond = [(side < 0.0).all(axis=1) for side in (wide + x, wide - x, wide + y, wide - y)]
+    return ~np.any(beyond, axis=0), clip[..., 2:].mean(axis=1)[:, 0]
+
+
 def _batches(
-    context: moderngl.Context, kinds: list[BatchKind], commands: NDArray[np.void]
+    context: moderngl.Context,
+    kinds: list[BatchKind],
+    parts: NDArray[np.intp],
+    commands: NDArray[np.void],
 ) -> Iterator[Batch]:
     for kind in sorted(set(kinds)):
-        chosen = commands[[k == kind for k in kinds]]
-        yield Batch(kind, context.buffer(chosen.tobytes()), len(chosen))
+        chosen = np.array([k == kind for k in kinds], dtype=bool)
+        yield Batch(context, kind, parts[chosen], commands[chosen])

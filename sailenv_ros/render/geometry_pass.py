@@ -110,6 +110,8 @@ class GeometryPass:
         draws.row_buffer.bind_to_storage_buffer(0)
         try:
             for batch in draws.batches:
+                if not batch.count:
+                    continue
                 program = self._program(batch.kind, targets)
                 set_uniform(program, "far_m", intrinsics.far_m)
                 set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.0))

@@ -54,6 +54,7 @@ class ShadowPass:
         half[:3, 3] = 0.5
         self.map_from_world = half @ clip_from_light @ light_from_world
         draws.place(snapshot, clip_from_light, light_from_world)
+        draws.choose_casters(np.ones(len(snapshot.world_from_body), bool))
         context = self._context
         self._framebuffer.use()
         self._framebuffer.clear(depth=1.0)
@@ -61,6 +62,8 @@ class ShadowPass:
         self._context.polygon_offset = 1.5, 2.0
         draws.row_buffer.bind_to_storage_buffer(0)
         for batch in draws.caster_batches:
+            if not batch.count:
+                continue
             issue(context, self._program, draws, geometry, batch.commands, batch.count)
         self._context.polygon_offset = 0.0, 0.0
 
