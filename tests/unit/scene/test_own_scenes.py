@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from sailenv_ros.assets import AssetLibrary, ObjectFit, load_categories
-from sailenv_ros.assets.sources import installed_sources
+from sailenv_ros.assets.skies import sky_files
+from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_faults
 from sailenv_ros.camera import Camera, CameraIntrinsics
@@ -23,6 +24,7 @@ KNOWLEDGE = SceneKnowledge(
     behaviour_faults=behaviour_faults,
     object_faults=ObjectFit(LIBRARY),
     surfaces=surface_names(),
+    skies=tuple(sky_files(pack.folder for pack in installed_packs())),
 )
 NAMES = ("object_view", "optical", "solid_benchmark")
 
