@@ -60,7 +60,7 @@ def mix(baked: BakedLight, lights: Sequence[Light], environment: Environment) ->
     """
     surroundings = baked.layers[0]
     before = baked.environment or environment
-    sky = (_mean_sky(environment) / np.maximum(_mean_sky(before), 1e-6)).astype(np.float32)
+    sky = _ratio(_mean_sky(environment), _mean_sky(before)).astype(np.float32)
     more = np.subtract(environment.ambient, before.ambient).astype(np.float32)
     texels = surroundings.bounced.astype(np.float32) * sky + more
     probes = surroundings.probe_bounced.astype(np.float32) * sky
@@ -141,6 +141,12 @@ def _stands_alike(light: Light, baked: Light) -> bool:
         replace(light, colour=colour, intensity=intensity, indirect_multiplier=indirect) == baked
     )
     return alike
+
+
+def _ratio(now: NDArray[np.float64], before: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Divide; under a black sky nothing can have come from it, so nothing is scaled."""
+    ratio: NDArray[np.float64] = np.divide(now, before, out=np.ones(3), where=before > 1e-6)
+    return ratio
 
 
 def _mean_sky(environment: Environment) -> NDArray[np.float64]:
