@@ -133,6 +133,9 @@ class LightingPass:
         if targets.picture.color_attachments[0].dtype == "f2":
             shared["LINEAR"] = 1
         lit = dict(shared)
+        if any(light.intensity > 0.0 for light in illumination.lamps):
+            # Even a loop that ends at once costs a tenth of the pass.
+            lit["LAMPS"] = 1
         if illumination.baked is not None:
             lit["BAKED"] = 1
             if illumination.reflections is not None:
