@@ -40,7 +40,7 @@ class Targets:
     framebuffer : Framebuffer
         What the geometry pass draws into.
     picture : Framebuffer or None
-        What the lighting pass draws into, on the same depth buffer: sRGB, luma in alpha.
+        What the lighting pass draws into, on the same depth buffer; see `develop`.
     """
 
     surface: moderngl.Texture
@@ -84,7 +84,9 @@ class GeometryPass:
         attached = [texture for texture in (surface, shape, albedo, normal) if texture is not None]
         framebuffer = self._context.framebuffer(attached, depth)
         picture = (
-            self._context.framebuffer([self._context.texture(size, 4)], depth) if shaded else None
+            self._context.framebuffer([self._context.texture(size, 4, dtype="f2")], depth)
+            if shaded
+            else None
         )
         return Targets(surface, shape, albedo, normal, depth, framebuffer, picture)
 

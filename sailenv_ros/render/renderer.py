@@ -19,8 +19,9 @@ from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import checked_views
 from sailenv_ros.render import annotate as ground_truth
-from sailenv_ros.render import smooth_edges
+from sailenv_ros.render import post_pass
 from sailenv_ros.render.backend import RenderedViews
+from sailenv_ros.render.bands import beside
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
@@ -68,9 +69,10 @@ class Renderer:
             raise
         self._draws: DrawList | None = None
         self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
+        self._post = post_pass.PostPass(beside(self._beside))
         self._closed = False
         ground_truth.warm_up()
-        smooth_edges.warm_up()
+        post_pass.warm_up()
 
     @property
     def description(self) -> str:
@@ -101,12 +103,17 @@ class Renderer:
                 previous = self._with_depth(previous)
             arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
+        surface = arrays.pop("surface")
+        if "rgb" in wanted:
+            arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera)
+            timings["develop"] = time.perf_counter() - began
+            began = time.perf_counter()
         # Both walks leave Python's lock alone: the labels are made beside the picture.
         walk = self._beside.submit(
-            ground_truth.annotate, arrays.pop("surface"), snapshot, previous, camera, wanted
+            ground_truth.annotate, surface, snapshot, previous, camera, wanted
         )
         if "rgb" in wanted:
-            arrays["rgb"] = smooth_edges.smooth_edges(arrays["rgb"])
+            arrays["rgb"] = self._post.finished(arrays["rgb"], camera)
         truth = walk.result()
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)

@@ -1,6 +1,6 @@
 // Lights what the geometry pass left: metallic-roughness surfaces under sun, lamps and sky.
 // GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
-layout(location = 0) out vec4 out_colour;  // sRGB, luma in alpha for the edge pass
+layout(location = 0) out vec4 out_colour;  // see picture.glsl
 
 uniform sampler2D surface;
 uniform sampler2D shape;
@@ -130,10 +130,11 @@ void main() {
     vec3 mean = f0 + (1.0 - f0) / 21.0;
     vec3 again = lost * once * mean / (1.0 - mean * lost);
     vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
+    vec3 from_around = radiance;
     radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     float facing = dot(normal, main_towards);
     radiance += reflected_light(here, main_towards, main_colour * shadowed(point, normal, 1.0 - facing));
     for (int i = 0; i < light_count; i++) radiance += lamp_light(lights[i], here);
-    out_colour = finished(radiance);
+    out_colour = finished(radiance, from_around);
 }
