@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.lights import Light
+from sailenv_ros.lights import Environment, Light
 
 __all__ = ["BakedLight", "LightChart", "LightLayer", "ProbeGrid", "Unwrapping"]
 
@@ -123,9 +123,12 @@ class BakedLight:
     layers : tuple of LightLayer
         The surroundings first, then the lights in the scene's order.
     probes : ProbeGrid
+    environment : Environment or None
+        The surroundings as the scene has them of itself; None until a world takes the bake.
     """
 
     fingerprint: str
     charts: Mapping[int, LightChart]
     layers: tuple[LightLayer, ...]
     probes: ProbeGrid
+    environment: Environment | None = None

@@ -37,7 +37,7 @@ TILE_PX = 16
 """Edge of the tiles that are left out where everything around them is baked."""
 
 FAR_M = 1e9
-"""Stands for no surface: its square is finite."""
+"""Depth that stands for no surface: its square is finite."""
 
 SAME_SURFACE = np.float32(0.03)
 """Share of its depth by which a sample may lie off another's surface and count as on it."""
@@ -86,20 +86,21 @@ def open_share(
     -------
     share : (h, w) uint8
         255 = all of it; at pixels of even row and column, h and w half of H and W, rounded up.
-    depth : (h, w) float32
-        The depth at these pixels [m]; negative where light was baked, -1e9 where nothing was hit.
+    inverse : (h, w) float32
+        1 / depth at these pixels [1/m], negative where light was baked, -1e-9 where
+        nothing was hit.
     """
     rows, columns = (surface.shape[0] + 1) // 2, (surface.shape[1] + 1) // 2
-    depth = np.empty((rows, columns), np.float32)
-    bands(lambda first, last: _halve(surface, baked, depth, first, last), rows)
+    inverse = np.empty((rows, columns), np.float32)
+    bands(lambda first, last: _halve(surface, baked, inverse, first, last), rows)
     lens = np.array([intrinsics.fx, intrinsics.cx, intrinsics.cy], np.float32) * np.float32(0.5)
     sizes = np.float32(strength), np.float32(radius_m)
-    live = _live_tiles(depth)
-    share, means = np.empty(depth.shape, np.uint8), np.empty(depth.shape, np.uint8)
-    bands(lambda first, last: _walk(depth, live, lens, *sizes, PATTERN, share, first, last), rows)
-    bands(lambda first, last: _mean_of_rows(share, depth, live, means, first, last), rows)
-    bands(lambda first, last: _mean_of_columns(means, depth, live, share, first, last), rows)
-    return share, depth
+    live = _live_tiles(inverse)
+    share, means = np.empty(inverse.shape, np.uint8), np.empty(inverse.shape, np.uint8)
+    bands(lambda first, last: _walk(inverse, live, lens, *sizes, PATTERN, share, first, last), rows)
+    bands(lambda first, last: _mean_of_rows(share, inverse, live, means, first, last), rows)
+    bands(lambda first, last: _mean_of_columns(means, inverse, live, share, first, last), rows)
+    return share, inverse
 
 
 def warm_up() -> None:
@@ -109,48 +110,48 @@ def warm_up() -> None:
     open_share(surface, intrinsics, strength=1.0, radius_m=1.0, baked=nothing)
 
 
-def _live_tiles(depth: NDArray[np.float32]) -> NDArray[np.bool_]:
+def _live_tiles(inverse: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Tell which tiles may be reached by a surface that was not baked."""
-    rows, columns = -(-depth.shape[0] // TILE_PX), -(-depth.shape[1] // TILE_PX)
+    rows, columns = -(-inverse.shape[0] // TILE_PX), -(-inverse.shape[1] // TILE_PX)
     own = np.zeros((rows, columns), np.bool_)
-    _find_live(depth, own)
+    _find_live(inverse, own)
     reach = 2 * (REACH_PX // TILE_PX) + 1
     return cv2.dilate(own.view(np.uint8), np.ones((reach, reach), np.uint8)).view(np.bool_)
 
 
 @numba.njit(cache=True, nogil=True)
-def _halve(surface, baked, depth, first, last):  # type: ignore[no-untyped-def]  # compiled
+def _halve(surface, baked, inverse, first, last):  # type: ignore[no-untyped-def]  # compiled
     for v in range(first, last):
-        for u in range(depth.shape[1]):
+        for u in range(inverse.shape[1]):
             z = surface[2 * v, 2 * u, 0]
             if not z < np.float32(FAR_M):
-                depth[v, u] = np.float32(-FAR_M)
+                inverse[v, u] = np.float32(-1.0 / FAR_M)
             elif baked[np.int32(surface[2 * v, 2 * u, 1])]:
-                depth[v, u] = -z
+                inverse[v, u] = np.float32(-1.0) / z
             else:
-                depth[v, u] = z
+                inverse[v, u] = np.float32(1.0) / z
 
 
 @numba.njit(cache=True, nogil=True)
-def _find_live(depth, own):  # type: ignore[no-untyped-def]  # compiled
-    for v in range(depth.shape[0]):
-        for u in range(depth.shape[1]):
-            if depth[v, u] > np.float32(0.0):
+def _find_live(inverse, own):  # type: ignore[no-untyped-def]  # compiled
+    for v in range(inverse.shape[0]):
+        for u in range(inverse.shape[1]):
+            if inverse[v, u] > np.float32(0.0):
                 own[v // TILE_PX, u // TILE_PX] = True
 
 
 @numba.njit(cache=True, nogil=True, fastmath=True)
 def _walk(  # type: ignore[no-untyped-def]  # compiled
-    depth, live, lens, strength, radius_m, pattern, out, first, last
+    inverse, live, lens, strength, radius_m, pattern, out, first, last
 ):
-    rows, columns = depth.shape
+    rows, columns = inverse.shape
     f, cx, cy = lens[0], lens[1], lens[2]
     one, zero, half = np.float32(1.0), np.float32(0.0), np.float32(0.5)
     per_f = one / f
     per_r2 = one / (radius_m * radius_m)
     scale = np.float32(GAIN / TAPS) * strength
     wide, high = np.float32(columns), np.float32(rows)
-    flat = depth.reshape(-1)
+    flat = inverse.reshape(-1)
     for v in range(first, last):
         up, down = max(v - 1, 0), min(v + 1, rows - 1)
         y = (np.float32(v) - cy) * per_f
@@ -158,25 +159,28 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled
             out[v, u] = 255
             if not live[v // TILE_PX, u // TILE_PX]:
                 continue
-            own = depth[v, u]
-            z = abs(own)
-            reach = min(radius_m * f / z, np.float32(REACH_PX))
+            own = inverse[v, u]
+            w = abs(own)
+            reach = min(radius_m * f * w, np.float32(REACH_PX))
             if reach < np.float32(LEAST_REACH_PX):
                 continue
-            # The slope of depth on the side where it changes less: the other crosses an edge.
-            zl, zr = abs(depth[v, max(u - 1, 0)]), abs(depth[v, min(u + 1, columns - 1)])
-            zu, zd = abs(depth[up, u]), abs(depth[down, u])
-            before, after = z - zl, zr - z
-            zx = after if u == 0 or (abs(after) < abs(before) and u < columns - 1) else before
-            before, after = z - zu, zd - z
-            zy = after if v == 0 or (abs(after) < abs(before) and v < rows - 1) else before
+            # Over a plane 1/z is linear in the picture. Its slope on the side where it changes
+            # less: the other crosses an edge.
+            before = w - abs(inverse[v, max(u - 1, 0)])
+            after = abs(inverse[v, min(u + 1, columns - 1)]) - w
+            a = after if u == 0 or (abs(after) < abs(before) and u < columns - 1) else before
+            before = w - abs(inverse[up, u])
+            after = abs(inverse[down, u]) - w
+            b = after if v == 0 or (abs(after) < abs(before) and v < rows - 1) else before
+            # The plane is where (a, b, c) · point = 1.
+            a, b = a * f, b * f
             x = (np.float32(u) - cx) * per_f
-            # Normal of the plane through the point that changes so; towards the camera.
-            nx, ny = zx * f, zy * f
-            nz = -(z + nx * x + ny * y)
-            length = one / np.sqrt(nx * nx + ny * ny + nz * nz)
-            nx, ny, nz = nx * length, ny * length, nz * length
+            c = w - a * x - b * y
+            plane_m = one / np.sqrt(a * a + b * b + c * c)
+            z = one / w
             px, py = x * z, y * z
+            # Keeps rounding from making the point its own neighbour.
+            self_m2 = np.float32(1e-7) * z * z
             hidden = zero
             block = (v & 3) * 4 + (u & 3)
             fu, fv = np.float32(u) + half, np.float32(v) + half
@@ -187,20 +191,21 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled
                 tu = np.int32(at_u) if inside else u
                 tv = np.int32(at_v) if inside else v
                 other = flat[tv * np.int32(columns) + tu]
-                tz = abs(other)
-                dx = (np.float32(tu) - cx) * per_f * tz - px
-                dy = (np.float32(tv) - cy) * per_f * tz - py
-                dz = tz - z
-                d2 = dx * dx + dy * dy + dz * dz + np.float32(1e-12)
+                tz = one / abs(other)
+                qx = (np.float32(tu) - cx) * per_f * tz
+                qy = (np.float32(tv) - cy) * per_f * tz
+                dx, dy, dz = qx - px, qy - py, tz - z
+                d2 = dx * dx + dy * dy + dz * dz + self_m2
                 fall = max(one - d2 * per_r2, zero)
-                rise = (dx * nx + dy * ny + dz * nz) / np.sqrt(d2) - np.float32(BIAS)
+                height_m = (one - (a * qx + b * qy + c * tz)) * plane_m
+                rise = height_m / np.sqrt(d2) - np.float32(BIAS)
                 both_baked = own < zero and other < zero
                 hidden += zero if both_baked else max(rise, zero) * fall
             out[v, u] = np.uint8(np.float32(255.0) * max(zero, one - scale * hidden) + half)
 
 
 @numba.njit(cache=True, nogil=True)
-def _mean_of_rows(share, depth, live, out, first, last):  # type: ignore[no-untyped-def]
+def _mean_of_rows(share, inverse, live, out, first, last):  # type: ignore[no-untyped-def]
     """Average over four neighbours in a row that lie on one surface."""
     columns = share.shape[1]
     for v in range(first, last):
@@ -208,18 +213,18 @@ def _mean_of_rows(share, depth, live, out, first, last):  # type: ignore[no-unty
             if not live[v // TILE_PX, u // TILE_PX]:
                 out[v, u] = 255
                 continue
-            z = abs(depth[v, u])
-            off = SAME_SURFACE * z
+            w = abs(inverse[v, u])
+            off = SAME_SURFACE * w
             total, count = np.int32(0), np.int32(0)
             for i in range(max(u - 1, 0), min(u + 3, columns)):
-                if abs(abs(depth[v, i]) - z) <= off:
+                if abs(abs(inverse[v, i]) - w) <= off:
                     total += share[v, i]
                     count += 1
             out[v, u] = (total + (count >> 1)) // count
 
 
 @numba.njit(cache=True, nogil=True)
-def _mean_of_columns(share, depth, live, out, first, last):  # type: ignore[no-untyped-def]
+def _mean_of_columns(share, inverse, live, out, first, last):  # type: ignore[no-untyped-def]
     """Average over four neighbours in a column that lie on one surface."""
     rows, columns = share.shape
     for v in range(first, last):
@@ -228,11 +233,11 @@ def _mean_of_columns(share, depth, live, out, first, last):  # type: ignore[no-u
             if not live[v // TILE_PX, u // TILE_PX]:
                 out[v, u] = 255
                 continue
-            z = abs(depth[v, u])
-            off = SAME_SURFACE * z
+            w = abs(inverse[v, u])
+            off = SAME_SURFACE * w
             total, count = np.int32(0), np.int32(0)
             for i in range(top, bottom):
-                if abs(abs(depth[i, u]) - z) <= off:
+                if abs(abs(inverse[i, u]) - w) <= off:
                     total += share[i, u]
                     count += 1
             out[v, u] = (total + (count >> 1)) // count

@@ -17,7 +17,7 @@ from sailenv_ros.render.bands import Bands, alone
 __all__ = ["Shade", "develop", "shaded", "warm_up"]
 
 Shade: TypeAlias = tuple[NDArray[np.uint8], NDArray[np.float32]]
-"""What `ambient_occlusion.open_share` gives: share and depth at half resolution."""
+"""What `ambient_occlusion.open_share` gives: share and 1 / depth at half resolution."""
 
 SAME_SURFACE = 0.04
 """Share of its depth by which a sample of the occlusion may lie off a pixel's own surface."""
@@ -65,12 +65,12 @@ def develop(
 def shaded(
     radiance: NDArray[np.float16],
     open_share: NDArray[np.uint8],
-    half_depth: NDArray[np.float32],
+    inverse: NDArray[np.float32],
     surface: NDArray[np.float32],
 ) -> NDArray[np.float16]:
     """Take away the light from around that does not arrive; a fresh array."""
     result = radiance.copy()
-    _shade(result.view(np.uint16), open_share, half_depth, surface)
+    _shade(result.view(np.uint16), open_share, inverse, surface)
     return result
 
 
@@ -103,11 +103,11 @@ def _plain(bits, table, picture, first, last):  # type: ignore[no-untyped-def]  
 
 @numba.njit(cache=True, nogil=True)
 def _develop(  # type: ignore[no-untyped-def]  # compiled
-    bits, table, open_share, half_depth, surface, picture, first, last
+    bits, table, open_share, inverse, surface, picture, first, last
 ):
     for v in range(first, last):
         for u in range(bits.shape[1]):
-            factor = _arriving(bits, open_share, half_depth, surface, v, u)
+            factor = _arriving(bits, open_share, inverse, surface, v, u)
             r, g, b = bits[v, u, 0], bits[v, u, 1], bits[v, u, 2]
             if factor < np.float32(1.0):
                 r, g, b = _scaled(r, factor), _scaled(g, factor), _scaled(b, factor)
@@ -115,10 +115,10 @@ def _develop(  # type: ignore[no-untyped-def]  # compiled
 
 
 @numba.njit(cache=True, nogil=True)
-def _shade(bits, open_share, half_depth, surface):  # type: ignore[no-untyped-def]  # compiled
+def _shade(bits, open_share, inverse, surface):  # type: ignore[no-untyped-def]  # compiled
     for v in range(bits.shape[0]):
         for u in range(bits.shape[1]):
-            factor = _arriving(bits, open_share, half_depth, surface, v, u)
+            factor = _arriving(bits, open_share, inverse, surface, v, u)
             if factor < np.float32(1.0):
                 for c in range(3):
                     bits[v, u, c] = _scaled(bits[v, u, c], factor)
@@ -133,7 +133,7 @@ def _scaled(half, factor):  # type: ignore[no-untyped-def]  # compiled
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
-def _arriving(bits, open_share, half_depth, surface, v, u):  # type: ignore[no-untyped-def]
+def _arriving(bits, open_share, inverse, surface, v, u):  # type: ignore[no-untyped-def]
     """Share of a pixel's light that is left, by the samples around it on its own surface."""
     above, below = v >> 1, min((v + 1) >> 1, open_share.shape[0] - 1)
     left, right = u >> 1, min((u + 1) >> 1, open_share.shape[1] - 1)
@@ -143,17 +143,17 @@ def _arriving(bits, open_share, half_depth, surface, v, u):  # type: ignore[no-u
     if min(a0, a1, b0, b1) == 255:
         return one
     z = surface[v, u, 0]
-    off = np.float32(SAME_SURFACE) * z
-    if abs(abs(half_depth[above, left]) - z) <= off:
+    off = np.float32(SAME_SURFACE)
+    if abs(abs(inverse[above, left]) * z - one) <= off:
         weight += one
         total += np.float32(a0)
-    if abs(abs(half_depth[above, right]) - z) <= off:
+    if abs(abs(inverse[above, right]) * z - one) <= off:
         weight += one
         total += np.float32(a1)
-    if abs(abs(half_depth[below, left]) - z) <= off:
+    if abs(abs(inverse[below, left]) * z - one) <= off:
         weight += one
         total += np.float32(b0)
-    if abs(abs(half_depth[below, right]) - z) <= off:
+    if abs(abs(inverse[below, right]) * z - one) <= off:
         weight += one
         total += np.float32(b1)
     if weight == np.float32(0.0):

@@ -8,6 +8,7 @@ the same bytes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -265,7 +266,7 @@ class World:
 
     def set_baked(self, baked: BakedLight | None) -> None:
         """Replace the light that was worked out beforehand for what stands still."""
-        self._baked = baked
+        self._baked = baked and replace(baked, environment=self._environment)
         self._changed()
 
     def close(self) -> None:

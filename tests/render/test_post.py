@@ -143,7 +143,7 @@ def corner(width: int = 160, height: int = 120) -> tuple[np.ndarray, CameraIntri
 def test_corners_are_dark_and_what_is_free_is_not() -> None:
     """Within the radius of the joint of wall and floor light is lost; beyond it none."""
     surface, intrinsics = corner()
-    share, depth = open_share(surface, intrinsics, strength=1.0, radius_m=0.4, baked=NONE_BAKED)
+    share, inverse = open_share(surface, intrinsics, strength=1.0, radius_m=0.4, baked=NONE_BAKED)
     points = intrinsics.unproject(surface[..., 0])[::2, ::2]
     away = np.hypot(points[..., 1] - 1.0, points[..., 2] - 3.0)
     # Averaging over a block carries it a little farther.
@@ -156,7 +156,21 @@ def test_corners_are_dark_and_what_is_free_is_not() -> None:
         for a in (0.08, 0.16, 0.24, 0.32)
     ]
     assert (np.diff(profile) > 0).all()
-    np.testing.assert_array_equal(depth, surface[::2, ::2, 0])
+    np.testing.assert_allclose(inverse, 1.0 / surface[::2, ::2, 0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("yaw_deg", [0.0, 35.0, 60.0, 80.0])
+def test_a_plane_does_not_darken_itself(yaw_deg: float) -> None:
+    """However it is turned, and up to the picture's borders."""
+    intrinsics = CameraIntrinsics(width=97, height=72)
+    normal = np.array([np.sin(np.radians(yaw_deg)), 0.2, np.cos(np.radians(yaw_deg))])
+    with np.errstate(divide="ignore"):
+        z = 3.0 * normal[2] / (intrinsics.rays() @ normal)
+    surface = np.stack([np.where(z > 0.0, z, np.inf), np.ones_like(z)], axis=-1)
+    share, _ = open_share(
+        surface.astype(np.float32), intrinsics, strength=1.0, radius_m=2.0, baked=NONE_BAKED
+    )
+    assert (share == 255).all()
 
 
 def test_what_was_baked_is_left_alone() -> None:
@@ -202,7 +216,7 @@ def test_shade_takes_its_share_of_the_light() -> None:
     kept = shaded(radiance, half, np.ones((10, 15), np.float32), surface)
     expected = radiance[..., :3].astype(float) * (1.0 - 0.6 * radiance[..., 3:].astype(float))
     np.testing.assert_allclose(kept[..., :3].astype(float), expected, rtol=2**-10, atol=1e-6)
-    elsewhere = shaded(radiance, half, np.full((10, 15), -2.0, np.float32), surface)
+    elsewhere = shaded(radiance, half, np.full((10, 15), -0.5, np.float32), surface)
     np.testing.assert_array_equal(elsewhere, radiance)
 
 
