@@ -23,7 +23,7 @@ from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.reflection_map import ReflectionMap
 from sailenv_ros.render.shadow_pass import SIZE_PX, ShadowPass
 
-__all__ = ["MAX_LIGHTS", "Illumination", "LightingPass"]
+__all__ = ["MAX_LIGHTS", "Illumination", "LightingPass", "set_camera"]
 
 _log = logging.getLogger(__name__)
 
@@ -102,7 +102,7 @@ class LightingPass:
         light, sky = self._chosen(illumination)
         environment = illumination.environment
         for program in (light, sky):
-            _set_camera(program, camera, environment)
+            set_camera(program, camera, environment)
         if environment.sky is not None:
             self._show_sky(environment.sky, sky)
         self._set_lights(light, camera, illumination)
@@ -206,7 +206,8 @@ def _set_textures(program: moderngl.Program, targets: Targets, illumination: Ill
         illumination.reflections.bind(program)
 
 
-def _set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+def set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+    """Tell a program of `picture.glsl` where it looks from, and what lies around."""
     intrinsics = camera.intrinsics
     exposure = 2.0**environment.exposure
     set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))

@@ -15,7 +15,7 @@ from sailenv_ros.render.bands import Bands
 from sailenv_ros.render.bloom import bloomed
 from sailenv_ros.render.sensor_noise import noisy
 from sailenv_ros.render.tone import code_table
-from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.snapshot import WorldSnapshot
 
 __all__ = ["PostPass", "warm_up"]
 
@@ -38,8 +38,6 @@ class PostPass:
 
     def __init__(self, bands: Bands) -> None:
         self._bands = bands
-        self._contents: SceneContents | None = None
-        self._baked = np.zeros(65536, np.bool_)
 
     def developed(
         self,
@@ -47,6 +45,7 @@ class PostPass:
         surface: NDArray[np.float32],
         snapshot: WorldSnapshot,
         camera: Camera,
+        still: NDArray[np.bool_],
     ) -> NDArray[np.uint8]:
         """Give a picture whose edges are as they are.
 
@@ -56,6 +55,8 @@ class PostPass:
             See `develop.develop`.
         surface : (H, W, 2) float32
             Depth [m] and instance id; not written to.
+        still : (N,) bool
+            Which instances have baked light where they are.
 
         Returns
         -------
@@ -65,12 +66,14 @@ class PostPass:
         settings = camera.picture
         shade: develop.Shade | None = None
         if settings.occlusion_strength > 0.0:
+            baked = np.zeros(65536, np.bool_)
+            baked[snapshot.contents.instance_ids[still]] = True
             shade = ambient_occlusion.open_share(
                 surface,
                 camera.intrinsics,
                 strength=settings.occlusion_strength,
                 radius_m=settings.occlusion_radius_m,
-                baked=self._baked_in(snapshot.contents),
+                baked=baked,
                 bands=self._bands,
             )
             if settings.bloom > 0.0 or settings.full_well > 0.0:
@@ -88,12 +91,3 @@ class PostPass:
         if camera.picture.smooth_edges:
             return smooth_edges.smooth_edges(picture)
         return np.ascontiguousarray(picture[..., :3])
-
-    def _baked_in(self, contents: SceneContents) -> NDArray[np.bool_]:
-        """Give, by instance id, whether its light was worked out beforehand."""
-        if contents is not self._contents:
-            self._baked = np.zeros(65536, np.bool_)
-            if contents.baked is not None:
-                self._baked[list(contents.baked.charts)] = True
-            self._contents = contents
-        return self._baked

@@ -28,6 +28,7 @@ from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
 from sailenv_ros.render.geometry_pass import GeometryPass
+from sailenv_ros.render.glass_pass import GlassPass
 from sailenv_ros.render.lighting_pass import Illumination, LightingPass
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.picture_buffers import PictureBuffers
@@ -65,6 +66,7 @@ class Renderer:
                 self._geometry_pass = GeometryPass(self._context, self._programs)
                 self._scene_light = SceneLight(self._context, self._programs)
                 self._lighting_pass = LightingPass(self._context, self._programs)
+                self._glass_pass = GlassPass(self._context, self._programs)
                 self._pictures = PictureBuffers(self._geometry_pass)
         except BaseException:
             self._context.release()
@@ -107,7 +109,8 @@ class Renderer:
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if "rgb" in wanted:
-            arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera)
+            still = self._draws_of(snapshot).at_baked_pose(snapshot)
+            arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera, still)
             timings["develop"] = time.perf_counter() - began
             began = time.perf_counter()
         # Both walks leave Python's lock alone: the labels are made beside the picture.
@@ -141,6 +144,7 @@ class Renderer:
             for resource in (
                 self._draws,
                 self._pictures,
+                self._glass_pass,
                 self._lighting_pass,
                 self._scene_light,
                 self._materials,
@@ -176,9 +180,8 @@ class Renderer:
             )
             mark("shadow")
         intrinsics = camera.intrinsics
-        draws.place(
-            snapshot, _UPSIDE_DOWN @ intrinsics.clip_from_optical(), camera.camera_from_world
-        )
+        clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
+        draws.place(snapshot, clip_from_optical, camera.camera_from_world)
         targets = self._pictures.targets(
             intrinsics,
             shaded=shaded,
@@ -190,6 +193,16 @@ class Renderer:
         arrays: dict[str, NDArray[Any]] = {}
         if illumination is not None:
             self._lighting_pass.draw(targets, camera, illumination)
+            self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
+            self._glass_pass.draw(
+                targets,
+                snapshot,
+                camera,
+                clip_from_optical,
+                illumination,
+                self._geometry,
+                self._materials,
+            )
             mark("lighting")
             arrays["rgb"] = self._pictures.read_picture(targets)
         arrays["surface"] = self._pictures.read_surface(targets)
