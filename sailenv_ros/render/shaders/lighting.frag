@@ -1,6 +1,6 @@
 // Lights what the geometry pass left: metallic-roughness surfaces under sun, lamps and sky.
 // GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
-layout(location = 0) out vec4 out_colour;  // sRGB, luma in alpha for the edge pass
+layout(location = 0) out vec4 out_colour;  // see picture.glsl
 
 uniform sampler2D surface;
 uniform sampler2D shape;
@@ -31,11 +31,7 @@ uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx,
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
 uniform float main_baked;          // 1 if the light map knows the main light's shadows
 #endif
-#ifdef REFLECTIONS
-uniform sampler3D reflections;     // octahedral, world frame; roughness along z
-uniform vec3 reflection_from, room_low, room_high, eye;
-uniform vec3 reflection_texel;     // share of the square without its border, layers per roughness, layers
-#endif
+#include "reflections.glsl"
 
 const float PI = 3.14159265;
 
@@ -68,21 +64,6 @@ float four_taps(sampler2DShadow map, vec3 at) {
     lit += texture(map, at + vec3(-0.94, -0.34, 0.0) * r);
     lit += texture(map, at + vec3(0.34, -0.94, 0.0) * r);
     return lit / 4.0;
-}
-#endif
-
-#ifdef REFLECTIONS
-// What lies in a direction, looked for on the walls of a box around the room (box projection).
-vec3 mirrored_room(vec3 from, vec3 direction, float roughness) {
-    vec3 inverse = 1.0 / (direction + vec3(1e-6));
-    vec3 ends = max((room_low - from) * inverse, (room_high - from) * inverse);
-    float distance = max(min(ends.x, min(ends.y, ends.z)), 0.05);
-    vec3 to = from + direction * distance - reflection_from;
-    vec3 n = to / (abs(to.x) + abs(to.y) + abs(to.z));
-    float fold = max(-n.z, 0.0);
-    n.xy -= vec2(n.x >= 0.0 ? fold : -fold, n.y >= 0.0 ? fold : -fold);
-    float layer = (roughness * reflection_texel.y + 0.5) / reflection_texel.z;
-    return textureLod(reflections, vec3(0.5 + 0.5 * n.xy * reflection_texel.x, layer), 0.0).rgb;
 }
 #endif
 
@@ -190,11 +171,12 @@ void main() {
     vec3 mean = f0 + (1.0 - f0) / 21.0;
     vec3 again = lost * once * mean / (1.0 - mean * lost);
     vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
+    vec3 from_around = radiance;
     radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     radiance += reflected_light(here, main_towards, main_colour * main_arrives);
 #ifdef LAMPS
     for (int i = 0; i < light_count; i++) radiance += lamp_light(lights[i], here);
 #endif
-    out_colour = finished(radiance);
+    out_colour = finished(radiance, from_around);
 }
