@@ -16,9 +16,8 @@ from sailenv_ros.bake.bounces import bounced_radiance, patches_of
 from sailenv_ros.bake.direct import Points, arriving
 from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.bake.gather import BACK, Surroundings, gathered, seen_from, window_light
-from sailenv_ros.bake.layout import Layout, laid_out
+from sailenv_ros.bake.layout import Layout, is_simple, laid_out
 from sailenv_ros.bake.probes import (
-    MOST_SKY,
     filled_in,
     probe_grid,
     probe_light,
@@ -30,6 +29,7 @@ from sailenv_ros.bake.sampling import net, tile_shift
 from sailenv_ros.bake.scenery import static_scenery
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.bake.sides import turned_to_the_light
+from sailenv_ros.bake.sight import in_sight, look_from
 from sailenv_ros.bake.sky import panes, sky_picture
 from sailenv_ros.bake.smooth import filled, smoothed
 from sailenv_ros.bake.surfaces import albedo_of, emission_of
@@ -96,15 +96,19 @@ class _Bake:
     def run(self) -> BakedLight:
         settings, contents = self._settings, self._snapshot.contents
         scenery = static_scenery(self._snapshot)
-        layout = laid_out(scenery, settings, self._told("surfaces"))
         scene = RayScene(scenery)
+        self._grid = probe_grid(scenery.bounds(), settings)
+        self._spots = probe_positions(self._grid)
+        self._told("surfaces")
+        self._air = look_from(scenery, scene, self._spots, settings.probe_rays)
+        seen_ones = in_sight(scenery, self._air.seen)
+        layout = laid_out(scenery, settings, seen_ones, self._told("surfaces"))
         texels = turned_to_the_light(scenery, scene, rasterised(scenery, layout))
         self._scenery, self._texels = scenery, texels
-        two_sided = np.array([m.double_sided for m in scenery.materials], dtype=bool)
         self._around = Surroundings(
             scene=scene,
             faces=scenery.faces,
-            two_sided=two_sided[scenery.material],
+            two_sided=scenery.two_sided,
             places=layout.places,
             index=texels.index,
             sky=sky_picture(contents.environment),
@@ -118,6 +122,7 @@ class _Bake:
         )
         albedo = albedo_of(scenery, layout, texels)
         seen, sky = self._first_look()
+        self._nearness = np.zeros(texels.count, dtype=np.float32)
         self._valid = np.mean(seen == BACK, axis=1) <= MOST_BACKS
         lights = [_Light(None, np.zeros(texels.count, np.float32))]
         lights += [self._straight(light) for light in contents.lights]
@@ -193,33 +198,42 @@ class _Bake:
 
     def _last_look(self, radiance: Floats) -> Floats:
         """Give (N, 3 L) float32: what arrives at each texel by way of others and from the sky."""
-        settings = self._settings
-        pattern, window_pattern = net(settings.rays), net(settings.window_rays)
-        light = np.zeros((self._texels.count, radiance.shape[1]), dtype=np.float32)
-        nearness = np.zeros(self._texels.count, dtype=np.float32)
-        lit = np.flatnonzero(self._valid)
+        settings, texels = self._settings, self._texels
+        window_pattern = net(settings.window_rays)
+        light = np.zeros((texels.count, radiance.shape[1]), dtype=np.float32)
+        owner = self._scenery.owner[texels.triangle]
+        simple = np.array([is_simple(instance.model) for instance in self._scenery.instances])
 
-        def look(first: int, end: int) -> None:
-            chosen = lit[first:end]
-            light[chosen], nearness[chosen] = gathered(
-                self._around, self._points.part(chosen), pattern, window_pattern, radiance
-            )
+        def look_with(rays: int, lit: NDArray[np.intp], stage: str) -> None:
+            pattern = net(rays)
 
-        self._chunks(look, len(lit), settings.rays, "last look")
-        light = smoothed(self._scenery, self._texels, light, self._valid, nearness)
-        return filled(self._scenery, self._texels, light, self._valid)
+            def look(first: int, end: int) -> None:
+                chosen = lit[first:end]
+                points = self._points.part(chosen)
+                light[chosen], self._nearness[chosen] = gathered(
+                    self._around, points, pattern, window_pattern, radiance
+                )
+
+            self._chunks(look, len(lit), rays, stage)
+
+        if texels.count:
+            look_with(settings.rays, np.flatnonzero(self._valid & simple[owner]), "walls")
+            look_with(settings.fine_rays, np.flatnonzero(self._valid & ~simple[owner]), "furniture")
+        return self._even(light)
+
+    def _even(self, values: Floats) -> Floats:
+        """Smooth values of texels, and carry them into those that lie inside of something."""
+        values = smoothed(self._scenery, self._texels, values, self._valid, self._nearness)
+        return filled(self._scenery, self._texels, values, self._valid)
 
     def _probes(self, lights: list[_Light], radiance: Floats) -> tuple[ProbeGrid, Floats, Floats]:
         """Give the grid, (L, N, 4) direct and (N, 4, 3 L) bounced light of its probes."""
-        settings = self._settings
-        grid = probe_grid(self._scenery.bounds(), settings)
-        positions = probe_positions(grid)
+        settings, grid, positions = self._settings, self._grid, self._spots
         count = len(positions)
         bounced = np.empty((count, 4, radiance.shape[1]), dtype=np.float32)
-        inside, sky = np.empty(count, dtype=bool), np.empty(count, dtype=np.float32)
 
         def look(first: int, end: int) -> None:
-            bounced[first:end], inside[first:end], sky[first:end] = probe_light(
+            bounced[first:end] = probe_light(
                 self._around, positions[first:end], radiance, settings.probe_rays
             )
 
@@ -230,7 +244,7 @@ class _Bake:
                 direct[place] = straight_light(
                     self._around.scene, entry.light, positions, net(settings.light_rays)
                 )
-        unknown = inside | (sky > MOST_SKY) if (sky[~inside] < MOST_SKY / 2).any() else inside
+        unknown = ~self._air.useful
         bounced = filled_in(bounced, unknown, grid)
         direct = np.stack([filled_in(d[..., None], unknown, grid)[..., 0] for d in direct])
         return grid, direct, bounced
@@ -250,7 +264,10 @@ class _Bake:
         layers = []
         for place, entry in enumerate(lights):
             mine = slice(3 * place, 3 * place + 3)
-            known = filled(scenery, texels, entry.direct[:, None], self._valid)
+            # An area light's shadows are as soft as the texels are fine, and its rays are few.
+            soft = entry.light is not None and entry.light.type == "area"
+            known = entry.direct[:, None]
+            known = self._even(known) if soft else filled(scenery, texels, known, self._valid)
             direct = np.zeros(texels.index.shape, dtype=np.float16)
             direct[at] = known[:, 0]
             map_of = np.zeros((*texels.index.shape, 3), dtype=np.float16)
