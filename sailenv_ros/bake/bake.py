@@ -42,7 +42,7 @@ __all__ = ["Report", "bake"]
 
 Floats = NDArray[np.float32]
 Report = Callable[[str, float], None]
-"""Is told a stage's name and which share of it is done."""
+"""Is told the name of the stage and which share of the whole is done, 0 to 1."""
 
 MOST_BACKS = 0.25
 """A texel that sees more backs of surfaces than this share lies inside of something."""
@@ -66,7 +66,7 @@ def bake(
         Its poses, materials, sky, and its lights' places count; colours and intensities do not.
     settings : BakeSettings or None
     report : callable
-        Is told each stage's name and share of it done, 0 to 1.
+        See `Report`.
     workers : int
         Threads; 0 is one for each core. The result is the same for any number.
     """
@@ -92,6 +92,7 @@ class _Bake:
     ) -> None:
         self._snapshot, self._settings = snapshot, settings
         self._report, self._workers = report, workers
+        self._done = 0.0
 
     def run(self) -> BakedLight:
         settings, contents = self._settings, self._snapshot.contents
@@ -99,10 +100,10 @@ class _Bake:
         scene = RayScene(scenery)
         self._grid = probe_grid(scenery.bounds(), settings)
         self._spots = probe_positions(self._grid)
-        self._told("surfaces")
+        self._told("what is in sight", 0.04)
         self._air = look_from(scenery, scene, self._spots, settings.probe_rays)
         seen_ones = in_sight(scenery, self._air.seen)
-        layout = laid_out(scenery, settings, seen_ones, self._told("surfaces"))
+        layout = laid_out(scenery, settings, seen_ones, self._told("surfaces", 0.06))
         texels = turned_to_the_light(scenery, scene, rasterised(scenery, layout))
         self._scenery, self._texels = scenery, texels
         self._around = Surroundings(
@@ -131,13 +132,17 @@ class _Bake:
         probes = self._probes(lights, radiance)
         return self._result(layout, lights, bounced, *probes)
 
-    def _told(self, stage: str) -> Callable[[float], None]:
-        self._report(stage, 0.0)
-        return lambda share: self._report(stage, share)
+    def _told(self, stage: str, weight: float) -> Callable[[float], None]:
+        """Begin a stage that takes this share of the whole time."""
+        begun, self._done = self._done, min(self._done + weight, 1.0)
+        self._report(stage, begun)
+        return lambda share: self._report(stage, begun + weight * share)
 
-    def _chunks(self, work: Callable[[int, int], None], count: int, rays: int, stage: str) -> None:
+    def _chunks(
+        self, work: Callable[[int, int], None], count: int, rays: int, told: Callable[[float], None]
+    ) -> None:
         size = max(CHUNK_RAYS // max(rays, 1), 1)
-        in_chunks(work, count, size, self._workers, self._told(stage))
+        in_chunks(work, count, size, self._workers, told)
 
     def _first_look(self) -> tuple[NDArray[np.int32], Floats]:
         """Find which texels see which, and how much of the sky arrives straight at each."""
@@ -152,7 +157,7 @@ class _Bake:
             seen[first:end], _, directions = seen_from(self._around, points, pattern)
             sky[first:end] = window_light(self._around, points, seen[first:end], directions, few)
 
-        self._chunks(look, count, rays, "first look")
+        self._chunks(look, count, rays, self._told("first look", 0.15))
         return seen, sky
 
     def _straight(self, light: Light) -> _Light:
@@ -166,7 +171,8 @@ class _Bake:
             points = self._points.part(chosen)
             direct[chosen], sight[chosen] = arriving(self._around.scene, light, points, pattern)
 
-        self._chunks(shine, len(lit), rays, light.name)
+        share = 0.18 / len(self._snapshot.contents.lights)
+        self._chunks(shine, len(lit), rays, self._told(light.name, share))
         return _Light(light, direct, sight if light.type == "directional" else None)
 
     def _radiance(
@@ -178,7 +184,7 @@ class _Bake:
         sky: Floats,
     ) -> Floats:
         """Give (N, 3 L) float32: what each texel sends out, light by light."""
-        self._report("bounces", 0.0)
+        told = self._told("bounces", 0.05)
         first = np.concatenate(
             [emission + albedo * sky, *(albedo * light.direct[:, None] for light in lights[1:])],
             axis=1,
@@ -193,7 +199,7 @@ class _Bake:
             self._settings.bounces,
         )
         radiance[~self._valid] = 0.0
-        self._report("bounces", 1.0)
+        told(1.0)
         return radiance
 
     def _last_look(self, radiance: Floats) -> Floats:
@@ -204,7 +210,7 @@ class _Bake:
         owner = self._scenery.owner[texels.triangle]
         simple = np.array([is_simple(instance.model) for instance in self._scenery.instances])
 
-        def look_with(rays: int, lit: NDArray[np.intp], stage: str) -> None:
+        def look_with(rays: int, lit: NDArray[np.intp], told: Callable[[float], None]) -> None:
             pattern = net(rays)
 
             def look(first: int, end: int) -> None:
@@ -214,11 +220,14 @@ class _Bake:
                     self._around, points, pattern, window_pattern, radiance
                 )
 
-            self._chunks(look, len(lit), rays, stage)
+            self._chunks(look, len(lit), rays, told)
 
         if texels.count:
-            look_with(settings.rays, np.flatnonzero(self._valid & simple[owner]), "walls")
-            look_with(settings.fine_rays, np.flatnonzero(self._valid & ~simple[owner]), "furniture")
+            plain = simple[owner]
+            chosen = np.flatnonzero(self._valid & plain)
+            look_with(settings.rays, chosen, self._told("last look at walls", 0.37))
+            chosen = np.flatnonzero(self._valid & ~plain)
+            look_with(settings.fine_rays, chosen, self._told("last look at furniture", 0.11))
         return self._even(light)
 
     def _even(self, values: Floats) -> Floats:
@@ -237,7 +246,7 @@ class _Bake:
                 self._around, positions[first:end], radiance, settings.probe_rays
             )
 
-        self._chunks(look, count, settings.probe_rays, "probes")
+        self._chunks(look, count, settings.probe_rays, self._told("probes", 0.04))
         direct = np.zeros((len(lights), count, 4), dtype=np.float32)
         for place, entry in enumerate(lights):
             if entry.light is not None and entry.light.type != "directional":
