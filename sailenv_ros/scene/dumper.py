@@ -100,6 +100,8 @@ def _length(value: object) -> int:
     return len(str(value))
 
 
+# The key `on`, which YAML 1.1 took for a truth value.
+_Dumper.yaml_implicit_resolvers = {**yaml.SafeDumper.yaml_implicit_resolvers, "o": []}
 _Dumper.add_representer(str, _text)
 _Dumper.add_representer(float, _number)
 _Dumper.add_representer(list, _list)
