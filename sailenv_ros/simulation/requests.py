@@ -62,11 +62,13 @@ REQUESTS = frozenset(
         "spawn_object",
         "spawnable_display_names",
         "step",
+        "thumbnail",
         "toggle_follow",
         "upload_model",
     }
 )
-"""Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
+"""Names that `Simulation.request` takes: public requests of `SimulationCore`, and what needs no
+world: models and thumbnails."""
 
 
 class Requests(EditRequests):
