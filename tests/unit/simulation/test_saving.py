@@ -400,6 +400,15 @@ def test_parts_of_the_room_that_were_moved_are_told(core: SimulationCore) -> Non
     assert "broken" not in core.info.scenes
 
 
+def test_parts_that_a_room_may_do_without_are_left_out(core: SimulationCore) -> None:
+    """A room whose skirting and curtains were taken out begins without them."""
+    core.despawn_object("skirting")
+    core.despawn_object("curtains 1")
+    text = assert_comes_back(core)
+    assert "skirting: false" in text
+    assert "curtains: false" in text
+
+
 def test_an_uploaded_model_is_kept_or_told(
     core: SimulationCore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
