@@ -272,6 +272,8 @@ _edits = st.one_of(
     st.tuples(st.just("attach_behaviour"), st.sampled_from(["cup", "toy"]), _numbers),
     st.tuples(st.just("detach_behaviours"), _names),
     st.tuples(st.just("set_light"), st.sampled_from(["sun", "lamp"]), _lights),
+    st.tuples(st.just("add_light"), st.sampled_from(["moon", "glow"]), _lights),
+    st.tuples(st.just("remove_light"), st.sampled_from(["sun", "lamp", "moon"])),
     st.tuples(st.just("set_environment"), _surroundings),
     st.tuples(st.just("set_ambient_light"), _colours),
     st.tuples(st.just("set_waypoints"), st.sampled_from(["rail", "cart"]),
@@ -291,6 +293,9 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
         core.spawn_object(asset, pose=pose, scale=0.2, static=static)
     elif name in ("change_object", "set_light"):
         getattr(core, name)(given[0], **given[1])
+    elif name == "add_light":
+        attributes = {"type": "point", **given[1]}
+        core.add_light(given[0], attributes.pop("type"), **attributes)
     elif name == "set_environment":
         core.set_environment(**given[0])
     elif name == "attach_behaviour":
