@@ -128,6 +128,9 @@ class LightingPass:
         """Give the programs for surfaces and sky."""
         lit: dict[str, int] = {}
         seen: dict[str, int] = {}
+        if any(light.intensity > 0.0 for light in illumination.lamps):
+            # Even a loop that ends at once costs a tenth of the pass.
+            lit["LAMPS"] = 1
         if illumination.baked is not None:
             lit["BAKED"] = 1
             if illumination.reflections is not None:

@@ -55,6 +55,7 @@ vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {
     return (shadow_from_optical * vec4(lifted, 1.0)).xyz;
 }
 
+#ifndef BAKED
 float four_taps(sampler2DShadow map, vec3 at) {
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
     float r = shadow_texel.y * shadow_texel.z;
@@ -64,6 +65,7 @@ float four_taps(sampler2DShadow map, vec3 at) {
     lit += texture(map, at + vec3(0.34, -0.94, 0.0) * r);
     return lit / 4.0;
 }
+#endif
 
 struct Surface {
     vec3 point, normal, view;  // optical frame
@@ -131,8 +133,9 @@ void main() {
     vec3 world_normal = world_from_optical * normal;
     float facing = dot(normal, main_towards);
     vec3 in_shadow = in_shadow_map(point, normal, 1.0 - facing);
-    float main_arrives = four_taps(shadow_map, in_shadow);
 #ifdef BAKED
+    // What moves casts edges of one texel; soft shadows of what stands still are in the light map.
+    float main_arrives = texture(shadow_map, in_shadow);
     vec2 place = texelFetch(light_at, pixel, 0).xy;
     vec4 mapped = textureLod(light_map, place, 0.0);
     int id = int(texelFetch(surface, pixel, 0).y + 0.5);
@@ -146,6 +149,7 @@ void main() {
     main_arrives *= mix(texture(static_shadow_map, in_shadow), mapped.a, charted * main_baked);
     vec3 reflected = around;
 #else
+    float main_arrives = four_taps(shadow_map, in_shadow);
     vec3 around = ambient + sky_share * sky_light(world_normal);
 #endif
 #if defined(REFLECTIONS) || !defined(BAKED)
@@ -171,6 +175,8 @@ void main() {
     radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     radiance += reflected_light(here, main_towards, main_colour * main_arrives);
+#ifdef LAMPS
     for (int i = 0; i < light_count; i++) radiance += lamp_light(lights[i], here);
+#endif
     out_colour = finished(radiance, from_around);
 }
