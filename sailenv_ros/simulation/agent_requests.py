@@ -9,7 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.world.world import World
 
@@ -69,6 +71,14 @@ class AgentRequests:
     def set_rate(self, agent: str, rate_hz: float) -> None:
         """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
         self._agents.set_rate(agent, rate_hz, self._world)
+        self._announce()
+
+    def set_picture(self, agent: str, settings: PictureSettings) -> None:
+        """Change what is done to an agent's pictures, and to nothing else."""
+        given: object = settings
+        if not isinstance(given, PictureSettings):
+            raise InvalidRequest("settings", given, "an object of PictureSettings")
+        self._agents.set_picture(agent, settings)
         self._announce()
 
     # -- of the simulation -----------------------------------------------------------------
