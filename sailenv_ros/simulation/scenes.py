@@ -176,7 +176,7 @@ class SceneLibrary:
             If there is no such scene.
         """
         digest = blake2b(digest_size=16)
-        path = self._path(scene)
+        path = self.path(scene)
         digest.update(f"{path} {BAKE_VERSION}".encode())
         files = [path, *(pack.folder / PACK_FILE for pack in self._packs)]
         for file in files:
