@@ -37,6 +37,20 @@ def add_parser(subparsers: Any) -> None:
     accuracy.add_argument("--size", default="640x480", metavar="WxH")
     accuracy.add_argument("--scenario", nargs="+", metavar="NAME", help="default: all")
     _add_networks(accuracy)
+    through = actions.add_parser(
+        "throughput",
+        help="frames per second by size, views, agents, scene, transport; other renderers",
+    )
+    add_common(through)
+    through.add_argument("--frames", type=int, default=60, metavar="N", help="of each case")
+    through.add_argument(
+        "--size", nargs="+", metavar="WxH", help="default: 320x240 640x480 1280x960"
+    )
+    through.add_argument("--scene", nargs="+", metavar="NAME", help="the first is the base case's")
+    through.add_argument("--agents", type=int, nargs="+", metavar="N", help="default: 1 4")
+    through.add_argument("--transport", nargs="+", metavar="NAME", help="default: all")
+    through.add_argument("--no-renderers", action="store_true", help="ours alone")
+    through.add_argument("--full", action="store_true", help="every combination of all of these")
 
 
 def _add_networks(parser: argparse.ArgumentParser) -> None:
@@ -52,6 +66,10 @@ def _add_networks(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Do one of them; 0 if all is well."""
+    if args.action == "throughput":
+        from sailenv_ros.cli.bench_throughput import throughput
+
+        return throughput(args)
     from sailenv_ros.cli.bench_flow import flow_accuracy, flow_speed
 
     return flow_speed(args) if args.action == "flow-speed" else flow_accuracy(args)

@@ -27,6 +27,7 @@ COMMANDS = {
     "export": "write a recording as a data set: png, coco, kitti, flo, mp4",
     "play": "publish a recording on the topics it was recorded from",
     "record": "record what agents see in an MCAP bag",
+    "report": "write one page of all results of bench and eval",
     "run": "start the simulator, with or without ROS",
     "scene": "check, render, list and begin scenes, export the schema of the format",
 }

@@ -16,7 +16,7 @@ Data = Mapping[str, Any]
 def detection_tables(data: Data) -> list[Table]:
     """Give the table of `sailenv eval detection`."""
     masks = data["masks"]
-    columns = ("class", "views", "hit rate", "box IoU", "paper's box IoU")
+    columns: tuple[str, ...] = ("class", "views", "hit rate", "box IoU", "paper's box IoU")
     if masks:
         columns += ("pixel IoU",)
     columns += ("paper's pixel IoU",)
@@ -24,7 +24,11 @@ def detection_tables(data: Data) -> list[Table]:
     overall = data["overall"]
     paper_box = sum(DETECTION[e["name"]][2] for e in data["classes"]) / len(data["classes"])
     paper_pixel = sum(DETECTION[e["name"]][0] for e in data["classes"]) / len(data["classes"])
-    mean = ("mean of classes", str(overall["views"]), _percent(overall["hit_rate"]))
+    mean: tuple[str, ...] = (
+        "mean of classes",
+        str(overall["views"]),
+        _percent(overall["hit_rate"]),
+    )
     mean += (number(overall["box_iou"], 3), number(paper_box, 3))
     mean += (number(overall["pixel_iou"], 3),) if masks else ()
     rows.append((*mean, number(paper_pixel, 3)))

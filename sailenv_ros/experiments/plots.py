@@ -67,7 +67,7 @@ class _Canvas:
         self.theme = theme
         self._figure: Any = None
 
-    def axes(self, title: str, *, width: float = 8.0, height: float = 4.2) -> Any:
+    def axes(self, title: str, *, width: float = 8.65, height: float = 4.2) -> Any:
         """Begin a figure of inches; give its axes."""
         figure_module = need("matplotlib.figure", "a plot")
         theme = self.theme
@@ -184,7 +184,7 @@ def _flow_accuracy(canvas: _Canvas, data: Data) -> None:
 
 def _detection(canvas: _Canvas, data: Data) -> None:
     classes = data["classes"]
-    axes = canvas.axes("Box IoU by class, mean and deviation over the views", width=9.5)
+    axes = canvas.axes("Box IoU by class, mean and deviation over the views", width=8.65)
     places = range(len(classes))
     width = 0.38
     theirs = [DETECTION[entry["name"]] for entry in classes]
@@ -230,7 +230,10 @@ def _transports(canvas: _Canvas, data: Data) -> None:
             color=[ACCENT, *COLOURS][number],
             label=kind,
         )
-    axes.set_ylim(bottom=0)
+    axes.set_yscale("log")
+    ticker = need("matplotlib.ticker", "a plot")
+    axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    _plain(axes.yaxis)
     canvas.label(axes, y="median [ms]")
     canvas.legend(axes)
 

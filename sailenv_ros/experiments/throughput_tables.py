@@ -28,6 +28,12 @@ def throughput_tables(data: Data) -> list[Table]:
         "frames/s: of all agents together, physics included. rest: what a frame takes beyond "
         "rendering. CPU and memory: of simulator and client together.",
         *(f"{row['label']}: {row['problem']}." for row in data["cases"] if row.get("problem")),
+        *(
+            f"{row['label']}: images of {row['repeated']} frames were lost and asked for again, "
+            "which is part of the times."
+            for row in data["cases"]
+            if row.get("repeated")
+        ),
     )
     tables = [Table(title="Throughput", columns=CASE_COLUMNS, rows=cases, notes=notes)]
     if data.get("stages"):
