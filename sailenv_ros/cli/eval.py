@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
         for name in classes:
             views = stage.views(name, rule, partial(tell, name))
             measured.append(_evaluated(name, views, stage.instances(name), detector, args, sheet))
-        renderer = stage.description
+        renderer, baked = stage.description, stage.baked
     data = {
         "model": args.model.name,
         "format": detector.format,
@@ -99,6 +99,7 @@ def run(args: argparse.Namespace) -> int:
         "classes": measured,
         "overall": _overall(measured),
         "renderer": renderer,
+        "baked": baked,
         "pictures": ["detection_views.jpg"] if sheet else [],
     }
     if sheet:

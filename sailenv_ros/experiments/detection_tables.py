@@ -55,6 +55,11 @@ def _notes(data: Data) -> tuple[str, ...]:
         f"is seen, {rule['views']} azimuths and distances each, seed {rule['seed']}, rooms "
         f"{', '.join(rule['rooms'])}.",
     ]
+    if not data["baked"]:
+        notes.append(
+            "The rooms' light was not baked (sailenv scene bake): shadows and bounced light "
+            "are plainer than they can be."
+        )
     if not data["masks"]:
         notes.append(
             "This network gives no masks, so there is no pixel IoU of ours to stand beside the "

@@ -150,6 +150,11 @@ class Stage:
         self._lone_renderer: RenderBackend = make_backend("auto", None)
 
     @property
+    def baked(self) -> bool:
+        """True if every room has its light baked, which its pictures are better for."""
+        return all(shot.contents.baked is not None for shot in self._snapshots.values())
+
+    @property
     def description(self) -> str:
         """One line about the renderer."""
         return self._renderer.description
@@ -281,7 +286,7 @@ def _subjects_of(room: str, snapshot: WorldSnapshot, category: str) -> Iterator[
             snapshot=snapshot,
             alone=replace(
                 snapshot,
-                contents=replace(contents, instances=(drawn,), lights=()),
+                contents=replace(contents, instances=(drawn,), lights=(), baked=None),
                 world_from_body=snapshot.world_from_body[row : row + 1].copy(),
                 histories=snapshot.histories[row : row + 1].copy(),
             ),

@@ -53,7 +53,7 @@ DATA: dict[str, dict[str, Any]] = {
     },
     "detection": {
         "model": "net.onnx", "format": "nanodet", "score": 0.3, "hit_iou": 0.5, "masks": False,
-        "remarks": ["A remark."], "renderer": "GL", "pictures": [],
+        "remarks": ["A remark."], "baked": False, "renderer": "GL", "pictures": [],
         "rule": {"views": 5, "cover": (0.02, 0.6), "visible": 0.7, "seed": 0, "rooms": ["room_01"]},
         "classes": [{"name": "bed", **CLASS}, {"name": "tv", **CLASS, "views": 3}],
         "overall": {"views": 8, "hit_rate": 0.6, "box_iou": 0.5, "pixel_iou": float("nan")},
