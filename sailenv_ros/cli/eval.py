@@ -105,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
     if sheet:
         args.output.mkdir(parents=True, exist_ok=True)
         path = args.output / "detection_views.jpg"
-        save_contact_sheet(path, sheet, columns=rule.views, tile_width=208)
+        save_contact_sheet(path, sheet, columns=rule.views, tile_width=168)
     finish(args, "detection", told, data)
     return 0
 

@@ -53,7 +53,7 @@ _STOPS = [
 SPIN: Mapping[str, Any] = {"type": "rotate_rigidbody", "angular_velocity": [12, 8, 40]}
 BEHAVIOURS: tuple[Mapping[str, Any], ...] = (
     {"type": "rotate_rigidbody", "angular_velocity": [20, 0, 70]},
-    {"type": "poltergeist", "mean_interval": 0.05, "acceleration": 40.0},
+    {"type": "poltergeist", "mean_interval": 0.1, "acceleration": 12.0},
     {
         "type": "wander_plane",
         "waypoints": [[0, -1, 1.5], [0, 1, 1.6], [0.5, 0, 1.2]],

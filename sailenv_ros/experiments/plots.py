@@ -11,6 +11,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from PIL import Image
+
 from sailenv_ros.experiments.extras import need
 from sailenv_ros.experiments.paper import DETECTION, FLOW_MS
 
@@ -97,9 +99,12 @@ class _Canvas:
         axes.legend(frameon=False, fontsize=8.5, labelcolor=self.theme["ink"], **kwargs)
 
     def png(self) -> bytes:
-        """Give the figure as a file."""
+        """Give the figure as a file, of so few colours that it is small."""
+        drawn = io.BytesIO()
+        self._figure.savefig(drawn, format="png", dpi=120, facecolor=self.theme["paper"])
         file = io.BytesIO()
-        self._figure.savefig(file, format="png", dpi=120, facecolor=self.theme["paper"])
+        picture = Image.open(drawn).convert("RGB").quantize(128, dither=Image.Dither.NONE)
+        picture.save(file, format="PNG", optimize=True)
         return file.getvalue()
 
 

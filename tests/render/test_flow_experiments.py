@@ -23,10 +23,11 @@ def lab() -> Iterator[Simulation]:
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_our_flow_is_the_arithmetics_in_every_scenario(lab: Simulation, name: str) -> None:
-    """Below 0.01 px per frame at every pixel, and something does move."""
+    """To 1e-4 px per frame nearly everywhere, to 0.05 px on faces seen edge-on; things do move."""
     found = judge_scenario(lab, SCENARIOS[name], opencv_methods()[:1], pairs=3)
-    assert found.errors[OURS]["max"] < 0.01
-    assert found.errors["farneback"]["mean_moving"] > found.errors[OURS]["max"]
+    assert found.errors[OURS]["p95"] < 1e-4
+    assert found.errors[OURS]["max"] < 0.05
+    assert found.errors["farneback"]["mean_moving"] > 100 * found.errors[OURS]["mean_moving"]
     assert found.mean_motion_px > 0.01
     assert found.compared > 0.995
     shapes = {picture.shape for picture in found.pictures.values()}
