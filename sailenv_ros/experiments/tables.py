@@ -114,8 +114,8 @@ def accuracy_tables(data: Data) -> list[Table]:
             rows=rows,
             notes=(
                 note,
-                f"Largest error of sailenv_ros at any pixel: {worst:.2g} px per frame (on faces seen "
-                "edge-on, where the rasteriser's rounding of corners moves the depth most). At "
+                f"Largest error of sailenv_ros at any pixel: {worst:.2g} px per frame (on faces "
+                "seen edge-on, where the rasteriser's rounding of corners moves the depth most). At "
                 f"least {100 * share:.3f} % of the pixels were compared; at the others, on edges, "
                 "ray and rasteriser meet different objects.",
             ),
