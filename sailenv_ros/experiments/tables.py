@@ -115,7 +115,7 @@ def accuracy_tables(data: Data) -> list[Table]:
             notes=(
                 note,
                 f"Largest error of sailenv_ros at any pixel: {worst:.2g} px per frame (on faces "
-                "seen edge-on, where the rasteriser's rounding of corners moves the depth most). At "
+                "seen edge-on, where the rasteriser rounds depth most). At "
                 f"least {100 * share:.3f} % of the pixels were compared; at the others, on edges, "
                 "ray and rasteriser meet different objects.",
             ),
