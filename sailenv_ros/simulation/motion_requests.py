@@ -77,6 +77,10 @@ class MotionRequests:
         command: Any = {"linear_m_s": linear_m_s, "angular_rad_s": angular_rad_s}
         self._world.drive(mover, MoverCommand(**command))
 
+    def turn_mover(self, mover: str = "", *, pitch_rad: float = 0.0, yaw_rad: float = 0.0) -> None:
+        """Turn a mover at once, as a hand on a mouse does; what it walks by goes on."""
+        self._world.mover(mover).turn(pitch_rad, yaw_rad)
+
     def _confines(self, agent: str, distance_m: float) -> NDArray[np.float64]:
         """Give the planes of an agent's view; none while there is no such agent."""
         for record in self._agents:

@@ -1,0 +1,127 @@
+"""A frame as the page takes it: one binary message of a JSON head and a picture of each view.
+
+`Frame` in, bytes out. The picture is a JPEG, of ids a PNG, which loses nothing. The message begins
+with the head's length (4 bytes, little-endian); the pictures follow in the order of the head.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.frame import Frame
+from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.colours import view_picture
+
+__all__ = ["outline", "packed", "packed_frame", "view_png"]
+
+PNG_VIEWS = frozenset({"category", "instance", "flow_valid", "occlusion"})
+
+JPEG_QUALITY = 85
+
+_FAST_PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
+
+
+def packed(head: Mapping[str, Any], pieces: Iterable[bytes] = ()) -> bytes:
+    """Put a head and what belongs to it into one message."""
+    text = json.dumps(head, separators=(",", ":"), allow_nan=False).encode()
+    return b"".join([len(text).to_bytes(4, "little"), text, *pieces])
+
+
+def packed_frame(
+    frame: Frame,
+    views: Sequence[str],
+    *,
+    number: int,
+    categories: CategoryTable,
+    depth_range_m: float,
+    selected: int = 0,
+) -> bytes:
+    """Write a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+        Has at least the `views`; its instance view, if any, tells what is visible.
+    number : int
+        By which the page asks for its values and says that it has shown it.
+    depth_range_m : float
+        Depth that is shown as black [m].
+    selected : int
+        Instance whose outline is told; 0 for none.
+    """
+    pictures = [
+        _encoded(view, _picture(frame, view, categories, depth_range_m)) for view in views
+    ]
+    lens = frame.camera.intrinsics
+    head: dict[str, Any] = {
+        "type": "frame",
+        "number": number,
+        "agent": frame.agent,
+        "scene": frame.scene,
+        "epoch": frame.epoch,
+        "revision": frame.revision,
+        "sequence": frame.sequence,
+        "time_s": frame.stamp_ns * 1e-9,
+        "width": lens.width,
+        "height": lens.height,
+        "fov_deg": lens.vertical_fov_deg,
+        "lens": [lens.fx, lens.fy, lens.cx, lens.cy],
+        "camera_from_world": frame.camera.camera_from_world[:3].ravel().tolist(),
+        "position": list(frame.camera.pose.position_m),
+        "rpy_deg": list(frame.camera.pose.rpy_deg),
+        "timings_ms": {name: 1e3 * seconds for name, seconds in frame.timings_s.items()},
+        "views": [
+            {"name": view, "mime": mime, "size": len(data)}
+            for view, (mime, data) in zip(views, pictures, strict=True)
+        ],
+    }
+    if "instance" in frame.views:
+        instance = frame["instance"]
+        counts = np.bincount(instance.reshape(-1))
+        ids = np.flatnonzero(counts[1:]) + 1
+        head["visible"] = np.stack([ids, counts[ids]], axis=-1).tolist()
+        head["outline"] = outline(instance, selected) if selected else []
+    return packed(head, (data for _, data in pictures))
+
+
+def view_png(frame: Frame, view: str, *, categories: CategoryTable, depth_range_m: float) -> bytes:
+    """Give one view's picture as a PNG file."""
+    return _png(_picture(frame, view, categories, depth_range_m), ())
+
+
+def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:
+    """Give the closed lines around an instance's pixels: u, v, u, v, … of each [px]."""
+    mask = (instance == number).astype(np.uint8)
+    lines, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
+    return [line.reshape(-1).tolist() for line in lines]
+
+
+def _picture(
+    frame: Frame, view: str, categories: CategoryTable, depth_range_m: float
+) -> NDArray[np.uint8]:
+    return view_picture(
+        view,
+        frame[view],
+        table=categories,
+        near_m=frame.camera.intrinsics.near_m,
+        depth_range_m=depth_range_m,
+    )
+
+
+def _encoded(view: str, picture: NDArray[np.uint8]) -> tuple[str, bytes]:
+    if view in PNG_VIEWS:
+        return "image/png", _png(picture, _FAST_PNG)
+    settings = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY)
+    _, data = cv2.imencode(".jpg", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)
+    return "image/jpeg", data.tobytes()
+
+
+def _png(picture: NDArray[np.uint8], settings: Sequence[int]) -> bytes:
+    _, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)
+    return bytes(data.tobytes())
