@@ -20,6 +20,7 @@ from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.simulation.edit_requests import EditRequests
 
 __all__ = ["REQUESTS", "Requests", "wait_for"]
 
@@ -29,6 +30,7 @@ REQUESTS = frozenset(
     {
         "attach_behaviour",
         "capture",
+        "change_object",
         "change_scene",
         "delete_agent",
         "despawn_object",
@@ -39,12 +41,16 @@ REQUESTS = frozenset(
         "lights",
         "load_scenario",
         "move_object",
+        "mover_pose",
         "pause",
         "register_agent",
         "reset",
         "resume",
+        "save_scene",
+        "scene_text",
         "set_ambient_light",
         "set_background",
+        "set_environment",
         "set_follow",
         "set_intrinsics",
         "set_light",
@@ -54,6 +60,7 @@ REQUESTS = frozenset(
         "set_rate",
         "set_real_time_factor",
         "set_rotation",
+        "set_waypoints",
         "spawn_object",
         "spawnable_display_names",
         "step",
@@ -65,7 +72,7 @@ REQUESTS = frozenset(
 """Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
 
 
-class Requests:
+class Requests(EditRequests):
     """The blocking methods; `Simulation` adds the queue that `request` puts them into."""
 
     def request(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:

@@ -17,8 +17,11 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light, light_named
 from sailenv_ros.model import Asset
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.entries import free_name
+from sailenv_ros.scene.describing import MOTION_KEYS, PLACE_KEYS
+from sailenv_ros.scene.entries import checked_scene, free_name, plain_value
+from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.simulation.agent_table import AgentTable
+from sailenv_ros.simulation.saving import environment_entry
 from sailenv_ros.simulation.scenario import scenario_entries
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
@@ -28,6 +31,21 @@ __all__ = ["Entries", "WorldRequests"]
 
 Entries: TypeAlias = Sequence[Mapping[str, Any]]
 """Objects as a scene file describes them, besides those of the scene."""
+
+CHANGEABLE = (
+    "name",
+    "category",
+    "scale",
+    "static",
+    "mass",
+    "gravity",
+    "friction",
+    "restitution",
+    "colour",
+    "metallic",
+    "roughness",
+)
+"""Keys of an object that `change_object` takes; it is moved by `move_object`."""
 
 _LIGHT_FIELDS = tuple(field.name for field in fields(Light) if field.name != "name")
 
@@ -88,6 +106,30 @@ class WorldRequests:
         _require_pose(pose)
         self._world.put_body(self._world.find(obj), pose, teleport=bool(teleport))
 
+    def change_object(self, obj: int | str, **changes: Any) -> None:
+        """Change what an object is, by the keys of a scene file; None takes the asset's own."""
+        world = self._world
+        instance_id = world.find(obj)
+        body = world.body(instance_id)
+        told = body.placement.entry
+        if told is None:
+            accepted = "one of the scene's own; parts of the room are described by its file alone"
+            raise InvalidRequest("object", body.placement.name, accepted)
+        for key in changes:
+            if key not in CHANGEABLE:
+                raise UnknownName("key of an object that can be changed", key, CHANGEABLE)
+        placement = self._library.placement(
+            {**_without_place(told), **_place(body.pose()), **changes},
+            world,
+            seed=self._seed,
+            start_s=0.0,
+        )
+        assert placement.entry is not None
+        changed = {key: getattr(placement.entry, key) for key in changes}
+        entry = told.model_copy(update=changed)
+        world.replace_body(instance_id, replace(placement, entry=entry))
+        self._announce()
+
     def get_object(self, obj: int | str) -> ObjectState:
         """Say what and where an object is."""
         return self._world.object_state(self._world.find(obj))
@@ -144,6 +186,20 @@ class WorldRequests:
         self._world.set_environment(changed)
         self._announce()
 
+    def set_environment(self, **changes: Any) -> None:
+        """Change the surroundings, by the keys of `environment` in a scene file."""
+        world = self._world
+        assert world.described is not None
+        for key in changes:
+            if key not in EnvironmentSpec.model_fields:
+                raise UnknownName("key of environment", key, EnvironmentSpec.model_fields)
+        entry = {**environment_entry(world), **plain_value(changes)}
+        data = {"version": 1, "environment": entry}
+        checked = checked_scene(data, self._library.knowledge, what="environment").environment
+        world.set_environment(self._library.environment(checked))
+        world.described = world.described.model_copy(update={"environment": checked})
+        self._announce()
+
     # -- scenarios -------------------------------------------------------------------------
 
     def load_scenario(self, scenario: str | Mapping[str, Any]) -> tuple[int, ...]:
@@ -176,3 +232,12 @@ class WorldRequests:
 def _require_pose(pose: object) -> None:
     if not isinstance(pose, Pose):
         raise InvalidRequest("pose", pose, "a sailenv_ros.geometry.Pose")
+
+
+def _without_place(entry: ObjectSpec) -> dict[str, Any]:
+    """Give the keys of an entry, but for where it is and how it moves."""
+    return entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, *MOTION_KEYS})
+
+
+def _place(pose: Pose) -> dict[str, Any]:
+    return {"position": pose.position_m, "orientation": pose.orientation_xyzw}

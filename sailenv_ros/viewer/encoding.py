@@ -55,9 +55,7 @@ def packed_frame(
     selected : int
         Instance whose outline is told; 0 for none.
     """
-    pictures = [
-        _encoded(view, _picture(frame, view, categories, depth_range_m)) for view in views
-    ]
+    pictures = [_encoded(view, _picture(frame, view, categories, depth_range_m)) for view in views]
     lens = frame.camera.intrinsics
     head: dict[str, Any] = {
         "type": "frame",

@@ -19,10 +19,11 @@ from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.scene.spec import ObjectSpec
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
 
-__all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement"]
+__all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement", "three"]
 
 Vector3 = tuple[float, float, float]
 
@@ -36,6 +37,9 @@ CAREFUL_SPEED_M_S = 0.5
 
 MAX_DEPTH_M = 0.002
 OUT_OF_WALLS_PER_S = 24.0
+
+TOUCH_M = 0.02
+"""What is nearer may rest on a body."""
 
 _LINK_OF_BASE = -1
 
@@ -68,6 +72,8 @@ class Placement:
     angular_velocity : (3,) tuple of float
         At the start, world frame [rad/s].
     behaviours : tuple of RunningBehaviour
+    entry : ObjectSpec or None
+        What a scene file says of it; None for a part of a room.
     """
 
     name: str
@@ -83,6 +89,7 @@ class Placement:
     linear_velocity: Vector3 = (0.0, 0.0, 0.0)
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
     behaviours: tuple[RunningBehaviour, ...] = ()
+    entry: ObjectSpec | None = None
 
     def __post_init__(self) -> None:
         hollow = any(isinstance(shape, TriangleShape) for shape in self.asset.collision)
@@ -97,10 +104,26 @@ class Placement:
 
 
 class Body:
-    """A placed object; static ones keep the very pose that they were given."""
+    """A placed object; static ones keep the very pose that they were given.
+
+    Attributes
+    ----------
+    placement : Placement
+    mass_kg : float
+        0 for what is static [kg].
+    arranged : bool
+        True until it is put elsewhere by hand: whatever moves it since is physics.
+    told_pose : Pose
+        Where its entry puts it.
+    behaves_as_told : bool
+        True while its behaviours are those of its entry.
+    """
 
     def __init__(self, client: BulletClient, placement: Placement, gravity: Vector3) -> None:
         self.placement = placement
+        self.arranged = True
+        self.told_pose = placement.pose
+        self.behaves_as_told = True
         self._behaviours = placement.behaviours
         self._is_fast = False
         self._client = client
@@ -151,6 +174,7 @@ class Body:
 
     def put(self, pose: Pose) -> None:
         """Set the pose and stop the body."""
+        self.arranged = False
         self._static_pose = pose
         self._matrix = pose.matrix()
         self._client.resetBasePositionAndOrientation(
@@ -184,11 +208,11 @@ class Body:
             category=instance.category,
             pose=self.pose(),
             scale=placement.scale,
-            size_m=_three((high - low) * np.asarray(placement.scale)),
+            size_m=three((high - low) * np.asarray(placement.scale)),
             static=placement.static,
             mass_kg=self.mass_kg,
-            linear_velocity=_three(linear),
-            angular_velocity=_three(angular),
+            linear_velocity=three(linear),
+            angular_velocity=three(angular),
             behaviours=tuple(
                 {"type": running.kind.type, **running.parameters.told()}
                 for running in self._behaviours
@@ -221,10 +245,12 @@ class Body:
                 f"at most {MAX_BEHAVIOURS}; detach them first",
             )
         self._behaviours = (*self._behaviours, running)
+        self.behaves_as_told = False
 
     def detach(self) -> None:
         """Let no behaviour move it any more; its speed remains."""
         self._behaviours = ()
+        self.behaves_as_told = False
 
     def act(self, time_s: float, confines: Confines) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""
@@ -238,6 +264,14 @@ class Body:
             self._is_fast = self._tame()
         if self._lift is not None:
             self._push(self._lift)
+
+    def touching_ids(self) -> frozenset[int]:
+        """Give PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
+        low, high = self._client.getAABB(self._id)
+        found = self._client.getOverlappingObjects(
+            [edge - TOUCH_M for edge in low], [edge + TOUCH_M for edge in high]
+        )
+        return frozenset(body for body, _ in found or ())
 
     @property
     def collides(self) -> bool:
@@ -373,7 +407,8 @@ class Body:
         return matrix
 
 
-def _three(values: NDArray[np.float64]) -> Vector3:
+def three(values: NDArray[np.float64]) -> Vector3:
+    """Give three numbers as a tuple."""
     return float(values[0]), float(values[1]), float(values[2])
 
 

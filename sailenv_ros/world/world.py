@@ -8,6 +8,7 @@ the same bytes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -17,8 +18,9 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
-from sailenv_ros.world.bodies import Body, Confines, Placement
+from sailenv_ros.world.bodies import Body, Confines, Placement, three
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.stand import Stand
@@ -41,9 +43,12 @@ class World:
         Get instance ids 1, 2, 3 … in this order.
     movers : sequence of Mover
         At least one.
+    described : SceneSpec or None
+        What a scene file says of it all; None where there is none.
 
     Attributes
     ----------
+    described : SceneSpec or None
     confines : callable
         ``confines(agent, distance_m)`` gives the (N, 4) planes of an agent's view; none at all
         unless whoever knows the agents has set it.
@@ -61,10 +66,12 @@ class World:
         lights: Sequence[Light] = (),
         environment: Environment | None = None,
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
+        described: SceneSpec | None = None,
     ) -> None:
         self.scene = scene
         self.epoch = epoch
         self.categories = categories
+        self.described = described
         self._next_revision = next_revision
         self._gravity = gravity
         self._lights = tuple(lights)
@@ -87,6 +94,10 @@ class World:
             self.close()
             raise
         self._contents = self._make_contents()
+        self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
+        self._room_parts = frozenset(
+            body.placement.name for body in self._bodies.values() if body.placement.entry is None
+        )
 
     # -- time ------------------------------------------------------------------------------
 
@@ -137,6 +148,17 @@ class World:
     def movers(self) -> Mapping[str, Mover]:
         """The movers by name, in the scene's order; read-only."""
         return MappingProxyType(self._movers)
+
+    @property
+    def room_parts(self) -> frozenset[str]:
+        """Names of what a room consisted of at the start."""
+        return self._room_parts
+
+    @property
+    def first_bodies(self) -> Mapping[str, Body]:
+        """The bodies of the start that are still there, by the names that they had then."""
+        named = self._first_names.items()
+        return {name: self._bodies[id_] for id_, name in named if id_ in self._bodies}
 
     @property
     def moving_ids(self) -> frozenset[int]:
@@ -226,14 +248,54 @@ class World:
 
     def despawn(self, instance_id: int) -> None:
         """Take an object out of the world; its id is not used again."""
-        self.body(instance_id).remove()
+        gone = self.body(instance_id)
+        self._rouse(gone)
+        gone.remove()
         del self._bodies[instance_id]
         del self._histories[instance_id]
         self._changed()
 
+    def replace_body(self, instance_id: int, placement: Placement) -> None:
+        """Make of an object what another placement says; it stays where it is, and its id too.
+
+        It keeps its motion and its behaviours. Another scale cuts its past off: a point of its
+        surface has no place of before.
+
+        Raises
+        ------
+        NameTaken
+            If another object has the placement's name.
+        InvalidRequest
+            If it cannot be such an object; it is as it was then.
+        """
+        old = self.body(instance_id)
+        if placement.name != old.placement.name:
+            self._require_free_name(placement.name)
+        linear, angular = old.velocity()
+        placement = replace(
+            placement,
+            pose=old.pose(),
+            linear_velocity=three(linear),
+            angular_velocity=three(angular),
+            behaviours=old.behaviours,
+        )
+        new = Body(self._client, placement, self._gravity)
+        same_size = placement.scale == old.placement.scale
+        new.arranged = old.arranged and same_size
+        new.told_pose = old.told_pose
+        new.behaves_as_told = old.behaves_as_told
+        self._rouse(old)
+        old.remove()
+        self._bodies[instance_id] = new
+        if not same_size:
+            self._histories[instance_id] = self._new_history()
+        self._changed()
+
     def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:
         """Move an object and stop it; `teleport` cuts its past off, so flow does not see a jump."""
-        self.body(instance_id).put(pose)
+        moved = self.body(instance_id)
+        self._rouse(moved)
+        moved.put(pose)
         if teleport:
             self._histories[instance_id] = self._new_history()
         self._snapshot = None
@@ -275,8 +337,7 @@ class World:
         client.setPhysicsEngineParameter(deterministicOverlappingPairs=1, numSolverIterations=50)
 
     def _add(self, placement: Placement) -> int:
-        if any(body.placement.name == placement.name for body in self._bodies.values()):
-            raise NameTaken("object", placement.name)
+        self._require_free_name(placement.name)
         if self._last_id >= MAX_INSTANCE_ID:
             raise InvalidRequest(
                 "number of objects",
@@ -288,6 +349,17 @@ class World:
         self._bodies[self._last_id] = body
         self._histories[self._last_id] = self._new_history()
         return self._last_id
+
+    def _require_free_name(self, name: str) -> None:
+        if any(body.placement.name == name for body in self._bodies.values()):
+            raise NameTaken("object", name)
+
+    def _rouse(self, body: Body) -> None:
+        """Wake what sleeps beside or upon a body that is about to leave its place."""
+        touching = body.touching_ids()
+        for other in self._bodies.values():
+            if other is not body and other.bullet_id in touching:
+                other.wake()
 
     def _new_history(self) -> int:
         self._last_history += 1
