@@ -18,7 +18,7 @@ from sailenv_ros.frame import Frame
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 
-__all__ = ["outline", "packed", "packed_frame", "view_png"]
+__all__ = ["outline", "packed", "packed_frame", "picture_png", "view_png"]
 
 PNG_VIEWS = frozenset({"category", "instance", "flow_valid", "occlusion"})
 
@@ -90,7 +90,12 @@ def packed_frame(
 
 def view_png(frame: Frame, view: str, *, categories: CategoryTable, depth_range_m: float) -> bytes:
     """Give one view's picture as a PNG file."""
-    return _png(_picture(frame, view, categories, depth_range_m), ())
+    return picture_png(_picture(frame, view, categories, depth_range_m))
+
+
+def picture_png(picture: NDArray[np.uint8]) -> bytes:
+    """Give a picture (H, W, 3) as a PNG file."""
+    return _png(picture, ())
 
 
 def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:

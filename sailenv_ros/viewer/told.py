@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
+from sailenv_ros.assets.skies import sky_files
+from sailenv_ros.assets.sources import installed_packs
 from sailenv_ros.behaviours import BehaviourKind, behaviour_kinds
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import UNLABELLED_CATEGORY
@@ -16,7 +18,7 @@ from sailenv_ros.lights import Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene_info import MoverInfo, SceneInfo
 
-__all__ = ["told_behaviours", "told_object", "told_pose", "told_scene"]
+__all__ = ["told_behaviours", "told_object", "told_pose", "told_scene", "told_skies"]
 
 _LIGHT_NUMBERS = ("intensity", "indirect_multiplier", "range_m")
 
@@ -103,6 +105,11 @@ def told_pose(pose: Pose) -> dict[str, Any]:
 def told_behaviours() -> list[dict[str, Any]]:
     """Tell which behaviours there are, with their parameters."""
     return [_behaviour(kind) for kind in behaviour_kinds().values()]
+
+
+def told_skies() -> list[str]:
+    """Tell the names of the pictures of skies on this machine; reads folders."""
+    return sorted(sky_files(pack.folder for pack in installed_packs()))
 
 
 def _behaviour(kind: BehaviourKind) -> dict[str, Any]:
