@@ -10,6 +10,7 @@ PACKAGE = "sailenv_ros"
 
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
+    "aiohttp>=3.9",
     "coacd>=1.0.7",
     "glcontext>=3.0",
     # Compresses what clients of the gateway want gzipped, many times faster than zlib.
@@ -56,6 +57,8 @@ DEV = [
     "jsonschema",
     "mcap-ros2-support",
     "mypy",
+    # Drives Debian's Chromium, for the tests of the window.
+    "playwright>=1.40",
     "pycocotools",
     "pytest>=8.0",
     "pytest-timeout",
@@ -100,6 +103,7 @@ setup(
     package_data={
         "sailenv_ros": ["py.typed"],
         "sailenv_ros.render": ["shaders/*"],
+        "sailenv_ros.viewer": ["page/*"],
         "sailenv_msgs_py": ["py.typed"],
     },
     data_files=data_files(),

@@ -40,7 +40,8 @@ def pixel_of(frame: Frame, u: object, v: object) -> tuple[int, int]:
     for what, value, end in (("column", u, width), ("row", v, height)):
         if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < end:
             raise InvalidRequest(what, value, f"an integer from 0 to {end - 1}")
-    assert isinstance(u, int) and isinstance(v, int)
+    assert isinstance(u, int)
+    assert isinstance(v, int)
     return u, v
 
 
