@@ -113,6 +113,12 @@ class Client:
             accepted = f"something that takes at most {self._limits.request_s:g} s"
             raise InvalidRequest("request", request, accepted) from None
 
+    @property
+    def rendered_views(self) -> tuple[str, ...]:
+        """Views that are rendered for this client now."""
+        watch = self._watch
+        return () if watch is None else watch.rendered_views
+
     # -- of the server ---------------------------------------------------------------------
 
     async def serve(self) -> None:

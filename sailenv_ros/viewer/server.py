@@ -18,6 +18,7 @@ from typing import Any
 
 from aiohttp import web
 
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import DeadlineExceeded, InvalidRequest
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
@@ -125,6 +126,15 @@ class ViewerServer:
     def clients(self) -> int:
         """How many sockets are open now."""
         return len(self._clients)
+
+    @property
+    def rendered_views(self) -> frozenset[str]:
+        """Views that are rendered for somebody here now; none for those that stall."""
+        return frozenset(view for client in tuple(self._clients) for view in client.rendered_views)
+
+    def set_intrinsics(self, intrinsics: CameraIntrinsics) -> None:
+        """Change what the debug agent sees: its pictures' size and its angle of view."""
+        self._debug_agent.set_intrinsics(intrinsics)
 
     def close(self) -> None:
         """Disconnect everybody and stop to listen; a second call does nothing."""

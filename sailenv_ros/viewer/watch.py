@@ -81,6 +81,7 @@ class Watch:
         self._shown = self._number
         self._turn = threading.Condition()
         self._closed = False
+        self._stream: FrameStream | None = None
         self._frames: collections.OrderedDict[int, Frame] = collections.OrderedDict()
         self._thread = threading.Thread(target=self._run, name="sailenv-viewer-watch", daemon=True)
         self._thread.start()
@@ -89,6 +90,12 @@ class Watch:
     def next_number(self) -> int:
         """Number of the frame after the last one."""
         return self._number + 1
+
+    @property
+    def rendered_views(self) -> tuple[str, ...]:
+        """Views that are rendered for it now; none while its page stalls."""
+        stream = self._stream
+        return () if stream is None or stream.closed else stream.views
 
     def show(self, views: Sequence[str]) -> None:
         """Change what is shown, from the next frame on."""
@@ -143,6 +150,7 @@ class Watch:
                 self._debug_agent.begin()
             try:
                 with self._simulation.stream(self.agent, self._rendered()) as stream:
+                    self._stream = stream
                     self._pump(stream)
             finally:
                 if own:
