@@ -54,7 +54,7 @@ MOTION_KEYS = (*VELOCITY_KEYS, "behaviours")
 
 LENGTH_DECIMALS = 6
 ANGLE_DECIMALS = 5
-UNIT_DECIMALS = 12
+UNIT_DECIMALS = 9
 
 SAME_TURN = 2e-7
 """Quaternions whose components differ by no more mean the same."""
@@ -138,10 +138,12 @@ def rounded(numbers: Sequence[float], decimals: int) -> list[float]:
 
 def _values(light: Light) -> dict[str, Any]:
     """Give a light's attributes by their keys in a file, which have no units in their names."""
-    return {
+    values = {
         field.name.removesuffix("_m").removesuffix("_deg"): getattr(light, field.name)
         for field in fields(Light)
     }
+    values["direction"] = tuple(rounded(light.direction, UNIT_DECIMALS))
+    return values
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -34,7 +34,8 @@ def dump_scene(spec: SceneSpec) -> str:
 def _section(key: str, value: object) -> str:
     content = _Section({key: value})
     text = yaml.dump(content, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=WIDTH)
-    return f"\n{text}" if isinstance(value, dict | list) and value else text
+    parts = value if isinstance(value, list) else [value]
+    return f"\n{text}" if any(isinstance(part, dict) for part in parts) else text
 
 
 class _Section(dict[str, object]):

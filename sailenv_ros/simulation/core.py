@@ -96,6 +96,11 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
         return self._world
 
     @property
+    def library(self) -> SceneLibrary:
+        """Where scenes and assets come from."""
+        return self._library
+
+    @property
     def runs_by_itself(self) -> bool:
         """True if simulated time follows the wall clock now."""
         return self._mode == "realtime" and not self._paused

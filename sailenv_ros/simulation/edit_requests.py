@@ -88,6 +88,27 @@ class EditRequests:
         result: Pose = self._ask("mover_pose", timeout_s, mover)
         return result
 
+    def thumbnail(self, asset: str, *, timeout_s: float = 60.0) -> bytes:
+        """Give a picture of an object of the catalogue: PNG, 160 by 120 pixels.
+
+        Drawn at the first request by a process beside the simulator, which goes on meanwhile, and
+        kept in the user's cache for the next time.
+
+        Parameters
+        ----------
+        asset : str
+            Catalogue or display name.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such asset.
+        RenderError, DeadlineExceeded
+            If it cannot be drawn.
+        """
+        result: bytes = self._ask("thumbnail", timeout_s, asset)
+        return result
+
     def scene_text(
         self,
         *,

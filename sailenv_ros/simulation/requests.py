@@ -64,12 +64,14 @@ REQUESTS = frozenset(
         "spawn_object",
         "spawnable_display_names",
         "step",
+        "thumbnail",
         "toggle_follow",
         "turn_mover",
         "upload_model",
     }
 )
-"""Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
+"""Names that `Simulation.request` takes: public requests of `SimulationCore`, and what needs no
+world: models and thumbnails."""
 
 
 class Requests(EditRequests):

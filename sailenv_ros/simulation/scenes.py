@@ -14,6 +14,7 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.own_pack import add_to_own_pack
+from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.places import standard_pack_folder
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
@@ -76,6 +77,7 @@ class SceneLibrary:
         self._skies = sky_files(pack.folder for pack in self._packs)
         self._assets = AssetLibrary(installed_sources(self._packs))
         self._uploads = 0
+        self._uploaded: set[str] = set()
         self._unkept: set[str] = set()
         self._files: dict[str, Path] = {}
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
@@ -169,6 +171,17 @@ class SceneLibrary:
         """
         return self._assets.canonical(name)
 
+    def asset_fingerprint(self, name: str) -> str:
+        """Give what changes whenever an asset does; empty for one that came to this simulator."""
+        source = self._assets.source(name)
+        if isinstance(source, AssetPack):
+            return source.fingerprint(name)
+        return "" if name in self._uploaded else "of the package itself"
+
+    def peek_asset(self, name: str) -> Asset:
+        """Give an asset without keeping one that no world needs; see `AssetLibrary.get`."""
+        return self._assets.peek(name)
+
     def add_upload(self, asset: Asset, *, rename: bool) -> str:
         """Add a user's asset to the catalogue; give its name there.
 
@@ -195,6 +208,7 @@ class SceneLibrary:
                 break
         self._assets.add(asset)
         self._uploads += 1
+        self._uploaded.add(asset.name)
         self._unkept.add(asset.name)
         return asset.name
 
