@@ -10,7 +10,7 @@ import asyncio
 import contextlib
 import json
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
@@ -83,6 +83,7 @@ class Client:
         self._told_revision = (-1, -1)
         self._stats: dict[str, Any] | None = None
         self._running: set[asyncio.Task[None]] = set()
+        self._sends: set[asyncio.Task[None]] = set()
         self._second, self._messages = 0.0, 0
 
     # -- of the desk, for commands ---------------------------------------------------------
@@ -130,10 +131,10 @@ class Client:
             await self._listen()
         finally:
             self._end_watch()
-            for task in (telling, *self._running):
+            ending = [telling, *self._running, *self._sends]
+            for task in ending:
                 task.cancel()
-            with contextlib.suppress(Exception):
-                await asyncio.wait([telling, *self._running], timeout=1.0)
+            await asyncio.wait(ending, timeout=1.0)
 
     def scene_changed(self) -> None:
         """Have the scene told when there is time to."""
@@ -317,16 +318,21 @@ class Client:
 
     def _send_frame(self, message: bytes) -> None:
         """Send from the watch's thread; at most as many wait as its page may have on their way."""
-        self._from_thread(self._send(message))
+        self._from_thread(lambda: self._send(message))
 
     def _watch_ended(self, why: str) -> None:
-        self._from_thread(self._send_json({"type": "watch_ended", "why": why[:MAX_WORDS]}))
+        words = {"type": "watch_ended", "why": why[:MAX_WORDS]}
+        self._from_thread(lambda: self._send_json(words))
 
-    def _from_thread(self, sending: Any) -> None:
-        try:
-            asyncio.run_coroutine_threadsafe(_quietly(sending), self._loop)
-        except RuntimeError:  # the loop has ended
-            sending.close()
+    def _from_thread(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._begin_sending, sending)
+
+    def _begin_sending(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        if not self._socket.closed:
+            task = asyncio.create_task(_quietly(sending()))
+            self._sends.add(task)
+            task.add_done_callback(self._sends.discard)
 
     async def _refuse(self, number: object, error: SailenvError) -> None:
         words = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
@@ -364,7 +370,7 @@ class _File:
         self.name, self.data, self.mime = name, data, "image/png"
 
 
-async def _quietly(sending: Any) -> None:
+async def _quietly(sending: Coroutine[Any, Any, None]) -> None:
     with contextlib.suppress(ConnectionError, RuntimeError):
         await sending
 

@@ -250,7 +250,7 @@ async def spawn(desk: Desk, given: Arguments) -> Any:
     number = await desk.ask(
         "spawn_object", asset, pose=Pose.from_rpy_deg(point, (0.0, 0.0, yaw_deg))
     )
-    return told_object(await desk.ask("get_object", number))
+    return await _set_down(desk, number, point)
 
 
 @_changes
@@ -258,7 +258,7 @@ async def place(desk: Desk, given: Arguments) -> Any:
     """Move an object to where a pixel is seen."""
     frame = desk.frame(given.get("frame"))
     point = standing_point(frame, *pixel_of(frame, given.get("u"), given.get("v")))
-    return await _moved(desk, given.integer("object"), position=point)
+    return await _set_down(desk, given.integer("object"), point)
 
 
 @_changes
@@ -325,8 +325,10 @@ def _pose(given: Arguments) -> Pose:
     return Pose.from_rpy_deg(given.numbers("position", 3), given.numbers("rpy_deg", 3))
 
 
-async def _moved(desk: Desk, number: int, *, position: tuple[float, float, float]) -> Any:
+async def _set_down(desk: Desk, number: int, point: tuple[float, float, float]) -> Any:
+    """Move an object so that it stands on a point, whatever its origin is."""
     state = await desk.ask("get_object", number)
-    pose = Pose(position, state.pose.orientation_xyzw)
+    x, y, z = point
+    pose = Pose((x, y, z - state.bottom_m), state.pose.orientation_xyzw)
     await desk.ask("move_object", number, pose, teleport=True)
     return told_object(await desk.ask("get_object", number))

@@ -19,7 +19,7 @@ from typing import Any
 from aiohttp import web
 
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest
+from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, SailenvError
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.requests import wait_for
@@ -39,6 +39,8 @@ DEFAULT_PORT = 8090
 
 STATS_S = 0.5
 """Time between two reports of how fast the simulation runs [s]."""
+
+MAX_NAME = 200
 
 _START_S = 10.0
 _STOP_S = 5.0
@@ -177,6 +179,7 @@ class ViewerServer:
         app = web.Application(middlewares=[self._checked])
         app.router.add_get("/", self._page)
         app.router.add_get("/socket", self._socket)
+        app.router.add_get("/thumbnail/{asset}", self._thumbnail)
         app.router.add_get("/{name}", self._page_file)
         runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=1.0)
         await runner.setup()
@@ -207,7 +210,8 @@ class ViewerServer:
             refusal.headers.update(SECURITY_HEADERS)
             raise
         if not response.prepared:
-            response.headers.update(SECURITY_HEADERS)
+            for name, value in SECURITY_HEADERS.items():
+                response.headers.setdefault(name, value)
         return response
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
@@ -216,6 +220,20 @@ class ViewerServer:
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
         return self._file(request.match_info["name"])
+
+    async def _thumbnail(self, request: web.Request) -> web.StreamResponse:
+        """Give the picture of a catalogue's object; made now if it was not yet."""
+        fault = self._guard.fault_of_token(request.query.get("token", ""))
+        if fault:
+            return self._refusal(fault)
+        try:
+            making = self._simulation.request("thumbnail", request.match_info["asset"][:MAX_NAME])
+            data = await asyncio.wait_for(asyncio.wrap_future(making), self._limits.request_s)
+        except (SailenvError, asyncio.TimeoutError) as problem:
+            return web.Response(status=404, text=f"there is no such picture: {problem}\n")
+        return web.Response(
+            body=data, content_type="image/png", headers={"Cache-Control": "private, max-age=600"}
+        )
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         fault = self._guard.fault_of_socket(request.headers, request.query.get("token", ""))

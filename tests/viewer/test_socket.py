@@ -137,19 +137,20 @@ def test_a_paused_scene_is_drawn_again_when_it_changes(server: ViewerServer) -> 
 
 
 def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerServer) -> None:
-    """Its origin lies within a hand of the point that the pixel shows."""
+    """Its foot lies on the point that the pixel shows, although a cube's origin is its middle."""
 
     async def look() -> None:
         async with connected(server) as client:
+            await client.ask("pause")
             await client.ask("watch", agent="debug_agent", views=["rgb"])
             head = await client.frame()
             made = await client.ask("spawn", asset="cube", frame=head["number"], u=80, v=110)
             matrix = np.array(head["camera_from_world"]).reshape(3, 4)
-            seen = matrix[:, :3] @ made["position"] + matrix[:, 3]
+            foot = np.array(made["position"]) - (0.0, 0.0, 0.5 * made["size"][2])
+            seen = matrix[:, :3] @ foot + matrix[:, 3]
             fx, fy, cx, cy = head["lens"]
-            u, v = fx * seen[0] / seen[2] + cx, fy * seen[1] / seen[2] + cy
-            assert abs(u - 80) < 3
-            assert abs(v - 110) < 3
+            assert fx * seen[0] / seen[2] + cx == pytest.approx(80, abs=1)
+            assert fy * seen[1] / seen[2] + cy == pytest.approx(110, abs=1)
             changed = await client.ask("change", object=made["id"], changes={"scale": 0.5})
             assert changed["scale"] == [0.5, 0.5, 0.5]
             moved = await client.ask(
@@ -157,6 +158,7 @@ def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerServer) -
             )
             assert moved["position"][:2] == pytest.approx([1, 2], abs=0.01)
             await client.ask("despawn", object=made["id"])
+            await client.ask("resume")
 
     asyncio.run(look())
 

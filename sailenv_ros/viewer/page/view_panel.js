@@ -35,7 +35,9 @@ export class ViewPanel {
   }
 
   showValues(values) {
-    this.probe.replaceChildren(...pairs(values ? told(values) : [["", "Point at a picture."]]));
+    this.probe.replaceChildren(
+      ...(values ? pairs(told(values)) : [el("dd", { class: "whole" }, "Point at a picture.")]),
+    );
   }
 
   #showLegend(head) {

