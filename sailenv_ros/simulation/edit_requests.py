@@ -13,7 +13,7 @@ __all__ = ["EditRequests"]
 class EditRequests:
     """What a scene is edited by, beside spawning, moving and lights; see `Requests`."""
 
-    def change_object(self, obj: int | str, *, timeout_s: float = 30.0, **changes: Any) -> None:
+    def change_object(self, obj: int | str, /, *, timeout_s: float = 30.0, **changes: Any) -> None:
         """Change what an object is; its id, its place and its motion stay.
 
         Parameters
@@ -33,7 +33,7 @@ class EditRequests:
         """
         self._ask("change_object", timeout_s, obj, **changes)
 
-    def set_environment(self, *, timeout_s: float = 30.0, **changes: Any) -> None:
+    def set_environment(self, /, *, timeout_s: float = 30.0, **changes: Any) -> None:
         """Change the surroundings, by the keys of `environment` in a scene file.
 
         Raises

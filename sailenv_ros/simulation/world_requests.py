@@ -106,7 +106,7 @@ class WorldRequests:
         _require_pose(pose)
         self._world.put_body(self._world.find(obj), pose, teleport=bool(teleport))
 
-    def change_object(self, obj: int | str, **changes: Any) -> None:
+    def change_object(self, obj: int | str, /, **changes: Any) -> None:
         """Change what an object is, by the keys of a scene file; None takes the asset's own."""
         world = self._world
         instance_id = world.find(obj)
@@ -186,7 +186,7 @@ class WorldRequests:
         self._world.set_environment(changed)
         self._announce()
 
-    def set_environment(self, **changes: Any) -> None:
+    def set_environment(self, /, **changes: Any) -> None:
         """Change the surroundings, by the keys of `environment` in a scene file."""
         world = self._world
         assert world.described is not None

@@ -13,6 +13,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
@@ -76,6 +77,7 @@ class World:
         self._gravity = gravity
         self._lights = tuple(lights)
         self._environment = environment or Environment()
+        self._baked: BakedLight | None = None
         self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
         self._bodies: dict[int, Body] = {}
@@ -289,6 +291,7 @@ class World:
         self._bodies[instance_id] = new
         if not same_size:
             self._histories[instance_id] = self._new_history()
+            self._forget_chart(instance_id)
         self._changed()
 
     def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:
@@ -321,6 +324,11 @@ class World:
     def set_environment(self, environment: Environment) -> None:
         """Replace ambient light, background and exposure."""
         self._environment = environment
+        self._changed()
+
+    def set_baked(self, baked: BakedLight | None) -> None:
+        """Replace the light that was worked out beforehand for what stands still."""
+        self._baked = baked and replace(baked, environment=self._environment)
         self._changed()
 
     def close(self) -> None:
@@ -361,6 +369,12 @@ class World:
             if other is not body and other.bullet_id in touching:
                 other.wake()
 
+    def _forget_chart(self, instance_id: int) -> None:
+        """Take the baked light off an instance whose surface is another now."""
+        if self._baked is not None and instance_id in self._baked.charts:
+            charts = {id_: c for id_, c in self._baked.charts.items() if id_ != instance_id}
+            self._baked = replace(self._baked, charts=charts)
+
     def _new_history(self) -> int:
         self._last_history += 1
         return self._last_history
@@ -378,6 +392,7 @@ class World:
             categories=self.categories,
             lights=self._lights,
             environment=self._environment,
+            baked=self._baked,
         )
 
     def _drawn(self, instance_id: int, placement: Placement) -> DrawnInstance:

@@ -17,9 +17,13 @@ vec3 filmic(vec3 c) {
 }
 
 vec4 finished(vec3 radiance) {
+#ifdef LINEAR
+    return vec4(min(radiance, vec3(6e4)), 1.0);
+#else
     vec3 c = filmic(radiance * lens.w);
     // The sRGB curve as a sum of roots, within 0.001 of it: powers cost a CPU more than the lamps.
     vec3 root = sqrt(c), fourth = sqrt(root), eighth = sqrt(fourth);
     c = max(0.662002687 * root + 0.68412206 * fourth - 0.323583601 * eighth - 0.022541147 * c, 0.0);
     return vec4(c, dot(c, vec3(0.299, 0.587, 0.114)));
+#endif
 }

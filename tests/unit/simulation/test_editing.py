@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from sailenv_ros.baked_light import BakedLight, LightChart, ProbeGrid, Unwrapping
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
@@ -113,6 +115,24 @@ def test_another_scale_cuts_the_past_off(core: SimulationCore) -> None:
     core.change_object("toy", scale=0.3)
     assert history(core, "toy") not in before
     assert history(core, "cup") == before[1]
+
+
+def test_another_scale_takes_the_baked_light_off(core: SimulationCore) -> None:
+    """Light was baked for a surface of another size; that of the others stays."""
+    table, floor = core.world.find("table"), core.world.find("floor")
+    chart = LightChart(
+        unwrapping=Unwrapping(vertices=(), triangles=(), uvs=()),
+        offset=(0.0, 0.0),
+        scale=(1.0, 1.0),
+        world_from_body=np.eye(4),
+    )
+    probes = ProbeGrid(origin_m=(0.0, 0.0, 0.0), spacing_m=(1.0, 1.0, 1.0), shape=(1, 1, 1))
+    charts = {table: chart, floor: chart}
+    core.world.set_baked(BakedLight(fingerprint="x", charts=charts, layers=(), probes=probes))
+    core.change_object("table", colour="#123456")
+    assert set(core.world.contents.baked.charts) == {table, floor}
+    core.change_object("table", scale=0.5)
+    assert set(core.world.contents.baked.charts) == {floor}
 
 
 def test_a_changed_object_goes_on_as_it_moved(core: SimulationCore) -> None:
