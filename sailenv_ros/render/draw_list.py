@@ -109,12 +109,23 @@ class Batch:
         if self.count:
             self.commands.write(self._all[order].tobytes())
 
+    def least(self, distance: NDArray[np.float64]) -> float:
+        """Give the least of its parts' distances."""
+        return float(distance[self._parts].min())
+
 
 class DrawList:
     """The draws of one scene's contents.
 
-    Parts whose material is see-through (``blend``) are not drawn: their pixels show, and are
-    labelled as, what lies behind.
+    Parameters
+    ----------
+    context : Context
+    contents : SceneContents
+    geometry : GeometryBuffers
+    materials : MaterialBuffers
+    see_through : bool
+        True for the parts whose material is see-through (``blend``), each in a batch of its own;
+        False for all others.
     """
 
     def __init__(
@@ -123,6 +134,8 @@ class DrawList:
         contents: SceneContents,
         geometry: GeometryBuffers,
         materials: MaterialBuffers,
+        *,
+        see_through: bool = False,
     ) -> None:
         parts = sorted(
             (
@@ -131,7 +144,7 @@ class DrawList:
                     zip(contents.instances, drawn_meshes(contents), strict=True)
                 )
                 for part, mesh in zip(drawn.model.parts, meshes, strict=True)
-                if part.material.alpha != "blend"
+                if (part.material.alpha == "blend") == see_through
             ),
             key=lambda entry: (entry[0], entry[1]),
         )
@@ -152,7 +165,7 @@ class DrawList:
         self._corners = np.array([_corners(part.mesh) for _, _, part, _ in parts]).reshape(-1, 8, 4)
         kinds = [kind for kind, *_ in parts]
         everything = np.arange(len(parts))
-        self.batches = tuple(_batches(context, kinds, everything, commands))
+        self.batches = tuple(_batches(context, kinds, everything, commands, apart=see_through))
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
         chosen = _those(kinds, casting)
         self.caster_batches = tuple(
@@ -204,6 +217,11 @@ class DrawList:
         """Tell which instances have baked light: those that stand where they stood for it."""
         same: NDArray[np.bool_] = (snapshot.world_from_body == self._baked_poses).all(axis=(1, 2))
         return same
+
+    def farthest_first(self) -> list[Batch]:
+        """Give the batches that the eye of `place` may see, the most distant first."""
+        seen = [batch for batch in self.batches if batch.count]
+        return sorted(seen, key=lambda batch: -batch.least(self._distance))
 
     def close(self) -> None:
         """Free the buffers."""
@@ -268,7 +286,14 @@ def _batches(
     kinds: list[BatchKind],
     parts: NDArray[np.intp],
     commands: NDArray[np.void],
+    *,
+    apart: bool = False,
 ) -> Iterator[Batch]:
+    if apart:
+        for number, kind in enumerate(kinds):
+            one = slice(number, number + 1)
+            yield Batch(context, kind, parts[one], commands[one])
+        return
     for kind in sorted(set(kinds)):
         chosen = np.array([k == kind for k in kinds], dtype=bool)
         yield Batch(context, kind, parts[chosen], commands[chosen])

@@ -40,7 +40,7 @@ class Targets:
     framebuffer : Framebuffer
         What the geometry pass draws into.
     picture : Framebuffer or None
-        What the lighting pass draws into, on the same depth buffer: sRGB, luma in alpha.
+        What the lighting pass draws into, on the same depth buffer; see `develop`.
     """
 
     surface: moderngl.Texture
@@ -86,7 +86,6 @@ class GeometryPass:
         shaded: bool,
         normals: bool,
         baked: bool = False,
-        linear: bool = False,
     ) -> Targets:
         """Make the textures of a picture size.
 
@@ -96,8 +95,6 @@ class GeometryPass:
             What is wanted besides depth and ids.
         baked : bool
             True to leave places in a light map.
-        linear : bool
-            True for a picture of linear radiance instead of sRGB.
         """
         size = (width, height)
         surface = self._context.texture(size, 2, dtype="f4")
@@ -114,7 +111,7 @@ class GeometryPass:
         framebuffer = self._context.framebuffer(attached, depth)
         picture = None
         if shaded:
-            colour = self._context.texture(size, 4, dtype="f2" if linear else "f1")
+            colour = self._context.texture(size, 4, dtype="f2")
             picture = self._context.framebuffer([colour], depth)
         return Targets(*textures, depth, framebuffer, picture)
 

@@ -1,7 +1,7 @@
-"""From surfaces to a picture: lights, sky, tone curve, smoothed edges.
+"""From surfaces to radiance: lights and sky.
 
-Targets of the geometry pass come in, an 8-bit sRGB picture goes out. Ground truth never passes
-through here.
+Targets of the geometry pass come in, a half-precision picture of radiance goes out. Ground truth
+never passes through here.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.reflection_map import ReflectionMap
 from sailenv_ros.render.shadow_pass import SIZE_PX, ShadowPass
 
-__all__ = ["MAX_LIGHTS", "Illumination", "LightingPass"]
+__all__ = ["MAX_LIGHTS", "Illumination", "LightingPass", "set_camera"]
 
 _log = logging.getLogger(__name__)
 
@@ -99,10 +99,10 @@ class LightingPass:
         targets.picture.use()
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST)
-        light, sky = self._chosen(targets, illumination)
+        light, sky = self._chosen(illumination)
         environment = illumination.environment
         for program in (light, sky):
-            _set_camera(program, camera, environment)
+            set_camera(program, camera, environment)
         if environment.sky is not None:
             self._show_sky(environment.sky, sky)
         self._set_lights(light, camera, illumination)
@@ -124,24 +124,22 @@ class LightingPass:
             if resource is not None:
                 resource.release()
 
-    def _chosen(
-        self, targets: Targets, illumination: Illumination
-    ) -> tuple[moderngl.Program, moderngl.Program]:
+    def _chosen(self, illumination: Illumination) -> tuple[moderngl.Program, moderngl.Program]:
         """Give the programs for surfaces and sky."""
-        assert targets.picture is not None
-        shared: dict[str, int] = {}
-        if targets.picture.color_attachments[0].dtype == "f2":
-            shared["LINEAR"] = 1
-        lit = dict(shared)
+        lit: dict[str, int] = {}
+        seen: dict[str, int] = {}
+        if any(light.intensity > 0.0 for light in illumination.lamps):
+            # Even a loop that ends at once costs a tenth of the pass.
+            lit["LAMPS"] = 1
         if illumination.baked is not None:
             lit["BAKED"] = 1
             if illumination.reflections is not None:
                 lit["REFLECTIONS"] = 1
         if illumination.environment.sky is not None:
-            shared["SKY_MAP"] = 1
+            seen["SKY_MAP"] = 1
         return (
             self._programs.get("screen.vert", "lighting.frag", MAX_LIGHTS=MAX_LIGHTS, **lit),
-            self._programs.get("screen.vert", "sky.frag", **shared),
+            self._programs.get("screen.vert", "sky.frag", **seen),
         )
 
     def _array(self, program: moderngl.Program) -> moderngl.VertexArray:
@@ -211,7 +209,8 @@ def _set_textures(program: moderngl.Program, targets: Targets, illumination: Ill
         illumination.reflections.bind(program)
 
 
-def _set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+def set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+    """Tell a program of `picture.glsl` where it looks from, and what lies around."""
     intrinsics = camera.intrinsics
     exposure = 2.0**environment.exposure
     set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))

@@ -44,20 +44,13 @@ class PictureBuffers:
         self._targets.move_to_end(key)
         return self._targets[key]
 
-    def read_picture(self, targets: Targets) -> NDArray[np.uint8]:
-        """Read the lit picture, sRGB and luma; a fresh (H, W, 4) array."""
-        assert targets.picture is not None
-        four = np.empty((targets.picture.height, targets.picture.width, 4), np.uint8)
-        # Reading three components would make the driver convert them, ten times slower.
-        targets.picture.read_into(four, components=4)
-        return four
-
-    def read_radiance(self, targets: Targets) -> NDArray[np.float32]:
-        """Read the lit picture where it is linear; a fresh (H, W, 3) array."""
+    def read_picture(self, targets: Targets) -> NDArray[np.float16]:
+        """Read the lit picture, radiance and share; a fresh (H, W, 4) array."""
         assert targets.picture is not None
         four = np.empty((targets.picture.height, targets.picture.width, 4), np.float16)
+        # Reading three components would make the driver convert them, ten times slower.
         targets.picture.read_into(four, components=4, dtype="f2")
-        return four[..., :3].astype(np.float32)
+        return four
 
     def read_surface(self, targets: Targets) -> NDArray[np.float32]:
         """Read depth and instance id; a fresh (H, W, 2) array."""

@@ -10,6 +10,7 @@ import itertools
 import time
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -20,12 +21,14 @@ from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import checked_views
 from sailenv_ros.render import annotate as ground_truth
-from sailenv_ros.render import smooth_edges
+from sailenv_ros.render import post_pass
 from sailenv_ros.render.backend import RenderedViews
+from sailenv_ros.render.bands import beside
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
 from sailenv_ros.render.geometry_pass import GeometryPass
+from sailenv_ros.render.glass_pass import GlassPass
 from sailenv_ros.render.lighting_pass import Illumination, LightingPass
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.picture_buffers import PictureBuffers
@@ -63,15 +66,17 @@ class Renderer:
                 self._geometry_pass = GeometryPass(self._context, self._programs)
                 self._scene_light = SceneLight(self._context, self._programs)
                 self._lighting_pass = LightingPass(self._context, self._programs)
+                self._glass_pass = GlassPass(self._context, self._programs)
                 self._pictures = PictureBuffers(self._geometry_pass)
         except BaseException:
             self._context.release()
             raise
         self._draws: DrawList | None = None
         self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
+        self._post = post_pass.PostPass(beside(self._beside))
         self._closed = False
         ground_truth.warm_up()
-        smooth_edges.warm_up()
+        post_pass.warm_up()
 
     @property
     def description(self) -> str:
@@ -102,12 +107,18 @@ class Renderer:
                 previous = self._with_depth(previous)
             arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
+        surface = arrays.pop("surface")
+        if "rgb" in wanted:
+            still = self._draws_of(snapshot).at_baked_pose(snapshot)
+            arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera, still)
+            timings["develop"] = time.perf_counter() - began
+            began = time.perf_counter()
         # Both walks leave Python's lock alone: the labels are made beside the picture.
         walk = self._beside.submit(
-            ground_truth.annotate, arrays.pop("surface"), snapshot, previous, camera, wanted
+            ground_truth.annotate, surface, snapshot, previous, camera, wanted
         )
         if "rgb" in wanted:
-            arrays["rgb"] = smooth_edges.smooth_edges(arrays["rgb"])
+            arrays["rgb"] = self._post.finished(arrays["rgb"], camera)
         truth = walk.result()
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
@@ -133,6 +144,7 @@ class Renderer:
             for resource in (
                 self._draws,
                 self._pictures,
+                self._glass_pass,
                 self._lighting_pass,
                 self._scene_light,
                 self._materials,
@@ -168,9 +180,8 @@ class Renderer:
             )
             mark("shadow")
         intrinsics = camera.intrinsics
-        draws.place(
-            snapshot, _UPSIDE_DOWN @ intrinsics.clip_from_optical(), camera.camera_from_world
-        )
+        clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
+        draws.place(snapshot, clip_from_optical, camera.camera_from_world)
         targets = self._pictures.targets(
             intrinsics,
             shaded=shaded,
@@ -182,6 +193,16 @@ class Renderer:
         arrays: dict[str, NDArray[Any]] = {}
         if illumination is not None:
             self._lighting_pass.draw(targets, camera, illumination)
+            self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
+            self._glass_pass.draw(
+                targets,
+                snapshot,
+                camera,
+                clip_from_optical,
+                illumination,
+                self._geometry,
+                self._materials,
+            )
             mark("lighting")
             arrays["rgb"] = self._pictures.read_picture(targets)
         arrays["surface"] = self._pictures.read_surface(targets)
@@ -204,12 +225,14 @@ class Renderer:
         clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
         draws.place(snapshot, clip_from_optical, camera.camera_from_world, only=only)
         targets = self._geometry_pass.make_targets(
-            intrinsics.width, intrinsics.height, shaded=True, normals=False, baked=True, linear=True
+            intrinsics.width, intrinsics.height, shaded=True, normals=False, baked=True
         )
         try:
             self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
-            self._lighting_pass.draw(targets, camera, illumination)
-            return self._pictures.read_radiance(targets)
+            unexposed = replace(illumination.environment, exposure=0.0)
+            light = replace(illumination, environment=unexposed)
+            self._lighting_pass.draw(targets, camera, light)
+            return self._pictures.read_picture(targets)[..., :3].astype(np.float32)
         finally:
             targets.close()
 

@@ -14,7 +14,7 @@ from sailenv_ros.geometry import look_at
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
 from tests.render.conftest import Render
-from tests.support.ray_cast import RayCast
+from tests.support.embree_cast import RayCast
 
 pytestmark = pytest.mark.gl
 

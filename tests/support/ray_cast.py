@@ -1,80 +1,120 @@
-"""What a camera must see, found with rays: embree instead of a rasteriser."""
+"""An independent judge of ground truth: rays against triangles, and motion by plain arithmetic.
+
+Everything is in float64 and shares no code with the renderer: Möller and Trumbore's intersection
+for what a pixel sees, and for optical flow the path of the point through body and world frames.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.snapshot import WorldSnapshot
 
 
-class RayCast:
-    """The triangles of a snapshot, ready to be looked at.
+@dataclass(frozen=True)
+class Hits:
+    """What each pixel's ray meets first.
 
-    Surfaces that cannot be decided by geometry alone, with holes by alpha, are hit and marked.
+    Attributes
+    ----------
+    depth : (H, W) float64
+        Along the optical axis [m]; inf for nothing.
+    row : (H, W) int
+        Row of the snapshot's instances; -1 for nothing.
+    triangle : (H, W) int
+        A number for each plane triangle of the scene; -1 for nothing.
+    normal : (H, W, 3) float64
+        Of the triangle, optical frame.
     """
 
-    def __init__(self, snapshot: WorldSnapshot) -> None:
-        corners, ids, one_sided, masked = [], [], [], []
-        rows = zip(snapshot.contents.instances, snapshot.world_from_body, strict=True)
-        for drawn, world_from_body in rows:
-            for part in drawn.model.parts:
-                if part.material.alpha == "blend":
-                    continue
-                points = part.mesh.positions.astype(np.float64) * drawn.scale
-                world = points @ world_from_body[:3, :3].T + world_from_body[:3, 3]
-                corners.append(world[part.mesh.triangles])
-                count = len(part.mesh.triangles)
-                ids.append(np.full(count, drawn.instance.id))
-                one_sided.append(np.full(count, not part.material.double_sided))
-                masked.append(np.full(count, part.material.alpha == "mask"))
-        self._corners = np.concatenate(corners)
-        self._ids = np.concatenate(ids)
-        self._one_sided = np.concatenate(one_sided)
-        self._masked = np.concatenate(masked)
-        edges = self._corners[:, 1:] - self._corners[:, :1]
-        self._normals = np.cross(edges[:, 0], edges[:, 1])
+    depth: NDArray[np.float64]
+    row: NDArray[np.int64]
+    triangle: NDArray[np.int64]
+    normal: NDArray[np.float64]
 
-    def look(
-        self, camera: Camera
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
-        """Look through the middle of every pixel.
+    def away_from_edges(self) -> NDArray[np.bool_]:
+        """(H, W) True where the eight neighbours see the same instance from the same side."""
+        same = np.ones(self.row.shape, bool)
+        for dv in (-1, 0, 1):
+            for du in (-1, 0, 1):
+                shifted = np.roll(self.row, (dv, du), (0, 1)) == self.row
+                turned = np.roll(self.normal, (dv, du), (0, 1))
+                same &= shifted & (np.abs(turned - self.normal).max(axis=-1) < 1e-6)
+        same[0], same[-1], same[:, 0], same[:, -1] = False, False, False, False
+        return same
 
-        Returns
-        -------
-        ids : (H, W) int64
-            Instance ids, 0 where nothing is.
-        depth : (H, W) float64
-            Along the optical axis [m], computed from the triangle met, in double precision.
-        masked : (H, W) bool
-            Where a surface with holes was met, through which the ray may have had to go.
-        """
-        intrinsics = camera.intrinsics
-        v, u = np.mgrid[0 : intrinsics.height, 0 : intrinsics.width]
-        x, y = (u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy
-        optical = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
-        directions = optical @ camera.world_from_camera[:3, :3].T
-        eye = camera.world_from_camera[:3, 3]
-        # Which side of a triangle is seen is a matter of where the eye is, not of the ray.
-        away = np.einsum("ni,ni->n", self._corners[:, 0] - eye, self._normals) >= 0.0
-        drawn = np.flatnonzero(~(away & self._one_sided))
-        scene = EmbreeScene()
-        mesh = TriangleMesh(scene, self._corners[drawn].astype(np.float32))
-        origins = np.broadcast_to(eye, directions.shape).astype(np.float32)
-        hit = np.asarray(scene.run(origins, directions.astype(np.float32)))
-        del mesh
-        met = hit >= 0
-        triangle = drawn[hit[met]]
-        ids = np.zeros(len(directions), np.int64)
-        depth = np.full(len(directions), np.inf)
-        masked = np.zeros(len(directions), bool)
-        # Where the plane of the triangle is met does not depend on embree's precision.
-        normal = self._normals[triangle]
-        along = np.einsum("ni,ni->n", self._corners[triangle, 0] - eye, normal)
-        depth[met] = along / np.einsum("ni,ni->n", directions[met], normal)
-        ids[met], masked[met] = self._ids[triangle], self._masked[triangle]
-        shape = intrinsics.height, intrinsics.width
-        return ids.reshape(shape), depth.reshape(shape), masked.reshape(shape)
+
+def cast(snapshot: WorldSnapshot, camera: Camera) -> Hits:
+    """Cast the ray of every pixel against every front-facing triangle."""
+    rays = camera.intrinsics.rays().reshape(-1, 3)
+    best = np.full(len(rays), np.inf)
+    row = np.full(len(rays), -1)
+    number = np.full(len(rays), -1)
+    normals = np.zeros((len(rays), 3))
+    count = 0
+    for index, drawn in enumerate(snapshot.contents.instances):
+        eye_from_body = camera.camera_from_world @ snapshot.world_from_body[index]
+        for part in drawn.model.parts:
+            points = part.mesh.positions.astype(np.float64) * np.asarray(drawn.scale)
+            points = points @ eye_from_body[:3, :3].T + eye_from_body[:3, 3]
+            for a, b, c in points[part.mesh.triangles]:
+                depth = _meet(rays, a, b, c)
+                nearer = depth < best
+                best[nearer], row[nearer], number[nearer] = depth[nearer], index, count
+                normal = np.cross(b - a, c - a)
+                normals[nearer] = normal / np.linalg.norm(normal)
+                count += 1
+    shape = (camera.intrinsics.height, camera.intrinsics.width)
+    return Hits(
+        best.reshape(shape), row.reshape(shape), number.reshape(shape), normals.reshape(*shape, 3)
+    )
+
+
+def _meet(rays: NDArray[np.float64], a: Any, b: Any, c: Any) -> NDArray[np.float64]:
+    """Depth at which rays from the origin meet a triangle's front; inf where they do not."""
+    ab, ac = b - a, c - a
+    p = np.cross(rays, ac)
+    determinant = p @ ab
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = -(p @ a) / determinant
+        q = np.cross(-a, ab)
+        v = (rays @ q) / determinant
+        t = (ac @ q) / determinant
+    hit = (determinant > 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
+    return np.where(hit, t, np.inf)
+
+
+def flow_by_arithmetic(
+    hits: Hits,
+    now: WorldSnapshot,
+    camera: Camera,
+    past: WorldSnapshot,
+    past_camera: Camera,
+) -> NDArray[np.float64]:
+    """(H, W, 2) velocity [px/s] of the point that each pixel sees; nan where it had no place.
+
+    The point goes from the picture to the world, into its body, with the body to where it was,
+    and from there into the earlier picture. What hits nothing is a direction.
+    """
+    dt_s = (now.sim_time_ns - past.sim_time_ns) * 1e-9
+    rays = camera.intrinsics.rays()
+    here = camera.intrinsics.project(rays)
+    result = np.full((*hits.row.shape, 2), np.nan)
+    nothing = hits.row < 0
+    directions = rays[nothing] @ camera.world_from_camera[:3, :3].T
+    then = directions @ past_camera.camera_from_world[:3, :3].T
+    result[nothing] = here[nothing] - past_camera.intrinsics.project(then)
+    for row in range(len(now.contents.instances)):
+        chosen = hits.row == row
+        eye = rays[chosen] * hits.depth[chosen][:, None]
+        world = eye @ camera.world_from_camera[:3, :3].T + camera.world_from_camera[:3, 3]
+        body = (world - now.world_from_body[row][:3, 3]) @ now.world_from_body[row][:3, :3]
+        world = body @ past.world_from_body[row][:3, :3].T + past.world_from_body[row][:3, 3]
+        eye = world @ past_camera.camera_from_world[:3, :3].T + past_camera.camera_from_world[:3, 3]
+        result[chosen] = here[chosen] - past_camera.intrinsics.project(eye)
+    return result / dt_s

@@ -1,6 +1,6 @@
 // Lights what the geometry pass left: metallic-roughness surfaces under sun, lamps and sky.
 // GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
-layout(location = 0) out vec4 out_colour;  // sRGB, luma in alpha for the edge pass
+layout(location = 0) out vec4 out_colour;  // see picture.glsl
 
 uniform sampler2D surface;
 uniform sampler2D shape;
@@ -31,11 +31,7 @@ uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx,
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
 uniform float main_baked;          // 1 if the light map knows the main light's shadows
 #endif
-#ifdef REFLECTIONS
-uniform sampler3D reflections;     // octahedral, world frame; roughness along z
-uniform vec3 reflection_from, room_low, room_high, eye;
-uniform vec3 reflection_texel;     // share of the square without its border, layers per roughness, layers
-#endif
+#include "reflections.glsl"
 
 const float PI = 3.14159265;
 
@@ -59,6 +55,7 @@ vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {
     return (shadow_from_optical * vec4(lifted, 1.0)).xyz;
 }
 
+#ifndef BAKED
 float four_taps(sampler2DShadow map, vec3 at) {
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
     float r = shadow_texel.y * shadow_texel.z;
@@ -67,20 +64,6 @@ float four_taps(sampler2DShadow map, vec3 at) {
     lit += texture(map, at + vec3(-0.94, -0.34, 0.0) * r);
     lit += texture(map, at + vec3(0.34, -0.94, 0.0) * r);
     return lit / 4.0;
-}
-
-#ifdef REFLECTIONS
-// What lies in a direction, looked for on the walls of a box around the room (box projection).
-vec3 mirrored_room(vec3 from, vec3 direction, float roughness) {
-    vec3 inverse = 1.0 / (direction + vec3(1e-6));
-    vec3 ends = max((room_low - from) * inverse, (room_high - from) * inverse);
-    float distance = max(min(ends.x, min(ends.y, ends.z)), 0.05);
-    vec3 to = from + direction * distance - reflection_from;
-    vec3 n = to / (abs(to.x) + abs(to.y) + abs(to.z));
-    float fold = max(-n.z, 0.0);
-    n.xy -= vec2(n.x >= 0.0 ? fold : -fold, n.y >= 0.0 ? fold : -fold);
-    float layer = (roughness * reflection_texel.y + 0.5) / reflection_texel.z;
-    return textureLod(reflections, vec3(0.5 + 0.5 * n.xy * reflection_texel.x, layer), 0.0).rgb;
 }
 #endif
 
@@ -150,8 +133,9 @@ void main() {
     vec3 world_normal = world_from_optical * normal;
     float facing = dot(normal, main_towards);
     vec3 in_shadow = in_shadow_map(point, normal, 1.0 - facing);
-    float main_arrives = four_taps(shadow_map, in_shadow);
 #ifdef BAKED
+    // What moves casts edges of one texel; soft shadows of what stands still are in the light map.
+    float main_arrives = texture(shadow_map, in_shadow);
     vec2 place = texelFetch(light_at, pixel, 0).xy;
     vec4 mapped = textureLod(light_map, place, 0.0);
     int id = int(texelFetch(surface, pixel, 0).y + 0.5);
@@ -165,6 +149,7 @@ void main() {
     main_arrives *= mix(texture(static_shadow_map, in_shadow), mapped.a, charted * main_baked);
     vec3 reflected = around;
 #else
+    float main_arrives = four_taps(shadow_map, in_shadow);
     vec3 around = ambient + sky_share * sky_light(world_normal);
 #endif
 #if defined(REFLECTIONS) || !defined(BAKED)
@@ -186,9 +171,12 @@ void main() {
     vec3 mean = f0 + (1.0 - f0) / 21.0;
     vec3 again = lost * once * mean / (1.0 - mean * lost);
     vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
+    vec3 from_around = radiance;
     radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     radiance += reflected_light(here, main_towards, main_colour * main_arrives);
+#ifdef LAMPS
     for (int i = 0; i < light_count; i++) radiance += lamp_light(lights[i], here);
-    out_colour = finished(radiance);
+#endif
+    out_colour = finished(radiance, from_around);
 }
