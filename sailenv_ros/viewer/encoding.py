@@ -7,7 +7,11 @@ with the head's length (4 bytes, little-endian); the pictures follow in the orde
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+import threading
+import weakref
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 import cv2
@@ -24,7 +28,40 @@ PNG_VIEWS = frozenset({"category", "instance", "flow_valid", "occlusion"})
 
 JPEG_QUALITY = 85
 
+SPECK_PX = 6.0
+"""Area of the smallest hole or island that an outline goes around [px²]."""
+
 _FAST_PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
+
+
+class _SharedPictures:
+    """Encodes each view of a frame once, however many clients are sent it."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        # They go with the frame.
+        self._made: weakref.WeakKeyDictionary[Frame, dict[str, Future[tuple[str, bytes]]]] = (
+            weakref.WeakKeyDictionary()
+        )
+
+    def get(
+        self, frame: Frame, view: str, make: Callable[[], tuple[str, bytes]]
+    ) -> tuple[str, bytes]:
+        """Give the picture; made now, or waited for where another thread makes it."""
+        with self._lock:
+            pictures = self._made.setdefault(frame, {})
+            known = pictures.get(view)
+            mine = pictures.setdefault(view, Future())
+        if known is not None:
+            return known.result()
+        try:
+            mine.set_result(make())
+        except BaseException as fault:
+            mine.set_exception(fault)
+        return mine.result()
+
+
+_shared = _SharedPictures()
 
 
 def packed(head: Mapping[str, Any], pieces: Iterable[bytes] = ()) -> bytes:
@@ -55,7 +92,10 @@ def packed_frame(
     selected : int
         Instance whose outline is told; 0 for none.
     """
-    pictures = [_encoded(view, _picture(frame, view, categories, depth_range_m)) for view in views]
+    pictures = [
+        _shared.get(frame, view, partial(_encoded, frame, view, categories, depth_range_m))
+        for view in views
+    ]
     lens = frame.camera.intrinsics
     head: dict[str, Any] = {
         "type": "frame",
@@ -99,10 +139,16 @@ def picture_png(picture: NDArray[np.uint8]) -> bytes:
 
 
 def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:
-    """Give the closed lines around an instance's pixels: u, v, u, v, … of each [px]."""
+    """Give the closed lines around an instance's pixels: u, v, u, v, … of each [px].
+
+    Specks beside the largest of them are left out.
+    """
     mask = (instance == number).astype(np.uint8)
     lines, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
-    return [line.reshape(-1).tolist() for line in lines]
+    areas = [cv2.contourArea(line) for line in lines]
+    least = min(SPECK_PX, max(areas, default=0.0))
+    kept = (line for line, area in zip(lines, areas, strict=True) if area >= least)
+    return [line.reshape(-1).tolist() for line in kept]
 
 
 def _picture(
@@ -117,7 +163,10 @@ def _picture(
     )
 
 
-def _encoded(view: str, picture: NDArray[np.uint8]) -> tuple[str, bytes]:
+def _encoded(
+    frame: Frame, view: str, categories: CategoryTable, depth_range_m: float
+) -> tuple[str, bytes]:
+    picture = _picture(frame, view, categories, depth_range_m)
     if view in PNG_VIEWS:
         return "image/png", _png(picture, _FAST_PNG)
     settings = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY)

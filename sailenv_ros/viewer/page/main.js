@@ -204,6 +204,7 @@ class App {
   showPath() {
     const shown = this.path?.root.isConnected || this.path?.show.checked;
     this.stage.waypoints = shown ? (this.mover?.waypoints ?? []) : [];
+    this.stage.loop = this.mover?.loop ?? false;
     this.stage.drawOver();
   }
 

@@ -29,7 +29,7 @@ export class PathPanel {
           button("Clear", () => this.#send({ waypoints: [] }), { glyph: "trash", kind: "danger" })),
         this.list,
         el("label", { class: "line" }, el("span", {}, "one round [s]"), this.time),
-        el("label", { class: "line" }, el("span", {}, "round and round"), this.loop),
+        el("label", { class: "line" }, el("span", {}, "loop"), this.loop),
         el("label", { class: "line" }, el("span", {}, "show always"), this.show),
       ),
     );

@@ -13,6 +13,7 @@ export class Stage {
     this.all = true;
     this.head = null;
     this.waypoints = [];
+    this.loop = false;
     this.tiles = new Map(VIEWS.map((view) => [view, this.#tile(view)]));
     new ResizeObserver(() => this.arrange()).observe($("stage"));
     this.arrange();
@@ -136,7 +137,7 @@ export class Stage {
       pen.setTransform(width / head.width, 0, 0, height / head.height, 0, 0);
       pen.translate(0.5, 0.5);
       const line = head.width / box.width;
-      this.#outline(pen, head, line);
+      this.#outline(pen, head, view === this.main ? line : line / 2);
       if (view === this.main) this.#waypoints(pen, head, line);
     }
   }
@@ -177,7 +178,7 @@ export class Stage {
     pen.setLineDash([6 * line, 5 * line]);
     pen.beginPath();
     places.forEach((place, at) => {
-      const before = places[at - 1];
+      const before = at || !this.loop ? places[at - 1] : places.at(-1);
       if (place && before) {
         pen.moveTo(...before);
         pen.lineTo(...place);

@@ -160,6 +160,24 @@ def test_a_message_holds_what_it_says() -> None:
     assert at == len(message)
 
 
+def test_a_picture_is_made_once_for_all_clients(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second client of a frame is sent the same bytes; another frame has its own."""
+    made: list[str] = []
+
+    def counted(view: str, *rest: Any, **settings: Any) -> Any:
+        made.append(view)
+        return view_picture(view, *rest, **settings)
+
+    monkeypatch.setattr("sailenv_ros.viewer.encoding.view_picture", counted)
+    settings: dict[str, Any] = {"number": 1, "categories": CATEGORIES, "depth_range_m": 10.0}
+    frame = frame_of(**numbered_views())
+    first = packed_frame(frame, ("rgb", "depth"), **settings)
+    assert packed_frame(frame, ("rgb", "depth"), **settings) == first
+    assert made == ["rgb", "depth"]
+    packed_frame(frame_of(**numbered_views()), ("depth",), **settings)
+    assert made == ["rgb", "depth", "depth"]
+
+
 def test_a_screenshot_loses_nothing() -> None:
     """The picture's pixels are the array's."""
     views = numbered_views()
