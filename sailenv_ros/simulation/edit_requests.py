@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import Any
 
 from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Light, LightType
 
 __all__ = ["EditRequests"]
 
@@ -32,6 +33,31 @@ class EditRequests:
             If it cannot be such an object; it is as it was then.
         """
         self._ask("change_object", timeout_s, obj, **changes)
+
+    def add_light(
+        self, name: str, type_: LightType, /, *, timeout_s: float = 30.0, **attributes: Any
+    ) -> Light:
+        """Put one more light into the scene; give it.
+
+        Parameters
+        ----------
+        name : str
+            Unique in the scene.
+        type_ : {'directional', 'point', 'spot', 'area'}
+        **attributes
+            By their names in `Light`; the rest are its defaults.
+
+        Raises
+        ------
+        NameTaken, UnknownName, InvalidRequest, InvalidEntry
+            If there is one of that name, or it cannot be such a light.
+        """
+        result: Light = self._ask("add_light", timeout_s, name, type_, **attributes)
+        return result
+
+    def remove_light(self, name: str, *, timeout_s: float = 30.0) -> None:
+        """Take a light out of the scene."""
+        self._ask("remove_light", timeout_s, name)
 
     def set_environment(self, /, *, timeout_s: float = 30.0, **changes: Any) -> None:
         """Change the surroundings, by the keys of `environment` in a scene file.

@@ -28,6 +28,7 @@ T = TypeVar("T")
 
 REQUESTS = frozenset(
     {
+        "add_light",
         "attach_behaviour",
         "capture",
         "change_object",
@@ -44,6 +45,7 @@ REQUESTS = frozenset(
         "mover_pose",
         "pause",
         "register_agent",
+        "remove_light",
         "reset",
         "resume",
         "save_scene",

@@ -47,6 +47,9 @@ SETTLED_DEG = 0.5
 AT_REST = 0.01
 """Slower is at rest [m/s], [rad/s]."""
 
+_MAY_BE_LEFT_OUT = ("ceiling", "skirting", "curtains")
+"""Parts of a room without which a file can describe it."""
+
 _SKY_COLOURS = ("sky_zenith", "sky_horizon", "sky_ground")
 
 
@@ -68,6 +71,7 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
     changed: dict[str, Any] = {
         "environment": environment_entry(world),
         "lights": _lights(world, spec),
+        **_room(spec, world.missing_parts),
         "objects": _objects(world),
         **_movers(world, spec),
         "agents": _agents(world, spec, agents, cameras),
@@ -81,11 +85,11 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
 
 def unsaid(world: World) -> Iterator[tuple[str, str]]:
     """Yield what a scene file cannot say of a world: what it is about, and why."""
-    parts = [body for body in world.bodies if body.placement.entry is None]
-    for name in sorted(world.room_parts.difference(body.placement.name for body in parts)):
-        yield repr(name), "is a part of the room and was taken out, which no scene file can say"
-    for body in parts:
-        if not body.arranged:
+    for name in sorted(world.missing_parts):
+        if not name.startswith(_MAY_BE_LEFT_OUT):
+            yield repr(name), "is a part of the room and was taken out, which no scene file can say"
+    for body in world.bodies:
+        if body.placement.entry is None and not body.arranged:
             name = body.placement.name
             yield repr(name), "is a part of the room and was moved, which no scene file can say"
 
@@ -119,6 +123,19 @@ def environment_entry(world: World) -> Entry:
     return entry
 
 
+def _room(spec: SceneSpec, missing: Collection[str]) -> Entry:
+    """Give the room as its file has it, without those parts that it may do without."""
+    if spec.room is None:
+        return {}
+    entry: Entry = spec.room.model_dump(mode="json", exclude_unset=True)
+    entry.update({key: False for key in ("ceiling", "skirting") if key in missing})
+    windows = [opening for opening in entry.get("openings", ()) if opening["type"] == "window"]
+    for number, window in enumerate(windows, start=1):
+        if f"curtains {number}" in missing:
+            window["curtains"] = False
+    return {"room": entry}
+
+
 def _lights(world: World, spec: SceneSpec) -> list[Entry]:
     as_told = {light.name: light for light in spec.lights}
     return [
@@ -133,17 +150,21 @@ def _lights(world: World, spec: SceneSpec) -> list[Entry]:
 
 
 def _objects(world: World) -> list[Entry]:
-    begun = world.first_bodies
-    return [_object(body, begun) for body in world.bodies if body.placement.entry is not None]
+    begun, missing = world.first_bodies, world.missing_parts
+    return [
+        _object(body, as_told=_stands_as_told(body, begun, missing))
+        for body in world.bodies
+        if body.placement.entry is not None
+    ]
 
 
-def _object(body: Body, begun: Mapping[str, Body]) -> Entry:
+def _object(body: Body, *, as_told: bool) -> Entry:
     placement = body.placement
     assert placement.entry is not None
     entry: Entry = placement.entry.model_dump(
         mode="json", exclude_unset=True, exclude_defaults=True, exclude={"behaviours"}
     )
-    if not _stands_as_told(body, begun):
+    if not as_told:
         for key in (*PLACE_KEYS, *VELOCITY_KEYS):
             entry.pop(key, None)
         entry.update(pose_entry(body.pose()))
@@ -157,16 +178,19 @@ def _object(body: Body, begun: Mapping[str, Body]) -> Entry:
     return {**entry, "behaviours": behaviours} if behaviours else entry
 
 
-def _stands_as_told(body: Body, begun: Mapping[str, Body]) -> bool:
+def _stands_as_told(body: Body, begun: Mapping[str, Body], missing: Collection[str]) -> bool:
     """Say if it stands where its entry puts it, and so does all that carries it."""
     entry = body.placement.entry
     if entry is None or not body.arranged:
+        return False
+    # What is at a wall would come nearer to it without the board at its foot.
+    if entry.wall is not None and "skirting" in missing:
         return False
     if entry.on is not None:
         carrier = begun.get(entry.on)
         if carrier is None or carrier.placement.name != entry.on:
             return False
-        if not _stands_as_told(carrier, begun):
+        if not _stands_as_told(carrier, begun, missing):
             return False
     return body.placement.static or _only_settled(body)
 

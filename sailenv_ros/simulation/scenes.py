@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,12 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
 from sailenv_ros.assets.own_pack import add_to_own_pack
-from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.assets.places import standard_pack_folder
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
+from sailenv_ros.bake.settings import BAKE_VERSION
 from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import CategoryTable
@@ -164,6 +166,23 @@ class SceneLibrary:
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self.path(scene)
         return world
+
+    def stamp(self, scene: str | Path) -> str:
+        """Give a text that changes with the scene's file and with the packs it may use.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such scene.
+        """
+        digest = blake2b(digest_size=16)
+        path = self.path(scene)
+        digest.update(f"{path} {BAKE_VERSION}".encode())
+        files = [path, *(pack.folder / PACK_FILE for pack in self._packs)]
+        for file in files:
+            if file.is_file():
+                digest.update(file.read_bytes())
+        return digest.hexdigest()
 
     def canonical_asset(self, name: str) -> str:
         """Give the catalogue name of an asset's catalogue or display name.

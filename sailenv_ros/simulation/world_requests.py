@@ -12,12 +12,12 @@ from typing import Any, Literal, TypeAlias
 
 from numpy.typing import ArrayLike
 
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light, light_named
+from sailenv_ros.lights import Light, LightType, light_named
 from sailenv_ros.model import Asset
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.describing import MOTION_KEYS, PLACE_KEYS
+from sailenv_ros.scene.describing import MOTION_KEYS, PLACE_KEYS, light_entry
 from sailenv_ros.scene.entries import checked_scene, free_name, plain_value
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.simulation.agent_table import AgentTable
@@ -169,6 +169,28 @@ class WorldRequests:
             self._world.set_lights([changed if light.name == name else light for light in lights])
             self._announce()
         return changed
+
+    def add_light(self, name: str, type_: LightType, /, **attributes: Any) -> Light:
+        """Put one more light into the scene, by attributes of `Light`; give it."""
+        lights = self.lights()
+        for key in attributes:
+            if key not in _LIGHT_FIELDS or key == "type":
+                raise UnknownName("attribute of a light", key, _LIGHT_FIELDS)
+        if any(light.name == name for light in lights):
+            raise NameTaken("light", name)
+        added = Light(name=name, type=type_, **attributes)
+        entries = [light_entry(light) for light in (*lights, added)]
+        # A file must be able to say it: name, range and number of lights.
+        checked_scene({"version": 1, "lights": entries}, self._library.knowledge, what="light")
+        self._world.set_lights((*lights, added))
+        self._announce()
+        return added
+
+    def remove_light(self, name: str) -> None:
+        """Take a light out of the scene."""
+        removed = light_named(name, self.lights())
+        self._world.set_lights([light for light in self.lights() if light is not removed])
+        self._announce()
 
     def set_ambient_light(self, colour: ArrayLike) -> None:
         """Set the light that arrives from everywhere (linear radiance)."""

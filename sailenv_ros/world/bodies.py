@@ -7,7 +7,7 @@ in which the model's vertices stand.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,13 +17,12 @@ from sailenv_ros.behaviours import MAX_SPEED_M_S, Action, BodyState, RunningBeha
 from sailenv_ros.errors import InvalidRequest, PhysicsError
 from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
-from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.spec import ObjectSpec
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
+from sailenv_ros.world.placement import Placement
 
-__all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement", "three"]
+__all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement"]
 
 Vector3 = tuple[float, float, float]
 
@@ -44,63 +43,6 @@ TOUCH_M = 0.02
 _LINK_OF_BASE = -1
 
 _NO_PLANES = np.zeros((0, 4))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Placement:
-    """An object to put into the world.
-
-    Attributes
-    ----------
-    name : str
-        Unique in its scene.
-    asset : Asset
-    category_id : int
-    pose : Pose
-        Of the body frame.
-    scale : (3,) tuple of float
-        Each above 0.
-    static : bool
-        True if physics never moves it.
-    mass_kg : float or None
-        None takes the asset's mass times the scale's volume [kg].
-    gravity : bool
-        False if gravity does not pull it.
-    friction, restitution : float
-    linear_velocity : (3,) tuple of float
-        At the start, world frame [m/s].
-    angular_velocity : (3,) tuple of float
-        At the start, world frame [rad/s].
-    behaviours : tuple of RunningBehaviour
-    entry : ObjectSpec or None
-        What a scene file says of it; None for a part of a room.
-    """
-
-    name: str
-    asset: Asset
-    category_id: int
-    pose: Pose
-    scale: Vector3 = (1.0, 1.0, 1.0)
-    static: bool = False
-    mass_kg: float | None = None
-    gravity: bool = True
-    friction: float = 0.5
-    restitution: float = 0.0
-    linear_velocity: Vector3 = (0.0, 0.0, 0.0)
-    angular_velocity: Vector3 = (0.0, 0.0, 0.0)
-    behaviours: tuple[RunningBehaviour, ...] = ()
-    entry: ObjectSpec | None = None
-
-    def __post_init__(self) -> None:
-        hollow = any(isinstance(shape, TriangleShape) for shape in self.asset.collision)
-        if hollow and not self.static:
-            raise InvalidRequest(
-                f"static of {self.name!r}", False, f"true: {self.asset.name!r} is hollow geometry"
-            )
-        if self.behaviours and self.static:
-            raise InvalidRequest(
-                f"static of {self.name!r}", True, "false for an object that has behaviours"
-            )
 
 
 class Body:
@@ -208,18 +150,42 @@ class Body:
             category=instance.category,
             pose=self.pose(),
             scale=placement.scale,
-            size_m=three((high - low) * np.asarray(placement.scale)),
+            size_m=_three((high - low) * np.asarray(placement.scale)),
             bottom_m=float(low[2] * placement.scale[2]),
             static=placement.static,
             mass_kg=self.mass_kg,
-            linear_velocity=three(linear),
-            angular_velocity=three(angular),
+            linear_velocity=_three(linear),
+            angular_velocity=_three(angular),
             behaviours=tuple(
                 {"type": running.kind.type, **running.parameters.told()}
                 for running in self._behaviours
             ),
             sim_time_ns=sim_time_ns,
         )
+
+    def rebuilt(self, placement: Placement, gravity: Vector3) -> Body:
+        """Make the body that another placement says, in the place and the motion of this one.
+
+        Both are in the engine then; `remove` takes this one out of it.
+
+        Raises
+        ------
+        InvalidRequest
+            If it cannot be such a body.
+        """
+        linear, angular = self.velocity()
+        moving = replace(
+            placement,
+            pose=self.pose(),
+            linear_velocity=_three(linear),
+            angular_velocity=_three(angular),
+            behaviours=self._behaviours,
+        )
+        new = Body(self._client, moving, gravity)
+        new.arranged = self.arranged and placement.scale == self.placement.scale
+        new.told_pose = self.told_pose
+        new.behaves_as_told = self.behaves_as_told
+        return new
 
     @property
     def behaviours(self) -> tuple[RunningBehaviour, ...]:
@@ -408,8 +374,7 @@ class Body:
         return matrix
 
 
-def three(values: NDArray[np.float64]) -> Vector3:
-    """Give three numbers as a tuple."""
+def _three(values: NDArray[np.float64]) -> Vector3:
     return float(values[0]), float(values[1]), float(values[2])
 
 

@@ -21,7 +21,7 @@ from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
-from sailenv_ros.world.bodies import Body, Confines, Placement, three
+from sailenv_ros.world.bodies import Body, Confines, Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.stand import Stand
@@ -152,9 +152,9 @@ class World:
         return MappingProxyType(self._movers)
 
     @property
-    def room_parts(self) -> frozenset[str]:
-        """Names of what a room consisted of at the start."""
-        return self._room_parts
+    def missing_parts(self) -> frozenset[str]:
+        """Names of the parts of the room that were there at the start and are no more."""
+        return self._room_parts.difference(body.placement.name for body in self._bodies.values())
 
     @property
     def first_bodies(self) -> Mapping[str, Body]:
@@ -273,23 +273,11 @@ class World:
         old = self.body(instance_id)
         if placement.name != old.placement.name:
             self._require_free_name(placement.name)
-        linear, angular = old.velocity()
-        placement = replace(
-            placement,
-            pose=old.pose(),
-            linear_velocity=three(linear),
-            angular_velocity=three(angular),
-            behaviours=old.behaviours,
-        )
-        new = Body(self._client, placement, self._gravity)
-        same_size = placement.scale == old.placement.scale
-        new.arranged = old.arranged and same_size
-        new.told_pose = old.told_pose
-        new.behaves_as_told = old.behaves_as_told
+        new = old.rebuilt(placement, self._gravity)
         self._rouse(old)
         old.remove()
         self._bodies[instance_id] = new
-        if not same_size:
+        if placement.scale != old.placement.scale:
             self._histories[instance_id] = self._new_history()
             self._forget_chart(instance_id)
         self._changed()

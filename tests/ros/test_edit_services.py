@@ -93,6 +93,20 @@ def test_surroundings_change_by_the_keys_of_a_file(agent: Agent) -> None:
         agent.set_environment(exposure=object())
 
 
+def test_lights_come_and_go(agent: Agent) -> None:
+    """A lamp is in the next picture, then it is gone; names are unique."""
+    dark = agent.get_frame()["main"].mean()
+    lamp = agent.add_light("lamp", "point", position_m=(1.0, 0.0, 2.0), intensity=8.0)
+    assert (lamp.type, lamp.position_m, lamp.range_m) == ("point", (1.0, 0.0, 2.0), 20.0)
+    assert agent.lights_names == ["lamp"]
+    assert agent.get_frame()["main"].mean() > dark
+    with pytest.raises(RequestRefused, match="light name"):
+        agent.add_light("lamp", "spot")
+    agent.remove_light("lamp")
+    assert agent.lights_names == []
+    assert agent.get_frame()["main"].mean() == pytest.approx(dark)
+
+
 def test_tracks_are_announced_and_run_through(agent: Agent) -> None:
     """Waypoints come by pose or by pair; the second mover's can be set as the first's."""
     assert [len(mover.waypoints) for mover in agent.movers.values()] == [2, 0]

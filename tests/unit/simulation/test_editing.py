@@ -244,6 +244,42 @@ def test_refused_surroundings_change_nothing(
     assert core.info.environment == before
 
 
+# -- lights ------------------------------------------------------------------------------------
+
+
+def test_lights_come_and_go(core: SimulationCore, told: list[SceneInfo]) -> None:
+    """A new one is announced as it was asked for, and is saved."""
+    lamp = core.add_light("lamp", "point", position_m=(0.0, 0.0, 2.0), intensity=3.0)
+    assert told[-1].lights == (lamp,)
+    assert (lamp.position_m, lamp.intensity, lamp.range_m) == ((0.0, 0.0, 2.0), 3.0, 20.0)
+    assert "{name: lamp, type: point, position: [0, 0, 2], intensity: 3}" in core.scene_text()
+    core.remove_light("lamp")
+    assert told[-1].lights == ()
+    assert "lights:" not in core.scene_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "type_", "attributes", "error"),
+    [
+        ("lamp", "point", {}, "name"),
+        ("torch", "laser", {}, "laser"),
+        ("", "point", {}, "name"),
+        ("torch", "point", {"range_m": 0.0}, "range"),
+        ("torch", "point", {"glow": 1.0}, "glow"),
+    ],
+)
+def test_a_light_that_cannot_be_saved_is_refused(
+    core: SimulationCore, name: str, type_: Any, attributes: dict[str, Any], error: str
+) -> None:
+    core.add_light("lamp", "spot")
+    before = core.lights()
+    with pytest.raises(InvalidRequest, match=error):
+        core.add_light(name, type_, **attributes)
+    with pytest.raises(UnknownName, match="lamp"):
+        core.remove_light("torch")
+    assert core.lights() == before
+
+
 # -- tracks ------------------------------------------------------------------------------------
 
 

@@ -272,6 +272,8 @@ _edits = st.one_of(
     st.tuples(st.just("attach_behaviour"), st.sampled_from(["cup", "toy"]), _numbers),
     st.tuples(st.just("detach_behaviours"), _names),
     st.tuples(st.just("set_light"), st.sampled_from(["sun", "lamp"]), _lights),
+    st.tuples(st.just("add_light"), st.sampled_from(["moon", "glow"]), _lights),
+    st.tuples(st.just("remove_light"), st.sampled_from(["sun", "lamp", "moon"])),
     st.tuples(st.just("set_environment"), _surroundings),
     st.tuples(st.just("set_ambient_light"), _colours),
     st.tuples(st.just("set_waypoints"), st.sampled_from(["rail", "cart"]),
@@ -291,6 +293,9 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
         core.spawn_object(asset, pose=pose, scale=0.2, static=static)
     elif name in ("change_object", "set_light"):
         getattr(core, name)(given[0], **given[1])
+    elif name == "add_light":
+        attributes = {"type": "point", **given[1]}
+        core.add_light(given[0], attributes.pop("type"), **attributes)
     elif name == "set_environment":
         core.set_environment(**given[0])
     elif name == "attach_behaviour":
@@ -398,6 +403,15 @@ def test_parts_of_the_room_that_were_moved_are_told(core: SimulationCore) -> Non
     with pytest.raises(InvalidEntry, match=r"'window 1' .*taken out.*'north wall' .*moved"):
         core.save_scene("broken")
     assert "broken" not in core.info.scenes
+
+
+def test_parts_that_a_room_may_do_without_are_left_out(core: SimulationCore) -> None:
+    """A room whose skirting and curtains were taken out begins without them."""
+    core.despawn_object("skirting")
+    core.despawn_object("curtains 1")
+    text = assert_comes_back(core)
+    assert "skirting: false" in text
+    assert "curtains: false" in text
 
 
 def test_an_uploaded_model_is_kept_or_told(
