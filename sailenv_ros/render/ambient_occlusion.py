@@ -1,9 +1,9 @@
 """How much of the light from around reaches each surface past its neighbours in the picture.
 
 Depth and instance ids come in, the open share at half resolution goes out. Each sample looks at
-eight points around it, within a radius on the surface: what rises above its tangent plane hides a
+six points around it, within a radius on the surface: what rises above its tangent plane hides a
 part of the half space before it, the less the farther it is (after McGuire et al. 2011, "The
-alchemy screen-space ambient obscurance algorithm"). Which eight differs from pixel to pixel in
+alchemy screen-space ambient obscurance algorithm"). Which six differs from pixel to pixel in
 blocks of four by four; averaging over such a block on one surface removes the pattern.
 """
 
@@ -19,7 +19,7 @@ from sailenv_ros.render.bands import Bands, alone
 
 __all__ = ["open_share", "warm_up"]
 
-TAPS = 8
+TAPS = 6
 REACH_PX = 48
 """Farthest point that is looked at, in samples: near things would else reach across the picture."""
 
@@ -151,6 +151,7 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled
     per_r2 = one / (radius_m * radius_m)
     scale = np.float32(GAIN / TAPS) * strength
     wide, high = np.float32(columns), np.float32(rows)
+    right, bottom = wide - one, high - one
     flat = inverse.reshape(-1)
     for v in range(first, last):
         up, down = max(v - 1, 0), min(v + 1, rows - 1)
@@ -184,13 +185,14 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled
             hidden = zero
             block = (v & 3) * 4 + (u & 3)
             fu, fv = np.float32(u) + half, np.float32(v) + half
-            for tap in range(TAPS):
+            for tap in range(pattern.shape[2]):
                 at_u = fu + pattern[block, 0, tap] * reach
                 at_v = fv + pattern[block, 1, tap] * reach
-                inside = zero <= at_u < wide and zero <= at_v < high
-                tu = np.int32(at_u) if inside else u
-                tv = np.int32(at_v) if inside else v
-                other = flat[tv * np.int32(columns) + tu]
+                # Without branches: where a point falls cannot be foretold.
+                inside = (at_u >= zero) & (at_u < wide) & (at_v >= zero) & (at_v < high)
+                tu = np.int32(min(max(at_u, zero), right))
+                tv = np.int32(min(max(at_v, zero), bottom))
+                other = flat[np.uint32(tv * np.int32(columns) + tu)]
                 tz = one / abs(other)
                 qx = (np.float32(tu) - cx) * per_f * tz
                 qy = (np.float32(tv) - cy) * per_f * tz
@@ -199,8 +201,8 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled
                 fall = max(one - d2 * per_r2, zero)
                 height_m = (one - (a * qx + b * qy + c * tz)) * plane_m
                 rise = height_m / np.sqrt(d2) - np.float32(BIAS)
-                both_baked = own < zero and other < zero
-                hidden += zero if both_baked else max(rise, zero) * fall
+                counts = inside & ((own > zero) | (other > zero))
+                hidden += max(rise, zero) * fall if counts else zero
             out[v, u] = np.uint8(np.float32(255.0) * max(zero, one - scale * hidden) + half)
 
 

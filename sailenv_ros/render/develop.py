@@ -85,7 +85,7 @@ def warm_up() -> None:
     shaded(radiance, half.astype(np.uint8), half, surface)
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@numba.njit(cache=True, nogil=True)
 def _put(picture, v, u, r, g, b):  # type: ignore[no-untyped-def]  # compiled
     picture[v, u, 0] = r
     picture[v, u, 1] = g
@@ -105,26 +105,27 @@ def _plain(bits, table, picture, first, last):  # type: ignore[no-untyped-def]  
 def _develop(  # type: ignore[no-untyped-def]  # compiled
     bits, table, open_share, inverse, surface, picture, first, last
 ):
+    factors = np.empty(bits.shape[1], np.float32)
     for v in range(first, last):
+        _find_arriving(bits, open_share, inverse, surface, v, factors)
         for u in range(bits.shape[1]):
-            factor = _arriving(bits, open_share, inverse, surface, v, u)
-            r, g, b = bits[v, u, 0], bits[v, u, 1], bits[v, u, 2]
-            if factor < np.float32(1.0):
-                r, g, b = _scaled(r, factor), _scaled(g, factor), _scaled(b, factor)
+            r = _scaled(bits[v, u, 0], factors[u])
+            g = _scaled(bits[v, u, 1], factors[u])
+            b = _scaled(bits[v, u, 2], factors[u])
             _put(picture, v, u, table[r], table[g], table[b])
 
 
 @numba.njit(cache=True, nogil=True)
 def _shade(bits, open_share, inverse, surface):  # type: ignore[no-untyped-def]  # compiled
+    factors = np.empty(bits.shape[1], np.float32)
     for v in range(bits.shape[0]):
+        _find_arriving(bits, open_share, inverse, surface, v, factors)
         for u in range(bits.shape[1]):
-            factor = _arriving(bits, open_share, inverse, surface, v, u)
-            if factor < np.float32(1.0):
-                for c in range(3):
-                    bits[v, u, c] = _scaled(bits[v, u, c], factor)
+            for c in range(3):
+                bits[v, u, c] = _scaled(bits[v, u, c], factors[u])
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@numba.njit(cache=True, nogil=True)
 def _scaled(half, factor):  # type: ignore[no-untyped-def]  # compiled
     """Multiply a half-precision number of 0 or more, given by its bits, with 0 to 1; gives bits."""
     # The bits of a half, shifted, are those of a float 2^112 times smaller.
@@ -132,32 +133,27 @@ def _scaled(half, factor):  # type: ignore[no-untyped-def]  # compiled
     return np.uint16((np.float32(number).view(np.int32) + 4096) >> 13)
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
-def _arriving(bits, open_share, inverse, surface, v, u):  # type: ignore[no-untyped-def]
-    """Share of a pixel's light that is left, by the samples around it on its own surface."""
-    above, below = v >> 1, min((v + 1) >> 1, open_share.shape[0] - 1)
-    left, right = u >> 1, min((u + 1) >> 1, open_share.shape[1] - 1)
-    a0, a1 = open_share[above, left], open_share[above, right]
-    b0, b1 = open_share[below, left], open_share[below, right]
-    one, weight, total = np.float32(1.0), np.float32(0.0), np.float32(0.0)
-    if min(a0, a1, b0, b1) == 255:
-        return one
-    z = surface[v, u, 0]
-    off = np.float32(SAME_SURFACE)
-    if abs(abs(inverse[above, left]) * z - one) <= off:
-        weight += one
-        total += np.float32(a0)
-    if abs(abs(inverse[above, right]) * z - one) <= off:
-        weight += one
-        total += np.float32(a1)
-    if abs(abs(inverse[below, left]) * z - one) <= off:
-        weight += one
-        total += np.float32(b0)
-    if abs(abs(inverse[below, right]) * z - one) <= off:
-        weight += one
-        total += np.float32(b1)
-    if weight == np.float32(0.0):
-        return one
-    closed = one - total / (weight * np.float32(255.0))
-    share = np.int32(np.int32(bits[v, u, 3]) << 13).view(np.float32) * np.float32(2.0**112)
-    return one - min(share, one) * closed
+@numba.njit(cache=True, nogil=True)
+def _find_arriving(  # type: ignore[no-untyped-def]  # compiled
+    bits, open_share, inverse, surface, v, factors
+):
+    """Share of each pixel's light in a row that is left, by the nearest sample on its surface."""
+    one, off = np.float32(1.0), np.float32(SAME_SURFACE)
+    above, below = v >> 1, min((v >> 1) + 1, open_share.shape[0] - 1)
+    last = open_share.shape[1] - 1
+    for u in range(bits.shape[1]):
+        z = surface[v, u, 0]
+        row, column = above, u >> 1
+        found = abs(abs(inverse[row, column]) * z - one) <= off
+        if not found:
+            # An edge runs between the sample and the pixel: another may lie on its surface.
+            for more in range(1, 4):
+                row = below if more >= 2 else above
+                column = min((u >> 1) + (more & 1), last)
+                found = abs(abs(inverse[row, column]) * z - one) <= off
+                if found:
+                    break
+        arriving = open_share[row, column] if found else np.uint8(255)
+        share = np.int32(np.int32(bits[v, u, 3]) << 13).view(np.float32) * np.float32(2.0**112)
+        closed = np.float32(np.int32(255) - np.int32(arriving)) * np.float32(1.0 / 255.0)
+        factors[u] = one - min(share, one) * closed

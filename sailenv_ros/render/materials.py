@@ -11,7 +11,8 @@ import moderngl
 import numpy as np
 
 from sailenv_ros.model import Material, Texture
-from sailenv_ros.render.textures import TextureArrays
+from sailenv_ros.render.coverage import cutoff_by_level
+from sailenv_ros.render.textures import SIZES_PX, TextureArrays, array_of
 
 __all__ = ["MaterialBuffers"]
 
@@ -22,7 +23,8 @@ ROW = np.dtype(
         ("metallic", "<f4"),
         ("alpha_cutoff", "<f4"),
         ("emission", "<f4"),
-        ("layers", "<i4", 4),
+        ("layers", "<i4", 3),
+        ("cutoff_by_level", "<f2", 2),
     ]
 )
 
@@ -79,7 +81,9 @@ class MaterialBuffers:
         row["roughness"], row["metallic"] = material.roughness, material.metallic
         row["alpha_cutoff"] = material.alpha_cutoff
         row["emission"] = min(1.0, glow / EMISSION_SCALE)
-        row["layers"] = [*(self._textures.layer(texture) for texture in _textures(material)), 0]
+        row["layers"] = [self._textures.layer(texture) for texture in _textures(material)]
+        edge = SIZES_PX[array_of(material.base_colour_texture)]
+        row["cutoff_by_level"] = cutoff_by_level(material, edge)
 
 
 def _textures(material: Material) -> tuple[Texture | None, Texture | None, Texture | None]:

@@ -27,6 +27,7 @@ _TITLES = {
     "EnvironmentSpec": "The environment",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",
+    "PictureSpec": "A picture",
     "PointLightSpec": "A point light",
     "RoomSpec": "The room",
     "SkirtingSpec": "The skirting",

@@ -24,6 +24,7 @@ from sailenv_ros.scene.rules import (
 )
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
+from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.scene.spec_room import RoomSpec
 from sailenv_ros.scene.spec_surroundings import (
     AreaLightSpec,
@@ -45,6 +46,7 @@ __all__ = [
     "LightSpec",
     "MoverSpec",
     "ObjectSpec",
+    "PictureSpec",
     "PointLightSpec",
     "RoomSpec",
     "SceneSpec",

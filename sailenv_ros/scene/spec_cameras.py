@@ -14,6 +14,7 @@ from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.kinds import Choice, Number, Switch, Text
 from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.rules import below, distinct_values, turned_where_placed
+from sailenv_ros.scene.spec_picture import PictureSpec
 
 __all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
 
@@ -108,6 +109,9 @@ class AgentSpecModel(Turned):
     views: tuple[_ViewName, ...] = Field(
         default=FIVE_VIEWS, min_length=1, description="what its frames hold"
     )
+    picture: PictureSpec = Field(
+        default_factory=PictureSpec, description="exposure, tone curve, noise of its pictures"
+    )
     following: Annotated[bool, Switch()] = Field(
         default=True, description="true if it goes where its mover goes"
     )
@@ -132,6 +136,7 @@ class AgentSpecModel(Turned):
             depth_range_m=self.depth_range,
             rate_hz=self.rate,
             views=self.views,
+            picture=self.picture.to_settings(),
             following=self.following,
             mover=self.mover or "",
             pose=None if self.position is None else self.pose_at(self.position),

@@ -10,7 +10,9 @@ from typing import Any
 
 from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.world.world import World
 
@@ -75,6 +77,14 @@ class AgentRequests:
     def set_intrinsics(self, agent: str, intrinsics: CameraIntrinsics) -> None:
         """Give an agent another lens; its next frame has no flow, for it has no past."""
         self._agents.set_intrinsics(agent, intrinsics)
+        self._announce()
+
+    def set_picture(self, agent: str, settings: PictureSettings) -> None:
+        """Change what is done to an agent's pictures, and to nothing else."""
+        given: object = settings
+        if not isinstance(given, PictureSettings):
+            raise InvalidRequest("settings", given, "an object of PictureSettings")
+        self._agents.set_picture(agent, settings)
         self._announce()
 
     # -- of the simulation -----------------------------------------------------------------

@@ -13,6 +13,7 @@ from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
@@ -210,6 +211,12 @@ class AgentTable:
         record.registered = replace(record.registered, intrinsics=intrinsics)
         record.spec = spec
         record.forget()
+
+    def set_picture(self, name: str, settings: PictureSettings) -> None:
+        """Change what is done to an agent's pictures."""
+        record = self[name]
+        record.spec = replace(record.spec, picture=settings)
+        record.registered = replace(record.registered, picture=settings)
 
     def require_room(self, specs: Iterable[AgentSpec]) -> None:
         """Refuse a scene whose agents would be too many beside those that there are.

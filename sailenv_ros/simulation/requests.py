@@ -20,6 +20,7 @@ from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.edit_requests import EditRequests
 
 __all__ = ["REQUESTS", "Requests", "wait_for"]
@@ -57,6 +58,7 @@ REQUESTS = frozenset(
         "set_intrinsics",
         "set_light",
         "set_mover_controller",
+        "set_picture",
         "set_pose",
         "set_position",
         "set_rate",
@@ -137,6 +139,15 @@ class Requests(EditRequests):
     ) -> None:
         """Give an agent another lens or size; its next frame has no flow."""
         self._ask("set_intrinsics", timeout_s, agent, intrinsics)
+
+    def set_picture(
+        self, agent: str, settings: PictureSettings, *, timeout_s: float = 30.0
+    ) -> None:
+        """Change exposure, tone curve and effects of an agent's pictures from the next frame on.
+
+        Ground truth does not depend on them. See `sailenv_ros.picture_settings`.
+        """
+        self._ask("set_picture", timeout_s, agent, settings)
 
     def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
         """Leave the present world for another scene, at simulated time 0."""

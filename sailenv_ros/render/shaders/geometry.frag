@@ -40,7 +40,7 @@ void main() {
 #ifdef SHADED
     vec4 base = base_colour(material_colour, uv);
 #ifdef MASKED
-    if (base.a < material_finish.z) discard;
+    if (base.a < cutoff(material_finish.z, uv)) discard;
 #endif
     vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
 #ifdef NORMALS

@@ -23,6 +23,16 @@ vec4 base_colour(vec4 base, vec2 uv) {
     return base;
 }
 
+// Alpha below which there is nothing; from afar it is less (coverage.py).
+float cutoff(float nearby, vec2 uv) {
+#ifdef COLOUR_MAP
+    vec2 falls = unpackHalf2x16(uint(material_layers.w));
+    return max(nearby - falls.x * textureQueryLod(colour_maps, uv).x, min(nearby, falls.y));
+#else
+    return nearby;
+#endif
+}
+
 vec2 roughness_metallic(vec2 factors, vec2 uv) {
 #ifdef FINISH_MAP
     factors *= texture(finish_maps, vec3(uv, material_layers.y)).gb;

@@ -14,6 +14,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, NameTaken, SceneError, UnknownName
 from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -272,6 +273,27 @@ def test_a_running_simulation_is_not_stepped_by_hand() -> None:
     assert core.step(2) == 8_333_333
     core.close()
     assert renderer.closed
+
+
+def test_picture_settings_go_to_the_camera_and_survive_a_reset(core: SimulationCore) -> None:
+    """As registered, then as set; the camera carries its agent's name; wrong ones are refused."""
+    renderer = core._renderer
+    assert isinstance(renderer, BlankRenderer)
+    first, second = PictureSettings(exposure=1.0), PictureSettings(full_well=500.0)
+    core.register_agent(spec(rate_hz=0.0, picture=first))
+    core.capture("eye", ("rgb",))
+    core.set_picture("eye", second)
+    core.capture("eye", ("rgb",))
+    core.reset()
+    core.capture("eye", ("rgb",))
+    cameras = [camera for *_, camera, _ in renderer.calls]
+    assert [camera.picture for camera in cameras] == [first, second, second]
+    assert {camera.name for camera in cameras} == {"eye"}
+    with pytest.raises(InvalidRequest, match="PictureSettings"):
+        core.set_picture("eye", {"exposure": 1.0})  # type: ignore[arg-type]  # on purpose
+    with pytest.raises(UnknownName, match="agent"):
+        core.set_picture("nobody", first)
+    assert core.info.agents[-1].picture == second
 
 
 def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:

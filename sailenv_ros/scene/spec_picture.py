@@ -1,0 +1,62 @@
+"""An agent's picture in a scene file; it becomes `PictureSettings`."""
+
+from __future__ import annotations
+
+from typing import Annotated, get_args
+
+from pydantic import Field
+
+from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
+from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.scene.kinds import Choice, Number, Switch
+
+__all__ = ["PictureSpec"]
+
+_STANDARD = PictureSettings()
+
+
+def _number(name: str) -> Number:
+    low, high, unit = LIMITS[name]
+    return Number(least=low, most=high, unit=unit)
+
+
+class PictureSpec(SceneModel):
+    """What is done to an agent's picture; nothing else depends on it."""
+
+    exposure: Annotated[float, _number("exposure")] = Field(
+        default=_STANDARD.exposure,
+        description="brightens this agent's picture, besides the environment's exposure [stops]",
+    )
+    tone_curve: Annotated[ToneCurve, Choice(get_args(ToneCurve))] = Field(
+        default=_STANDARD.tone_curve,
+        description="filmic rolls highlights off; linear is plain sRGB, cut off at white",
+    )
+    occlusion_strength: Fraction = Field(
+        default=_STANDARD.occlusion_strength,
+        description="how much corners and contacts darken the light from around; 0: off",
+    )
+    occlusion_radius: Annotated[float, _number("occlusion_radius_m")] = Field(
+        default=_STANDARD.occlusion_radius_m,
+        description="from how far away surfaces darken each other [m]",
+    )
+    smooth_edges: Annotated[bool, Switch()] = Field(
+        default=_STANDARD.smooth_edges, description="true if stair-steps are smoothed"
+    )
+    bloom: Fraction = Field(
+        default=_STANDARD.bloom, description="share of the light that is spread around; 0: off"
+    )
+    full_well: Annotated[float, _number("full_well")] = Field(
+        default=_STANDARD.full_well,
+        description="electrons of a pixel of radiance 1, after exposure: the fewer, the more "
+        "noise; 0: none",
+    )
+    read_noise: Annotated[float, _number("read_noise")] = Field(
+        default=_STANDARD.read_noise,
+        description="standard deviation that reading a pixel adds [electrons]",
+    )
+
+    def to_settings(self) -> PictureSettings:
+        """Give the noun that the renderer takes."""
+        given = self.model_dump()
+        given["occlusion_radius_m"] = given.pop("occlusion_radius")
+        return PictureSettings(**given)

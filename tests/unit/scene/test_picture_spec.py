@@ -1,0 +1,51 @@
+"""An agent's picture in a scene file: to the settings that the renderer takes."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from sailenv_ros.picture_settings import LIMITS, PictureSettings
+from sailenv_ros.scene import SceneSpec
+
+
+def settings_of(**picture: Any) -> PictureSettings:
+    agent = {"name": "eye", "picture": picture} if picture else {"name": "eye"}
+    scene = SceneSpec.model_validate({"version": 1, "agents": [agent]})
+    return scene.agents[0].to_agent_spec().picture
+
+
+def test_what_is_left_out_is_as_everywhere() -> None:
+    assert settings_of() == PictureSettings()
+    assert settings_of(exposure=1) == PictureSettings(exposure=1.0)
+
+
+def test_every_setting_can_be_written() -> None:
+    """A file can say all that the noun holds, with lengths named without their unit."""
+    given = PictureSettings(
+        exposure=-1.5,
+        tone_curve="linear",
+        occlusion_strength=0.2,
+        occlusion_radius_m=0.7,
+        smooth_edges=False,
+        bloom=0.1,
+        full_well=9000.0,
+        read_noise=2.5,
+    )
+    written = {f.name.removesuffix("_m"): getattr(given, f.name) for f in fields(PictureSettings)}
+    assert settings_of(**written) == given
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_limits_are_those_of_the_settings(name: str) -> None:
+    """What the noun would refuse is refused in the file already."""
+    low, high, _ = LIMITS[name]
+    key = name.removesuffix("_m")
+    for accepted in (low, high):
+        assert getattr(settings_of(**{key: accepted}), name) == accepted
+    for refused in (low - 0.01, high * 1.01):
+        with pytest.raises(ValidationError, match=key):
+            settings_of(**{key: refused})
