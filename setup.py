@@ -10,6 +10,7 @@ PACKAGE = "sailenv_ros"
 
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
+    "aiohttp>=3.9",
     "coacd>=1.0.7",
     "embreex>=4.4.0",
     "glcontext>=3.0",
@@ -64,6 +65,8 @@ DEV = [
     "mcap-ros2-support",
     "mypy",
     "onnxruntime>=1.17",
+    # Drives Debian's Chromium, for the tests of the window.
+    "playwright>=1.40",
     "pycocotools",
     "pytest>=8.0",
     "pytest-timeout",
@@ -108,6 +111,7 @@ setup(
     package_data={
         "sailenv_ros": ["py.typed"],
         "sailenv_ros.render": ["shaders/*"],
+        "sailenv_ros.viewer": ["page/*"],
         "sailenv_msgs_py": ["py.typed"],
     },
     data_files=data_files(),
