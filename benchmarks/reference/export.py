@@ -188,4 +188,4 @@ def _shape(material: Material, pieces: list[_Piece], parts: Parts) -> Dict:
 
 def _integrator() -> Dict:
     # Of Mitsuba's integrators this one lets light from lamps pass through panes and cut-outs.
-    return {"type": "volpath", "max_depth": LARGEST_DEPTH, "rr_depth": 8}
+    return {"type": "volpath", "max_depth": LARGEST_DEPTH, "rr_depth": 5}
