@@ -85,29 +85,41 @@ def sensor(camera: Camera) -> Dict:
 
 
 def lamp(light: Light) -> Dict:
-    """Describe a light in the units of `Light`; `trace` knows how to sample it.
+    """Describe a light in the units of `Light`, by what its kind has, for `lamps`.
 
-    An area light's width lies level, or along world x if it faces straight up or down.
+    An area light's width lies level; of one that faces straight up or down, along world y.
     """
+    power = [channel * light.intensity for channel in light.colour]
+    described: Dict = {"type": "sailenv_lamp", "kind": light.type, "power": power}
+    if light.type != "point":
+        # Normalised twice a direction differs in its last digit, which is no other light.
+        described["direction"] = [round(part, 9) for part in light.direction]
+    if light.type == "directional":
+        return {**described, "cos_radius": _cosine(SUN_RADIUS_DEG)}
+    described["position"] = list(light.position_m)
+    if light.type == "area":
+        return {**described, **_face(light)}
+    described["range"] = max(light.range_m, 1e-3)
+    if light.type == "spot":
+        described["cos_inner"] = _cosine(light.inner_cone_deg)
+        described["cos_outer"] = _cosine(light.outer_cone_deg)
+    return described
+
+
+def _cosine(angle_deg: float) -> float:
+    return math.cos(math.radians(angle_deg))
+
+
+def _face(light: Light) -> Dict:
     direction = np.asarray(light.direction, dtype=np.float64)
     across = np.cross([0.0, 0.0, 1.0], direction)
     if np.linalg.norm(across) < 1e-6:
-        across = np.array([1.0, 0.0, 0.0])
+        across = np.array([0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
-    up = np.cross(direction, across)
     return {
-        "type": "sailenv_lamp",
-        "kind": light.type,
-        "power": [channel * light.intensity for channel in light.colour],
-        "position": list(light.position_m),
-        "direction": list(light.direction),
         "half_width": (across * light.width_m / 2.0).tolist(),
-        "half_height": (up * light.height_m / 2.0).tolist(),
+        "half_height": (np.cross(direction, across) * light.height_m / 2.0).tolist(),
         "area": light.width_m * light.height_m,
-        "range": max(light.range_m, 1e-3),
-        "cos_inner": math.cos(math.radians(light.inner_cone_deg)),
-        "cos_outer": math.cos(math.radians(light.outer_cone_deg)),
-        "cos_radius": math.cos(math.radians(SUN_RADIUS_DEG)),
     }
 
 

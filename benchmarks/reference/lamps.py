@@ -15,6 +15,19 @@ __all__ = ["register"]
 
 FAR_M = 1000.0
 
+_NUMBERS: dict[str, Any] = {
+    "position": mi.ScalarPoint3f,
+    "direction": mi.ScalarVector3f,
+    "half_width": mi.ScalarVector3f,
+    "half_height": mi.ScalarVector3f,
+    "area": float,
+    "range": float,
+    "cos_inner": float,
+    "cos_outer": float,
+    "cos_radius": float,
+}
+"""What a light may have, by its kind; see `export.lamp`."""
+
 
 class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
     """One light; see `sailenv_ros.lights.Light` for its units."""
@@ -23,12 +36,9 @@ class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
         mi.Emitter.__init__(self, props)
         self.kind = str(props["kind"])
         self.power = mi.Color3f(props["power"])
-        self.position = mi.ScalarPoint3f(props["position"])
-        self.direction = mi.ScalarVector3f(props["direction"])
-        self.half_width = mi.ScalarVector3f(props["half_width"])
-        self.half_height = mi.ScalarVector3f(props["half_height"])
-        for name in ("area", "range", "cos_inner", "cos_outer", "cos_radius"):
-            setattr(self, name, float(props[name]))
+        for name, make in _NUMBERS.items():
+            if props.has_property(name):
+                setattr(self, name, make(props[name]))
         flags = mi.EmitterFlags
         self.m_flags = flags.DeltaDirection if self.kind == "directional" else flags.DeltaPosition
 
@@ -58,14 +68,15 @@ class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
 
     def _pattern(self, away: Any, distance2: Any) -> Any:
         """Give the share of the light that goes this way and this far."""
-        along = -dr.dot(away, mi.Vector3f(self.direction))
         if self.kind == "area":
+            along = -dr.dot(away, mi.Vector3f(self.direction))
             return dr.maximum(along, 0.0) * self.area
         reach = distance2 / self.range**2
         window = dr.clip(1.0 - reach * reach, 0.0, 1.0)
         window *= window
         if self.kind == "point":
             return window
+        along = -dr.dot(away, mi.Vector3f(self.direction))
         width = max(self.cos_inner - self.cos_outer, 1e-6)
         t = dr.clip((along - self.cos_outer) / width, 0.0, 1.0)
         return window * t * t * (3.0 - 2.0 * t)

@@ -185,7 +185,7 @@ def test_an_area_light_is_a_rectangle_of_its_size_that_faces_its_way(
 
 
 def test_lamps_keep_their_units() -> None:
-    """Power is colour times intensity; cones are half angles; the sun has the sun's width."""
+    """Power is colour times intensity, cones are half angles, the sun is as wide as the sun."""
     light = Light(
         name="spot",
         type="spot",
@@ -200,7 +200,8 @@ def test_lamps_keep_their_units() -> None:
     assert described["cos_inner"] == pytest.approx(math.cos(math.pi / 18))
     assert described["cos_outer"] == pytest.approx(math.sqrt(3) / 2)
     assert described["range"] == 7.0
-    width_deg = 2.0 * math.degrees(math.acos(described["cos_radius"]))
+    sun = export.lamp(dataclasses.replace(light, type="directional"))
+    width_deg = 2.0 * math.degrees(math.acos(sun["cos_radius"]))
     assert width_deg == pytest.approx(0.533, abs=1e-3)
 
 
@@ -217,6 +218,16 @@ def test_what_stands_for_bounced_light_is_left_out(parts: Parts) -> None:
     assert scene(Environment(), lamp, off) == first
     assert scene(Environment(), dataclasses.replace(lamp, intensity=2.0)) != first
     assert scene(Environment(sky_zenith=(1.0, 0.0, 0.0)), lamp) != first
+
+
+def test_what_a_kind_of_light_does_not_use_is_not_told() -> None:
+    """Two lights that shine alike are described alike, so that nothing is traced twice."""
+    point = Light(name="a", type="point")
+    other = Light(name="b", type="point", direction=(1.0, 0.0, 0.0), width_m=3.0)
+    assert export.lamp(point) == export.lamp(other)
+    sun = Light(name="sun", type="directional", direction=(0.0, 1.0, -1.0))
+    moved = dataclasses.replace(sun, position_m=(5.0, 5.0, 5.0), range_m=1.0)
+    assert export.lamp(sun) == export.lamp(moved)
 
 
 # ---- shapes
