@@ -11,6 +11,7 @@ PACKAGE = "sailenv_ros"
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
     "coacd>=1.0.7",
+    "embreex>=4.4.0",
     "glcontext>=3.0",
     # Compresses what clients of the gateway want gzipped, many times faster than zlib.
     "isal>=1.6",
@@ -33,6 +34,7 @@ REQUIREMENTS = [
     "rich>=13.0",
     "scipy>=1.11",
     "trimesh>=4.5",
+    "xatlas>=0.0.9",
     "zstandard>=0.22",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.

@@ -14,6 +14,7 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import FIVE_VIEWS, checked_views
 from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import PictureSettings
 
 __all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "AgentPose", "AgentSpec"]
 
@@ -42,6 +43,8 @@ class AgentSpec:
         True if the agent takes over its mover's pose.
     mover : str
         The mover it follows; empty means the scene's first.
+    picture : PictureSettings
+        What is done to its pictures, and to nothing else.
     pose : Pose or None
         Where it starts when it does not follow; None means at the mover.
     """
@@ -54,6 +57,7 @@ class AgentSpec:
     following: bool = True
     mover: str = ""
     pose: Pose | None = None
+    picture: PictureSettings = field(default_factory=PictureSettings)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):

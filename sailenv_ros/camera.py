@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose, invert
+from sailenv_ros.picture_settings import PictureSettings
 
 __all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics"]
 
@@ -161,10 +162,16 @@ class Camera:
     intrinsics : CameraIntrinsics
     pose : Pose
         Pose of the camera's body (x forward, y left, z up) in the world frame.
+    picture : PictureSettings
+        Concerns the ``rgb`` view alone.
+    name : str
+        Whose camera it is: two cameras have different noise.
     """
 
     intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
     pose: Pose = field(default_factory=Pose)
+    picture: PictureSettings = field(default_factory=PictureSettings)
+    name: str = ""
 
     @cached_property
     def world_from_camera(self) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.camera import Camera
 from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
@@ -56,6 +57,8 @@ class SceneContents:
     categories : CategoryTable
     lights : tuple of Light
     environment : Environment
+    baked : BakedLight or None
+        Light worked out beforehand for what stands still; None where there is none.
     """
 
     scene: str
@@ -65,6 +68,7 @@ class SceneContents:
     categories: CategoryTable
     lights: tuple[Light, ...] = ()
     environment: Environment = field(default_factory=Environment)
+    baked: BakedLight | None = None
 
     @cached_property
     def instance_ids(self) -> NDArray[np.uint16]:

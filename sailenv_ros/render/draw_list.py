@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.model import Material, Mesh
-from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.textures import array_of
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
@@ -34,6 +34,7 @@ ROW = np.dtype(
         ("instance_id", "<f4"),
         ("material", "<u4"),
         ("unused", "<f4", 2),
+        ("light_chart", "<f4", 4),
     ]
 )
 
@@ -108,12 +109,23 @@ class Batch:
         if self.count:
             self.commands.write(self._all[order].tobytes())
 
+    def least(self, distance: NDArray[np.float64]) -> float:
+        """Give the least of its parts' distances."""
+        return float(distance[self._parts].min())
+
 
 class DrawList:
     """The draws of one scene's contents.
 
-    Parts whose material is see-through (``blend``) are not drawn: their pixels show, and are
-    labelled as, what lies behind.
+    Parameters
+    ----------
+    context : Context
+    contents : SceneContents
+    geometry : GeometryBuffers
+    materials : MaterialBuffers
+    see_through : bool
+        True for the parts whose material is see-through (``blend``), each in a batch of its own;
+        False for all others.
     """
 
     def __init__(
@@ -122,37 +134,44 @@ class DrawList:
         contents: SceneContents,
         geometry: GeometryBuffers,
         materials: MaterialBuffers,
+        *,
+        see_through: bool = False,
     ) -> None:
         parts = sorted(
             (
-                (BatchKind.of(part.material), row, part)
-                for row, drawn in enumerate(contents.instances)
-                for part in drawn.model.parts
-                if part.material.alpha != "blend"
+                (BatchKind.of(part.material), row, part, mesh)
+                for row, (drawn, meshes) in enumerate(
+                    zip(contents.instances, drawn_meshes(contents), strict=True)
+                )
+                for part, mesh in zip(drawn.model.parts, meshes, strict=True)
+                if (part.material.alpha == "blend") == see_through
             ),
             key=lambda entry: (entry[0], entry[1]),
         )
         self.contents = contents
-        self._instance_rows = np.array([row for _, row, _ in parts], dtype=np.intp)
+        self._instance_rows = np.array([row for _, row, *_ in parts], dtype=np.intp)
         self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
         self._rows = np.zeros(max(1, len(parts)), ROW)
         self._rows["instance_id"][: len(parts)] = contents.instance_ids[self._instance_rows]
-        self._rows["material"][: len(parts)] = [materials.row(part.material) for *_, part in parts]
+        self._rows["material"][: len(parts)] = [
+            materials.row(part.material) for _, _, part, _ in parts
+        ]
         commands = np.zeros(len(parts), COMMAND)
-        for number, (*_, part) in enumerate(parts):
-            lies = geometry.slice(part.mesh)
+        for number, (*_, mesh) in enumerate(parts):
+            lies = geometry.slice(mesh)
             commands[number] = (lies.index_count, 1, lies.first_index, lies.first_vertex, number)
         self.row_buffer = context.buffer(reserve=self._rows.nbytes, dynamic=True)
         self.draw_numbers = context.buffer(np.arange(max(1, len(parts)), dtype=np.int32).tobytes())
-        self._corners = np.array([_corners(part.mesh) for *_, part in parts]).reshape(-1, 8, 4)
+        self._corners = np.array([_corners(part.mesh) for _, _, part, _ in parts]).reshape(-1, 8, 4)
         kinds = [kind for kind, *_ in parts]
         everything = np.arange(len(parts))
-        self.batches = tuple(_batches(context, kinds, everything, commands))
+        self.batches = tuple(_batches(context, kinds, everything, commands, apart=see_through))
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
         chosen = _those(kinds, casting)
         self.caster_batches = tuple(
             _batches(context, chosen, everything[casting], commands[casting])
         )
+        self._charts, self._baked_poses = _charts(contents)
         self._visible = np.ones(len(parts), bool)
         self._distance = np.zeros(len(parts))
 
@@ -161,12 +180,16 @@ class DrawList:
         snapshot: WorldSnapshot,
         clip_from_eye: NDArray[np.float64],
         eye_from_world: NDArray[np.float64],
+        *,
+        only: NDArray[np.bool_] | None = None,
     ) -> None:
         """Write the matrices of one eye (a camera or a light), and choose what it may see.
 
         Parameters
         ----------
         clip_from_eye, eye_from_world : (4, 4) float64
+        only : (N,) bool or None
+            Which instances are drawn; None for all.
         """
         count = len(self._instance_rows)
         if count:
@@ -180,10 +203,25 @@ class DrawList:
             # GLSL stores columns, NumPy rows: the transpose is what GLSL reads as the matrix.
             rows["clip_from_object"] = clip.transpose(0, 2, 1)[self._instance_rows]
             rows["optical_normal_from_object"][:, :, :3] = normal[self._instance_rows]
+            rows["light_chart"] = np.where(
+                self.at_baked_pose(snapshot)[:, None], self._charts, 0.0
+            )[self._instance_rows]
             self._visible, self._distance = _seen(clip[self._instance_rows], self._corners)
+            if only is not None:
+                self._visible &= only[self._instance_rows]
             for batch in self.batches:
                 batch.choose(self._visible, self._distance)
         self.row_buffer.write(self._rows.tobytes())
+
+    def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+        """Tell which instances have baked light: those that stand where they stood for it."""
+        same: NDArray[np.bool_] = (snapshot.world_from_body == self._baked_poses).all(axis=(1, 2))
+        return same
+
+    def farthest_first(self) -> list[Batch]:
+        """Give the batches that the eye of `place` may see, the most distant first."""
+        seen = [batch for batch in self.batches if batch.count]
+        return sorted(seen, key=lambda batch: -batch.least(self._distance))
 
     def close(self) -> None:
         """Free the buffers."""
@@ -195,6 +233,19 @@ class DrawList:
         """Keep those casters of some instances that the eye of `place` may see."""
         for batch in self.caster_batches:
             batch.choose(self._visible & instances[self._instance_rows], self._distance)
+
+
+def _charts(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give each instance's offset and scale in the light map, and the pose that it is good for."""
+    count = len(contents.instances)
+    charts, poses = np.zeros((count, 4)), np.full((count, 4, 4), np.nan)
+    baked = contents.baked.charts if contents.baked is not None else {}
+    for row, drawn in enumerate(contents.instances):
+        chart = baked.get(drawn.instance.id)
+        if chart is not None:
+            charts[row] = *chart.offset, *chart.scale
+            poses[row] = chart.world_from_body
+    return charts, poses
 
 
 def casts(drawn: DrawnInstance) -> bool:
@@ -235,7 +286,14 @@ def _batches(
     kinds: list[BatchKind],
     parts: NDArray[np.intp],
     commands: NDArray[np.void],
+    *,
+    apart: bool = False,
 ) -> Iterator[Batch]:
+    if apart:
+        for number, kind in enumerate(kinds):
+            one = slice(number, number + 1)
+            yield Batch(context, kind, parts[one], commands[one])
+        return
     for kind in sorted(set(kinds)):
         chosen = np.array([k == kind for k in kinds], dtype=bool)
         yield Batch(context, kind, parts[chosen], commands[chosen])

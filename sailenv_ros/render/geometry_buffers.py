@@ -1,7 +1,7 @@
 """Meshes on the GPU: one vertex buffer and one index buffer for everything that is drawn.
 
-Models come in, slices of the two buffers go out. The buffers are made anew when a mesh appears
-that is not there, and then hold what the present scene shows and nothing else.
+The parts of a scene come in, slices of the two buffers go out. The buffers are made anew when a
+mesh appears that is not there, and then hold what the present scene shows and nothing else.
 """
 
 from __future__ import annotations
@@ -13,11 +13,77 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.model import Mesh, Model
+from sailenv_ros.baked_light import Unwrapping
+from sailenv_ros.model import Mesh
+from sailenv_ros.snapshot import SceneContents
 
-__all__ = ["GeometryBuffers", "MeshSlice"]
+__all__ = ["DrawnMesh", "GeometryBuffers", "MeshSlice", "drawn_meshes"]
 
-VERTEX = np.dtype([("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2)])
+VERTEX = np.dtype(
+    [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("light_uv", "<f4", 2)]
+)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DrawnMesh:
+    """A mesh as it is drawn: with places in a light map if its model was unwrapped.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    unwrapping : Unwrapping or None
+    part : int
+        Number of the mesh among its model's parts.
+    """
+
+    mesh: Mesh
+    unwrapping: Unwrapping | None
+    part: int
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """What tells drawn meshes apart while both objects live."""
+        return id(self.mesh), id(self.unwrapping)
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(M, 3) uint32: indices into `vertices`."""
+        return (
+            self.mesh.triangles if self.unwrapping is None else self.unwrapping.triangles[self.part]
+        )
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices are drawn."""
+        return len(
+            self.mesh.positions if self.unwrapping is None else self.unwrapping.vertices[self.part]
+        )
+
+    def interleaved(self) -> NDArray[np.void]:
+        """Give the vertices as the buffer holds them."""
+        mesh = self.mesh
+        result = np.zeros(self.vertex_count, VERTEX)
+        chosen: slice | NDArray[np.uint32] = slice(None)
+        if self.unwrapping is not None:
+            chosen = self.unwrapping.vertices[self.part]
+            result["light_uv"] = self.unwrapping.uvs[self.part]
+        result["position"] = mesh.positions[chosen]
+        result["normal"] = mesh.normals[chosen]
+        result["uv"] = mesh.uvs[chosen]
+        return result
+
+
+def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
+    """Give the meshes of each instance's parts, in their order."""
+    charts = contents.baked.charts if contents.baked is not None else {}
+    result = []
+    for drawn in contents.instances:
+        chart = charts.get(drawn.instance.id)
+        flat = chart.unwrapping if chart is not None else None
+        result.append(
+            [DrawnMesh(part.mesh, flat, place) for place, part in enumerate(drawn.model.parts)]
+        )
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,46 +100,41 @@ class GeometryBuffers:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._slices: dict[int, MeshSlice] = {}
-        self._kept: list[Mesh] = []
+        self._slices: dict[tuple[int, int], MeshSlice] = {}
+        self._kept: list[DrawnMesh] = []
         self.vertex_buffer = context.buffer(np.zeros(1, VERTEX).tobytes())
         self.index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())
 
-    def show(self, models: Iterable[Model]) -> None:
-        """Make sure that the meshes of these models are there; others may be gone afterwards."""
-        wanted = list({id(part.mesh): part.mesh for m in models for part in m.parts}.values())
-        held = sum(len(mesh.positions) for mesh in self._kept)
-        needed = sum(len(mesh.positions) for mesh in wanted)
-        if all(id(mesh) in self._slices for mesh in wanted) and held <= 2 * needed:
+    def show(self, meshes: Iterable[DrawnMesh]) -> None:
+        """Make sure that these meshes are there; others may be gone afterwards."""
+        wanted = list({mesh.key: mesh for mesh in meshes}.values())
+        held = sum(mesh.vertex_count for mesh in self._kept)
+        needed = sum(mesh.vertex_count for mesh in wanted)
+        if all(mesh.key in self._slices for mesh in wanted) and held <= 2 * needed:
             return
         self._slices = {}
         # The number of an object is unique only while the object lives: it is kept.
         self._kept = wanted
         first_index = first_vertex = 0
         for mesh in wanted:
-            self._slices[id(mesh)] = MeshSlice(first_index, mesh.triangles.size, first_vertex)
-            first_vertex += len(mesh.positions)
-            first_index += mesh.triangles.size
-        vertices = [np.zeros(0, VERTEX), *(_interleaved(mesh) for mesh in wanted)]
+            count = mesh.triangles.size
+            self._slices[mesh.key] = MeshSlice(first_index, count, first_vertex)
+            first_vertex += mesh.vertex_count
+            first_index += count
+        vertices = [np.zeros(0, VERTEX), *(mesh.interleaved() for mesh in wanted)]
         indices = [np.zeros(0, np.uint32), *(mesh.triangles.reshape(-1) for mesh in wanted)]
         self.close()
         self.vertex_buffer = self._context.buffer(_or_one(np.concatenate(vertices)).tobytes())
         self.index_buffer = self._context.buffer(_or_one(np.concatenate(indices)).tobytes())
 
-    def slice(self, mesh: Mesh) -> MeshSlice:
+    def slice(self, mesh: DrawnMesh) -> MeshSlice:
         """Say where a mesh that is shown lies."""
-        return self._slices[id(mesh)]
+        return self._slices[mesh.key]
 
     def close(self) -> None:
         """Free the buffers."""
         self.vertex_buffer.release()
         self.index_buffer.release()
-
-
-def _interleaved(mesh: Mesh) -> NDArray[np.void]:
-    result = np.zeros(len(mesh.positions), VERTEX)
-    result["position"], result["normal"], result["uv"] = mesh.positions, mesh.normals, mesh.uvs
-    return result
 
 
 def _or_one(array: NDArray[np.void] | NDArray[np.uint32]) -> NDArray[np.generic]:

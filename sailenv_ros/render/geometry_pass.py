@@ -21,8 +21,8 @@ __all__ = ["GeometryPass", "Targets"]
 GL_DEPTH_CLAMP = 0x864F
 GL_CLIP_DISTANCE0 = 0x3000
 
-_VERTEX_FORMAT = {"in_position": "3f", "in_normal": "3f", "in_uv": "2f"}
-_PADDING = {"in_position": "3x4", "in_normal": "3x4", "in_uv": "2x4"}
+_VERTEX_FORMAT = {"in_position": "3f", "in_normal": "3f", "in_uv": "2f", "in_light_uv": "2f"}
+_PADDING = {"in_position": "3x4", "in_normal": "3x4", "in_uv": "2x4", "in_light_uv": "2x4"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,19 +33,20 @@ class Targets:
     ----------
     surface : Texture
         Depth along the optical axis [m] and instance id, 2 x float32.
-    shape, albedo : Texture or None
-        Normal, roughness, metallic; square root of albedo, emission.
+    shape, albedo, light_at : Texture or None
+        Normal, roughness, metallic; square root of albedo, emission; place in the light map.
     normals : Texture or None
         Unit normals in the optical frame, 4 x float32.
     framebuffer : Framebuffer
         What the geometry pass draws into.
     picture : Framebuffer or None
-        What the lighting pass draws into, on the same depth buffer: sRGB, luma in alpha.
+        What the lighting pass draws into, on the same depth buffer; see `develop`.
     """
 
     surface: moderngl.Texture
     shape: moderngl.Texture | None
     albedo: moderngl.Texture | None
+    light_at: moderngl.Texture | None
     normals: moderngl.Texture | None
     depth: moderngl.Renderbuffer
     framebuffer: moderngl.Framebuffer
@@ -58,7 +59,14 @@ class Targets:
             texture = self.picture.color_attachments[0]
             self.picture.release()
             texture.release()
-        for attached in (self.surface, self.shape, self.albedo, self.normals, self.depth):
+        for attached in (
+            self.surface,
+            self.shape,
+            self.albedo,
+            self.light_at,
+            self.normals,
+            self.depth,
+        ):
             if attached is not None:
                 attached.release()
 
@@ -70,23 +78,42 @@ class GeometryPass:
         self._context = context
         self._programs = programs
 
-    def make_targets(self, width: int, height: int, *, shaded: bool, normals: bool) -> Targets:
-        """Make the textures of a picture size."""
+    def make_targets(
+        self,
+        width: int,
+        height: int,
+        *,
+        shaded: bool,
+        normals: bool,
+        baked: bool = False,
+    ) -> Targets:
+        """Make the textures of a picture size.
+
+        Parameters
+        ----------
+        shaded, normals : bool
+            What is wanted besides depth and ids.
+        baked : bool
+            True to leave places in a light map.
+        """
         size = (width, height)
         surface = self._context.texture(size, 2, dtype="f4")
         shape = self._context.texture(size, 4, dtype="f2") if shaded else None
         albedo = self._context.texture(size, 4) if shaded else None
+        light_at = self._context.texture(size, 2, dtype="nu2") if shaded and baked else None
         normal = self._context.texture(size, 4, dtype="f4") if normals else None
-        for texture in (surface, shape, albedo, normal):
+        textures = (surface, shape, albedo, light_at, normal)
+        for texture in textures:
             if texture is not None:
                 texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         depth = self._context.depth_renderbuffer(size)
-        attached = [texture for texture in (surface, shape, albedo, normal) if texture is not None]
+        attached = [texture for texture in textures if texture is not None]
         framebuffer = self._context.framebuffer(attached, depth)
-        picture = (
-            self._context.framebuffer([self._context.texture(size, 4)], depth) if shaded else None
-        )
-        return Targets(surface, shape, albedo, normal, depth, framebuffer, picture)
+        picture = None
+        if shaded:
+            colour = self._context.texture(size, 4, dtype="f2")
+            picture = self._context.framebuffer([colour], depth)
+        return Targets(*textures, depth, framebuffer, picture)
 
     def draw(
         self,
@@ -138,9 +165,12 @@ class GeometryPass:
             for name, array in zip(needed, kind.maps, strict=False):
                 if array >= 0:
                     switches[name] = 1
+        baked = targets.light_at is not None
+        if baked:
+            switches["BAKED"] = 1
         if targets.normals is not None:
             switches["NORMALS"] = 1
-            switches["LOCATION_NORMALS"] = 3 if shaded else 1
+            switches["LOCATION_NORMALS"] = (4 if baked else 3) if shaded else 1
         if "SHADED" in switches and not shaded:
             switches["UNLIT"] = 1
         return self._programs.get("geometry.vert", "geometry.frag", **switches)

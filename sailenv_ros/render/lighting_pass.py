@@ -1,13 +1,14 @@
-"""From surfaces to a picture: lights, sky, tone curve, smoothed edges.
+"""From surfaces to radiance: lights and sky.
 
-Targets of the geometry pass come in, an 8-bit sRGB picture goes out. Ground truth never passes
-through here.
+Targets of the geometry pass come in, a half-precision picture of radiance goes out. Ground truth
+never passes through here.
 """
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -15,11 +16,14 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.lights import Environment, Light, SkyMap
+from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.geometry_pass import Targets
+from sailenv_ros.render.light_mixing import strength
 from sailenv_ros.render.programs import ProgramCache, set_uniform
+from sailenv_ros.render.reflection_map import ReflectionMap
 from sailenv_ros.render.shadow_pass import SIZE_PX, ShadowPass
 
-__all__ = ["MAX_LIGHTS", "LightingPass", "main_light"]
+__all__ = ["MAX_LIGHTS", "Illumination", "LightingPass", "set_camera"]
 
 _log = logging.getLogger(__name__)
 
@@ -30,6 +34,9 @@ PENUMBRA_TEXELS = 1.6
 
 SKY_UNIT = 7
 """Texture unit of the sky's picture, below those of materials."""
+
+LIGHT_AT_UNIT, STATIC_SHADOW_UNIT = 11, 12
+"""Texture units beyond those of materials."""
 
 _KINDS = {"directional": 0.0, "point": 1.0, "spot": 2.0, "area": 3.0}
 
@@ -43,10 +50,35 @@ ROW = np.dtype(
 )
 
 
-def main_light(lights: Sequence[Light]) -> Light | None:
-    """Give the light that casts the shadow map: the strongest directional one."""
-    suns = [light for light in lights if light.type == "directional" and light.intensity > 0.0]
-    return max(suns, key=_strength, default=None)
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Illumination:
+    """Everything that lights a picture.
+
+    Attributes
+    ----------
+    main : Light or None
+        The light that has shadow maps.
+    lamps : sequence of Light
+        What else is to be drawn in real time.
+    environment : Environment
+    shadow : ShadowPass
+        Of everything; with baked light, of what has none.
+    static_shadow : ShadowPass or None
+        With baked light: of what has it.
+    baked : BakedTextures or None
+    main_baked : bool
+        True if the light map knows the main light's shadows.
+    reflections : ReflectionMap or None
+    """
+
+    main: Light | None
+    lamps: Sequence[Light]
+    environment: Environment
+    shadow: ShadowPass
+    static_shadow: ShadowPass | None = None
+    baked: BakedTextures | None = None
+    main_baked: bool = False
+    reflections: ReflectionMap | None = None
 
 
 class LightingPass:
@@ -54,55 +86,68 @@ class LightingPass:
 
     def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
         self._context = context
-        self._light = programs.get("screen.vert", "lighting.frag", MAX_LIGHTS=MAX_LIGHTS)
-        self._skies = [
-            programs.get("screen.vert", "sky.frag"),
-            programs.get("screen.vert", "sky.frag", SKY_MAP=1),
-        ]
-        self._light_array = context.vertex_array(self._light, [])
-        self._sky_arrays = [context.vertex_array(program, []) for program in self._skies]
+        self._programs = programs
+        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
         self._sky_shown: SkyMap | None = None
         self._sky_texture: moderngl.Texture | None = None
         self._warned_of: Sequence[Light] | None = None
         self._lights = context.buffer(reserve=MAX_LIGHTS * ROW.itemsize, dynamic=True)
 
-    def draw(
-        self,
-        targets: Targets,
-        camera: Camera,
-        lights: Sequence[Light],
-        environment: Environment,
-        shadow: ShadowPass,
-    ) -> None:
+    def draw(self, targets: Targets, camera: Camera, illumination: Illumination) -> None:
         """Light the surfaces of `targets` into its picture."""
         assert targets.picture is not None
         targets.picture.use()
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST)
-        kind = 0 if environment.sky is None else 1
-        for program in (self._light, self._skies[kind]):
-            _set_camera(program, camera, environment)
+        light, sky = self._chosen(illumination)
+        environment = illumination.environment
+        for program in (light, sky):
+            set_camera(program, camera, environment)
         if environment.sky is not None:
-            self._show_sky(environment.sky)
-        self._set_lights(targets, camera, lights, shadow)
+            self._show_sky(environment.sky, sky)
+        self._set_lights(light, camera, illumination)
+        _set_textures(light, targets, illumination)
         # The covering triangle lies at the far end: in front of it are surfaces, on it is sky.
         try:
             targets.picture.depth_mask = False
             context.depth_func = ">"
-            self._light_array.render(moderngl.TRIANGLES, vertices=3)
+            self._array(light).render(moderngl.TRIANGLES, vertices=3)
             context.depth_func = "=="
-            self._sky_arrays[kind].render(moderngl.TRIANGLES, vertices=3)
+            self._array(sky).render(moderngl.TRIANGLES, vertices=3)
         finally:
             targets.picture.depth_mask = True
             context.depth_func = "<"
 
     def close(self) -> None:
         """Free the buffers."""
-        for resource in (self._light_array, *self._sky_arrays, self._lights, self._sky_texture):
+        for resource in (*self._arrays.values(), self._lights, self._sky_texture):
             if resource is not None:
                 resource.release()
 
-    def _show_sky(self, sky: SkyMap) -> None:
+    def _chosen(self, illumination: Illumination) -> tuple[moderngl.Program, moderngl.Program]:
+        """Give the programs for surfaces and sky."""
+        lit: dict[str, int] = {}
+        seen: dict[str, int] = {}
+        if any(light.intensity > 0.0 for light in illumination.lamps):
+            # Even a loop that ends at once costs a tenth of the pass.
+            lit["LAMPS"] = 1
+        if illumination.baked is not None:
+            lit["BAKED"] = 1
+            if illumination.reflections is not None:
+                lit["REFLECTIONS"] = 1
+        if illumination.environment.sky is not None:
+            seen["SKY_MAP"] = 1
+        return (
+            self._programs.get("screen.vert", "lighting.frag", MAX_LIGHTS=MAX_LIGHTS, **lit),
+            self._programs.get("screen.vert", "sky.frag", **seen),
+        )
+
+    def _array(self, program: moderngl.Program) -> moderngl.VertexArray:
+        if program not in self._arrays:
+            self._arrays[program] = self._context.vertex_array(program, [])
+        return self._arrays[program]
+
+    def _show_sky(self, sky: SkyMap, program: moderngl.Program) -> None:
         """Make a sky's picture readable; it is uploaded where it is another than before."""
         if self._sky_texture is None or sky is not self._sky_shown:
             if self._sky_texture is not None:
@@ -114,16 +159,15 @@ class LightingPass:
             self._sky_texture.repeat_y = False
             self._sky_shown = sky
         self._sky_texture.use(SKY_UNIT)
-        set_uniform(self._skies[1], "sky_map", SKY_UNIT)
+        set_uniform(program, "sky_map", SKY_UNIT)
 
     def _set_lights(
-        self, targets: Targets, camera: Camera, lights: Sequence[Light], shadow: ShadowPass
+        self, program: moderngl.Program, camera: Camera, illumination: Illumination
     ) -> None:
-        program = self._light
-        sun = main_light(lights)
-        lamps = [light for light in lights if light is not sun and light.intensity > 0.0]
-        if len(lamps) > MAX_LIGHTS and self._warned_of is not lights:
-            self._warned_of = lights
+        sun = illumination.main
+        lamps = [light for light in illumination.lamps if light.intensity > 0.0]
+        if len(lamps) > MAX_LIGHTS and self._warned_of != illumination.lamps:
+            self._warned_of = illumination.lamps
             _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, len(lamps))
         self._lights.write(_light_rows(lamps, camera).tobytes())
         self._lights.bind_to_uniform_block(0)
@@ -134,26 +178,43 @@ class LightingPass:
             towards = -camera.camera_from_world[:3, :3] @ np.asarray(sun.direction)
         set_uniform(program, "main_colour", tuple(colour))
         set_uniform(program, "main_towards", tuple(towards))
+        shadow = illumination.shadow
         matrix = shadow.map_from_world @ camera.world_from_camera
         set_uniform(program, "shadow_from_optical", _columns(matrix))
         set_uniform(program, "shadow_texel", (shadow.texel_m, 1.0 / SIZE_PX, PENUMBRA_TEXELS))
-        for unit, (name, texture) in enumerate(
-            (
-                ("surface", targets.surface),
-                ("shape", targets.shape),
-                ("albedo", targets.albedo),
-                ("shadow_map", shadow.texture),
-            )
-        ):
-            assert texture is not None
-            texture.use(unit)
-            set_uniform(program, name, unit)
+        set_uniform(program, "main_baked", float(illumination.main_baked))
 
 
-def _set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+def _set_textures(program: moderngl.Program, targets: Targets, illumination: Illumination) -> None:
+    textures = {
+        "surface": targets.surface,
+        "shape": targets.shape,
+        "albedo": targets.albedo,
+        "shadow_map": illumination.shadow.texture,
+    }
+    for unit, (name, texture) in enumerate(textures.items()):
+        assert texture is not None
+        texture.use(unit)
+        set_uniform(program, name, unit)
+    if illumination.baked is None:
+        return
+    assert illumination.static_shadow is not None
+    assert targets.light_at is not None
+    illumination.baked.bind(program)
+    targets.light_at.use(LIGHT_AT_UNIT)
+    set_uniform(program, "light_at", LIGHT_AT_UNIT)
+    illumination.static_shadow.texture.use(STATIC_SHADOW_UNIT)
+    set_uniform(program, "static_shadow_map", STATIC_SHADOW_UNIT)
+    if illumination.reflections is not None:
+        illumination.reflections.bind(program)
+
+
+def set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
+    """Tell a program of `picture.glsl` where it looks from, and what lies around."""
     intrinsics = camera.intrinsics
     exposure = 2.0**environment.exposure
     set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))
+    set_uniform(program, "eye", tuple(camera.world_from_camera[:3, 3]))
     set_uniform(program, "world_from_optical", _columns(camera.world_from_camera[:3, :3]))
     set_uniform(program, "ambient", environment.ambient)
     set_uniform(program, "sky_share", environment.sky_share)
@@ -163,13 +224,9 @@ def _set_camera(program: moderngl.Program, camera: Camera, environment: Environm
     set_uniform(program, "background", (*environment.background_colour, plain))
 
 
-def _strength(light: Light) -> float:
-    return light.intensity * max(light.colour)
-
-
 def _light_rows(lamps: Sequence[Light], camera: Camera) -> NDArray[np.void]:
     rows = np.zeros(MAX_LIGHTS, ROW)
-    strongest = sorted(lamps, key=_strength, reverse=True)[:MAX_LIGHTS]
+    strongest = sorted(lamps, key=strength, reverse=True)[:MAX_LIGHTS]
     for row, light in zip(rows, strongest, strict=False):
         power = np.asarray(light.colour) * light.intensity
         if light.type == "area":

@@ -26,27 +26,30 @@ class PictureBuffers:
 
     def __init__(self, geometry_pass: GeometryPass) -> None:
         self._geometry_pass = geometry_pass
-        self._targets: OrderedDict[tuple[int, int, bool, bool], Targets] = OrderedDict()
+        self._targets: OrderedDict[tuple[int, int, bool, bool, bool], Targets] = OrderedDict()
 
-    def targets(self, intrinsics: CameraIntrinsics, *, shaded: bool, normals: bool) -> Targets:
+    def targets(
+        self, intrinsics: CameraIntrinsics, *, shaded: bool, normals: bool, baked: bool
+    ) -> Targets:
         """Give the targets of the geometry pass."""
         width, height = intrinsics.width, intrinsics.height
-        key = (width, height, shaded, normals)
+        baked = baked and shaded
+        key = (width, height, shaded, normals, baked)
         if key not in self._targets:
             while len(self._targets) >= KEPT_SIZES:
                 self._targets.popitem(last=False)[1].close()
             self._targets[key] = self._geometry_pass.make_targets(
-                width, height, shaded=shaded, normals=normals
+                width, height, shaded=shaded, normals=normals, baked=baked
             )
         self._targets.move_to_end(key)
         return self._targets[key]
 
-    def read_picture(self, targets: Targets) -> NDArray[np.uint8]:
-        """Read the lit picture, sRGB and luma; a fresh (H, W, 4) array."""
+    def read_picture(self, targets: Targets) -> NDArray[np.float16]:
+        """Read the lit picture, radiance and share; a fresh (H, W, 4) array."""
         assert targets.picture is not None
-        four = np.empty((targets.picture.height, targets.picture.width, 4), np.uint8)
+        four = np.empty((targets.picture.height, targets.picture.width, 4), np.float16)
         # Reading three components would make the driver convert them, ten times slower.
-        targets.picture.read_into(four, components=4)
+        targets.picture.read_into(four, components=4, dtype="f2")
         return four
 
     def read_surface(self, targets: Targets) -> NDArray[np.float32]:

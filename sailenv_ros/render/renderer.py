@@ -10,6 +10,8 @@ import itertools
 import time
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,17 +21,19 @@ from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import checked_views
 from sailenv_ros.render import annotate as ground_truth
-from sailenv_ros.render import smooth_edges
+from sailenv_ros.render import post_pass
 from sailenv_ros.render.backend import RenderedViews
+from sailenv_ros.render.bands import beside
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
-from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
 from sailenv_ros.render.geometry_pass import GeometryPass
-from sailenv_ros.render.lighting_pass import LightingPass, main_light
+from sailenv_ros.render.glass_pass import GlassPass
+from sailenv_ros.render.lighting_pass import Illumination, LightingPass
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.picture_buffers import PictureBuffers
 from sailenv_ros.render.programs import ProgramCache
-from sailenv_ros.render.shadow_pass import ShadowPass
+from sailenv_ros.render.scene_light import SceneLight
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
 __all__ = ["Renderer"]
@@ -60,17 +64,19 @@ class Renderer:
                 self._geometry = GeometryBuffers(self._context)
                 self._materials = MaterialBuffers(self._context, software=self._device.software)
                 self._geometry_pass = GeometryPass(self._context, self._programs)
-                self._shadow_pass = ShadowPass(self._context, self._programs)
+                self._scene_light = SceneLight(self._context, self._programs)
                 self._lighting_pass = LightingPass(self._context, self._programs)
+                self._glass_pass = GlassPass(self._context, self._programs)
                 self._pictures = PictureBuffers(self._geometry_pass)
         except BaseException:
             self._context.release()
             raise
         self._draws: DrawList | None = None
         self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
+        self._post = post_pass.PostPass(beside(self._beside))
         self._closed = False
         ground_truth.warm_up()
-        smooth_edges.warm_up()
+        post_pass.warm_up()
 
     @property
     def description(self) -> str:
@@ -101,12 +107,18 @@ class Renderer:
                 previous = self._with_depth(previous)
             arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
+        surface = arrays.pop("surface")
+        if "rgb" in wanted:
+            still = self._draws_of(snapshot).at_baked_pose(snapshot)
+            arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera, still)
+            timings["develop"] = time.perf_counter() - began
+            began = time.perf_counter()
         # Both walks leave Python's lock alone: the labels are made beside the picture.
         walk = self._beside.submit(
-            ground_truth.annotate, arrays.pop("surface"), snapshot, previous, camera, wanted
+            ground_truth.annotate, surface, snapshot, previous, camera, wanted
         )
         if "rgb" in wanted:
-            arrays["rgb"] = smooth_edges.smooth_edges(arrays["rgb"])
+            arrays["rgb"] = self._post.finished(arrays["rgb"], camera)
         truth = walk.result()
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
@@ -132,8 +144,9 @@ class Renderer:
             for resource in (
                 self._draws,
                 self._pictures,
+                self._glass_pass,
                 self._lighting_pass,
-                self._shadow_pass,
+                self._scene_light,
                 self._materials,
                 self._geometry,
                 self._programs,
@@ -159,25 +172,36 @@ class Renderer:
 
         draws = self._draws_of(snapshot)
         mark("upload")
-        contents = snapshot.contents
-        lights = contents.lights
-        sun = main_light(lights) if "rgb" in wanted else None
-        if sun is not None:
-            self._shadow_pass.draw(sun, snapshot, draws, self._geometry)
+        shaded = "rgb" in wanted
+        illumination = None
+        if shaded:
+            illumination = self._scene_light.at(
+                snapshot, draws, self._geometry, partial(self._radiance, snapshot)
+            )
             mark("shadow")
         intrinsics = camera.intrinsics
-        draws.place(
-            snapshot, _UPSIDE_DOWN @ intrinsics.clip_from_optical(), camera.camera_from_world
-        )
+        clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
+        draws.place(snapshot, clip_from_optical, camera.camera_from_world)
         targets = self._pictures.targets(
-            intrinsics, shaded="rgb" in wanted, normals="normals" in wanted
+            intrinsics,
+            shaded=shaded,
+            normals="normals" in wanted,
+            baked=snapshot.contents.baked is not None,
         )
         self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
         mark("geometry")
         arrays: dict[str, NDArray[Any]] = {}
-        if "rgb" in wanted:
-            self._lighting_pass.draw(
-                targets, camera, lights, contents.environment, self._shadow_pass
+        if illumination is not None:
+            self._lighting_pass.draw(targets, camera, illumination)
+            self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
+            self._glass_pass.draw(
+                targets,
+                snapshot,
+                camera,
+                clip_from_optical,
+                illumination,
+                self._geometry,
+                self._materials,
             )
             mark("lighting")
             arrays["rgb"] = self._pictures.read_picture(targets)
@@ -189,13 +213,36 @@ class Renderer:
             timings[stage] = end - start
         return arrays
 
+    def _radiance(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        illumination: Illumination,
+        only: NDArray[np.bool_],
+    ) -> NDArray[np.float32]:
+        """Draw linear radiance of some instances, as an array (H, W, 3)."""
+        draws, intrinsics = self._draws_of(snapshot), camera.intrinsics
+        clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
+        draws.place(snapshot, clip_from_optical, camera.camera_from_world, only=only)
+        targets = self._geometry_pass.make_targets(
+            intrinsics.width, intrinsics.height, shaded=True, normals=False, baked=True
+        )
+        try:
+            self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
+            unexposed = replace(illumination.environment, exposure=0.0)
+            light = replace(illumination, environment=unexposed)
+            self._lighting_pass.draw(targets, camera, light)
+            return self._pictures.read_picture(targets)[..., :3].astype(np.float32)
+        finally:
+            targets.close()
+
     def _draws_of(self, snapshot: WorldSnapshot) -> DrawList:
         """Give the draw list of the snapshot's contents; kept until the contents change."""
         contents = snapshot.contents
         if self._draws is not None and self._draws.contents is contents:
             return self._draws
         models = [drawn.model for drawn in contents.instances]
-        self._geometry.show(models)
+        self._geometry.show(mesh for meshes in drawn_meshes(contents) for mesh in meshes)
         self._materials.show(part.material for model in models for part in model.parts)
         if self._draws is not None:
             self._draws.close()

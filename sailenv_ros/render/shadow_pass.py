@@ -1,7 +1,7 @@
-"""The shadow map of the main directional light: depth as the light sees the scene.
+"""A shadow map of the main directional light: depth as the light sees some of the scene.
 
-A snapshot and a light come in, a depth texture and the matrix into it go out. It is drawn again
-only when something that it depends on has changed.
+A snapshot, a light and the choice of what casts come in; a depth texture and the matrix into it go
+out. It is drawn again only when something that it depends on has changed.
 """
 
 from __future__ import annotations
@@ -39,22 +39,41 @@ class ShadowPass:
         self.texel_m = 0.0
 
     def draw(
-        self, light: Light, snapshot: WorldSnapshot, draws: DrawList, geometry: GeometryBuffers
+        self,
+        light: Light,
+        snapshot: WorldSnapshot,
+        draws: DrawList,
+        geometry: GeometryBuffers,
+        *,
+        casting: NDArray[np.bool_] | None = None,
+        framed: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Bring the map up to date; leaves the rows of `draws` placed for the light if it drew."""
-        key = (snapshot.contents, light.direction)
-        poses = snapshot.world_from_body
+        """Bring the map up to date; leaves the rows of `draws` placed for the light if it drew.
+
+        Parameters
+        ----------
+        casting : (N,) bool or None
+            Which instances cast; None for all.
+        framed : (N,) bool or None
+            Which instances the map encloses; None for all. Things that move are better left out:
+            a map that follows them changes its texels' places, and so every shadow's edge.
+        """
+        everything = np.ones(len(snapshot.world_from_body), bool)
+        casting = everything if casting is None else casting
+        framed = everything if framed is None else framed
+        key = (snapshot.contents, light.direction, casting.tobytes(), framed.tobytes())
+        poses = snapshot.world_from_body[casting | framed]
         if self._drawn == key and self._poses is not None and np.array_equal(self._poses, poses):
             return
         self._drawn, self._poses = key, poses
-        clip_from_light, light_from_world, width_m = _frustum(light, snapshot)
+        clip_from_light, light_from_world, width_m = _frustum(light, snapshot, framed)
         self.texel_m = width_m / SIZE_PX
         # From clip space, -1 to 1, to texture space, 0 to 1.
         half = np.diag([0.5, 0.5, 0.5, 1.0])
         half[:3, 3] = 0.5
         self.map_from_world = half @ clip_from_light @ light_from_world
         draws.place(snapshot, clip_from_light, light_from_world)
-        draws.choose_casters(np.ones(len(snapshot.world_from_body), bool))
+        draws.choose_casters(casting)
         context = self._context
         self._framebuffer.use()
         self._framebuffer.clear(depth=1.0)
@@ -74,9 +93,9 @@ class ShadowPass:
 
 
 def _frustum(
-    light: Light, snapshot: WorldSnapshot
+    light: Light, snapshot: WorldSnapshot, framed: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Fit an orthographic box along the light around everything that casts."""
+    """Fit an orthographic box along the light around those instances that can cast."""
     forward = np.asarray(light.direction)
     helper = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
     right = np.cross(forward, helper)
@@ -84,7 +103,7 @@ def _frustum(
     up = np.cross(right, forward)
     light_from_world = np.eye(4)
     light_from_world[:3, :3] = np.stack([right, up, forward])
-    low, high = _caster_bounds(light_from_world, snapshot)
+    low, high = _caster_bounds(light_from_world, snapshot, framed)
     width = float(max(high[0] - low[0], high[1] - low[1], 0.5)) * 1.05
     centre = 0.5 * (low + high)
     near, far = float(low[2]) - 0.5, float(high[2]) + 0.5
@@ -98,7 +117,7 @@ def _frustum(
 
 
 def _caster_bounds(
-    light_from_world: NDArray[np.float64], snapshot: WorldSnapshot
+    light_from_world: NDArray[np.float64], snapshot: WorldSnapshot, framed: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     spheres = [
@@ -108,9 +127,9 @@ def _caster_bounds(
         )
     ]
     instances = snapshot.contents.instances
-    placed = zip(snapshot.world_from_body, spheres, instances, strict=True)
-    for matrix, (middle, radius), drawn in placed:
-        if not casts(drawn):
+    placed = zip(snapshot.world_from_body, spheres, instances, framed, strict=True)
+    for matrix, (middle, radius), drawn, counts in placed:
+        if not counts or not casts(drawn):
             continue
         world = matrix[:3, :3] @ middle + matrix[:3, 3]
         centre = light_from_world[:3, :3] @ world

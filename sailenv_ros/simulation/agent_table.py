@@ -161,7 +161,8 @@ class AgentTable:
         pose = record.pose
         if record.spec.following:
             pose = world.mover(record.spec.mover).pose_at(world.sim_time_ns)
-        return Camera(intrinsics=record.spec.intrinsics, pose=pose)
+        spec = record.spec
+        return Camera(intrinsics=spec.intrinsics, pose=pose, picture=spec.picture, name=spec.name)
 
     def put(self, name: str, pose: Pose, world: World, *, teleport: bool) -> None:
         """Move an agent; one that follows moves its mover, and with it all that follow it."""

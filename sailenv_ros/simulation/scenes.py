@@ -25,6 +25,7 @@ from sailenv_ros.scene.catalogue import SceneCatalogue
 from sailenv_ros.scene.entries import checked_object, checked_objects, free_name
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
+from sailenv_ros.simulation.scene_light import SceneLight
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_placement
 from sailenv_ros.world.world import World
@@ -70,6 +71,7 @@ class SceneLibrary:
         self._packs = installed_packs()
         self._skies = sky_files(pack.folder for pack in self._packs)
         self._assets = AssetLibrary(installed_sources(self._packs))
+        self._light = SceneLight()
         self._uploads = 0
         self._files: dict[str, Path] = {}
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
@@ -148,6 +150,8 @@ class SceneLibrary:
             next_revision=next_revision,
             skies=self._skies,
         )
+        if spec.room is not None:
+            self._light.hang(world, str(scene))
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self._path(scene)

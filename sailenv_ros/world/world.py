@@ -8,10 +8,12 @@ the same bytes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
+from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
@@ -69,6 +71,7 @@ class World:
         self._gravity = gravity
         self._lights = tuple(lights)
         self._environment = environment or Environment()
+        self._baked: BakedLight | None = None
         self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
         self._bodies: dict[int, Body] = {}
@@ -261,6 +264,11 @@ class World:
         self._environment = environment
         self._changed()
 
+    def set_baked(self, baked: BakedLight | None) -> None:
+        """Replace the light that was worked out beforehand for what stands still."""
+        self._baked = baked and replace(baked, environment=self._environment)
+        self._changed()
+
     def close(self) -> None:
         """Free the engine; a second call does nothing."""
         self._client.close()
@@ -306,6 +314,7 @@ class World:
             categories=self.categories,
             lights=self._lights,
             environment=self._environment,
+            baked=self._baked,
         )
 
     def _drawn(self, instance_id: int, placement: Placement) -> DrawnInstance:

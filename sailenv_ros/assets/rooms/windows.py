@@ -31,7 +31,7 @@ _LEAST_BARRIER_M = 0.15
 _METAL = Material(name="handle", base_colour=(0.62, 0.61, 0.59, 1.0), metallic=1.0, roughness=0.32)
 _GLASS = Material(
     name="glass",
-    base_colour=(0.93, 0.96, 0.95, 0.12),
+    base_colour=(0.93, 0.96, 0.95, 0.03),
     roughness=0.05,
     alpha="blend",
     double_sided=True,

@@ -42,6 +42,11 @@ BASE_SHARE = 0.2
 FEWEST_TRIANGLES = 64
 """No part is simplified below this."""
 
+TRIANGLES_AT_ONE_METRE = 3500
+TRIANGLES_EXPONENT = 0.65
+"""An object of diagonal d has about 3500 d^0.65 triangles: seen from where it fills a picture of
+VGA size, an edge is some four pixels long. What is drawn per frame is counted in triangles."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PreparedAsset:
@@ -89,7 +94,7 @@ def prepare(name: str, entry: RecipeEntry, catalogues: Catalogues) -> PreparedAs
     raw = _finished(_turned(raw, entry.turn), entry)
     author, licence, source, title = origin
     return PreparedAsset(
-        parts=_drawn(name, raw, entry.triangles),
+        parts=_drawn(name, raw, entry.triangles or enough_triangles(raw)),
         hulls=_hulls(raw, entry),
         title=title,
         author=author,
@@ -126,6 +131,12 @@ def _mapped(part: RawPart, linear_map: NDArray[np.float64], shift: NDArray[np.fl
         mesh, positions=mesh.positions @ linear_map.T + shift, normals=normals
     )
     return dataclasses.replace(part, mesh=moved)
+
+
+def enough_triangles(parts: Sequence[RawPart]) -> int:
+    """Give how many triangles an object of that size needs."""
+    low, high = _bounds(parts)
+    return int(TRIANGLES_AT_ONE_METRE * float(np.linalg.norm(high - low)) ** TRIANGLES_EXPONENT)
 
 
 def _turned(parts: list[RawPart], degrees: float) -> list[RawPart]:

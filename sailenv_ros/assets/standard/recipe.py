@@ -48,6 +48,8 @@ class RecipeEntry(_Strict):
         for a hull around the lowest fifth (plants, whose leaves give way), ``none``.
     turn : float
         About the vertical, where a catalogue's front is not the object's [deg].
+    triangles : int or None
+        At most about so many are drawn; None for what its size asks for.
     """
 
     category: str
@@ -59,7 +61,7 @@ class RecipeEntry(_Strict):
     )
     turn: float = 0.0
     tags: tuple[str, ...] = ()
-    triangles: Annotated[int, Field(ge=100, lt=20000)] = 12000
+    triangles: Annotated[int, Field(ge=100, lt=20000)] | None = None
     materials: dict[str, MaterialRule | str] = {}
 
     def rule(self, material: str) -> MaterialRule:

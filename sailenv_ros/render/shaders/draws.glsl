@@ -5,6 +5,7 @@ struct Draw {
     float instance_id;
     uint material;
     float unused_0, unused_1;
+    vec4 light_chart;                    // offset and scale in the light map, 0 for none
 };
 
 layout(std430, binding = 0) readonly buffer Draws { Draw draws[]; };

@@ -16,6 +16,10 @@ flat in vec4 material_finish;  // roughness, metallic, alpha cutoff, emission
 layout(location = 1) out vec4 out_shape;   // octahedral normal, roughness, metallic
 layout(location = 2) out vec4 out_albedo;  // square root of linear albedo, emission / 16
 #endif
+#ifdef BAKED
+in vec2 light_uv;
+layout(location = 3) out vec2 out_light_at;  // place in the light map; 0 where there is none
+#endif
 #endif
 #ifdef NORMALS
 layout(location = LOCATION_NORMALS) out vec4 out_normal;  // unit, optical frame
@@ -50,6 +54,9 @@ void main() {
     vec2 rough_metal = roughness_metallic(material_finish.xy, uv);
     out_shape = vec4(octahedral(normal), rough_metal);
     out_albedo = vec4(sqrt(base.rgb), material_finish.w);
+#ifdef BAKED
+    out_light_at = light_uv;
+#endif
 #endif
 #endif
 }

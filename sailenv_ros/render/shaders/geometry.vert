@@ -2,6 +2,10 @@
 in vec3 in_position;
 in vec3 in_normal;
 in vec2 in_uv;
+#ifdef BAKED
+in vec2 in_light_uv;
+out vec2 light_uv;
+#endif
 in int in_draw;  // advances once per draw: the base instance chooses the row
 
 #include "draws.glsl"
@@ -41,5 +45,9 @@ void main() {
                           dot(draws[in_draw].optical_normal_from_object[1].xyz, in_normal),
                           dot(draws[in_draw].optical_normal_from_object[2].xyz, in_normal));
     uv = in_uv;
+#ifdef BAKED
+    vec4 chart = draws[in_draw].light_chart;
+    light_uv = chart.xy + chart.zw * in_light_uv;
+#endif
 #endif
 }

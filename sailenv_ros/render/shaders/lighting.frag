@@ -1,6 +1,6 @@
 // Lights what the geometry pass left: metallic-roughness surfaces under sun, lamps and sky.
 // GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
-layout(location = 0) out vec4 out_colour;  // sRGB, luma in alpha for the edge pass
+layout(location = 0) out vec4 out_colour;  // see picture.glsl
 
 uniform sampler2D surface;
 uniform sampler2D shape;
@@ -24,6 +24,14 @@ uniform mat4 shadow_from_optical;
 uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, penumbra [texels]
 uniform vec3 ambient;
 uniform float sky_share;
+#ifdef BAKED
+uniform sampler2D light_at;        // place in the light map, 0 where there is none
+uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
+uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
+uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
+uniform float main_baked;          // 1 if the light map knows the main light's shadows
+#endif
+#include "reflections.glsl"
 
 const float PI = 3.14159265;
 
@@ -42,17 +50,22 @@ vec3 unfolded(vec2 p) {
     return normalize(n);
 }
 
-float shadowed(vec3 point, vec3 normal, float slope) {
+vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {
     vec3 lifted = point + normal * shadow_texel.x * (1.0 + 2.0 * slope);
-    vec3 at = (shadow_from_optical * vec4(lifted, 1.0)).xyz;
+    return (shadow_from_optical * vec4(lifted, 1.0)).xyz;
+}
+
+#ifndef BAKED
+float four_taps(sampler2DShadow map, vec3 at) {
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
     float r = shadow_texel.y * shadow_texel.z;
-    float lit = texture(shadow_map, at + vec3(0.94, 0.34, 0.0) * r);
-    lit += texture(shadow_map, at + vec3(-0.34, 0.94, 0.0) * r);
-    lit += texture(shadow_map, at + vec3(-0.94, -0.34, 0.0) * r);
-    lit += texture(shadow_map, at + vec3(0.34, -0.94, 0.0) * r);
+    float lit = texture(map, at + vec3(0.94, 0.34, 0.0) * r);
+    lit += texture(map, at + vec3(-0.34, 0.94, 0.0) * r);
+    lit += texture(map, at + vec3(-0.94, -0.34, 0.0) * r);
+    lit += texture(map, at + vec3(0.34, -0.94, 0.0) * r);
     return lit / 4.0;
 }
+#endif
 
 struct Surface {
     vec3 point, normal, view;  // optical frame
@@ -118,10 +131,38 @@ void main() {
 
     float nv = abs(dot(normal, view)) + 1e-4;
     vec3 world_normal = world_from_optical * normal;
+    float facing = dot(normal, main_towards);
+    vec3 in_shadow = in_shadow_map(point, normal, 1.0 - facing);
+#ifdef BAKED
+    // What moves casts edges of one texel; soft shadows of what stands still are in the light map.
+    float main_arrives = texture(shadow_map, in_shadow);
+    vec2 place = texelFetch(light_at, pixel, 0).xy;
+    vec4 mapped = textureLod(light_map, place, 0.0);
+    int id = int(texelFetch(surface, pixel, 0).y + 0.5);
+    ivec2 row = ivec2((id & 255) * 3, id >> 8);
+    vec4 facing_to = vec4(1.0, world_normal);
+    vec3 probed = vec3(dot(texelFetch(instance_light, row, 0), facing_to),
+                       dot(texelFetch(instance_light, row + ivec2(1, 0), 0), facing_to),
+                       dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to));
+    float charted = place.x > 0.0 ? 1.0 : 0.0;
+    vec3 around = mix(max(probed, vec3(0.0)), mapped.rgb, charted);
+    main_arrives *= mix(texture(static_shadow_map, in_shadow), mapped.a, charted * main_baked);
+    vec3 reflected = around;
+#else
+    float main_arrives = four_taps(shadow_map, in_shadow);
     vec3 around = ambient + sky_share * sky_light(world_normal);
+#endif
+#if defined(REFLECTIONS) || !defined(BAKED)
     vec3 mirrored = world_from_optical * reflect(-view, normal);
+#endif
+#ifdef REFLECTIONS
+    vec3 room = mirrored_room(world_from_optical * point + eye, mirrored, roughness);
+    // The rougher, the more of the half space it mirrors: that is the light around the point.
+    reflected = mix(room, around, smoothstep(0.25, 0.7, roughness));
+#elif !defined(BAKED)
     vec3 reflected =
         ambient + sky_share * mix(sky(mirrored), sky_light(mirrored), min(1.0, roughness * 1.4));
+#endif
     vec2 term = environment_term(min(nv, 1.0), roughness);
     // What single bounces in the microfacets lose comes back from further ones, so that a white
     // surface in uniform light vanishes (Fdez-Aguera 2019, "A multiple-scattering microfacet model").
@@ -130,10 +171,12 @@ void main() {
     vec3 mean = f0 + (1.0 - f0) / 21.0;
     vec3 again = lost * once * mean / (1.0 - mean * lost);
     vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
+    vec3 from_around = radiance;
     radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
-    float facing = dot(normal, main_towards);
-    radiance += reflected_light(here, main_towards, main_colour * shadowed(point, normal, 1.0 - facing));
+    radiance += reflected_light(here, main_towards, main_colour * main_arrives);
+#ifdef LAMPS
     for (int i = 0; i < light_count; i++) radiance += lamp_light(lights[i], here);
-    out_colour = finished(radiance);
+#endif
+    out_colour = finished(radiance, from_around);
 }

@@ -11,15 +11,11 @@ vec3 sky(vec3 world_direction) {
     return mix(upper, sky_ground, smoothstep(0.0, 0.12, -up));
 }
 
-// Filmic curve: a rational fit to the ACES reference tone scale (Narkowicz 2015).
-vec3 filmic(vec3 c) {
-    return clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
-}
-
-vec4 finished(vec3 radiance) {
-    vec3 c = filmic(radiance * lens.w);
-    // The sRGB curve as a sum of roots, within 0.001 of it: powers cost a CPU more than the lamps.
-    vec3 root = sqrt(c), fourth = sqrt(root), eighth = sqrt(fourth);
-    c = max(0.662002687 * root + 0.68412206 * fourth - 0.323583601 * eighth - 0.022541147 * c, 0.0);
-    return vec4(c, dot(c, vec3(0.299, 0.587, 0.114)));
+// What a picture holds of a pixel: exposed radiance, and the share of it that came from around and
+// not straight from a lamp. Tone curve and sRGB follow on the processor (develop.py).
+vec4 finished(vec3 radiance, vec3 from_around) {
+    const vec3 LUMA = vec3(0.299, 0.587, 0.114);
+    float share = dot(from_around, LUMA) / max(dot(radiance, LUMA), 1e-6);
+    // Half precision ends at 65504.
+    return vec4(min(radiance * lens.w, vec3(6e4)), min(share, 1.0));
 }

@@ -1,5 +1,5 @@
 // Pixels that hit nothing: the sky or a plain colour.
-layout(location = 0) out vec4 out_colour;  // sRGB, luma in alpha for the edge pass
+layout(location = 0) out vec4 out_colour;  // see picture.glsl
 
 #include "picture.glsl"
 
@@ -19,5 +19,5 @@ vec3 mapped_sky(vec3 d) {
 void main() {
     vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
     vec3 seen = background.a > 0.5 ? background.rgb : mapped_sky(normalize(world_from_optical * ray));
-    out_colour = finished(seen);
+    out_colour = finished(seen, vec3(0.0));
 }

@@ -1,0 +1,282 @@
+"""Works out the light on everything that stands still. From `WorldSnapshot` to `BakedLight`.
+
+Knows neither OpenGL nor PyBullet nor where results are kept.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.bounces import bounced_radiance, patches_of
+from sailenv_ros.bake.direct import Points, arriving
+from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.gather import BACK, Surroundings, gathered, seen_from, window_light
+from sailenv_ros.bake.layout import Layout, laid_out
+from sailenv_ros.bake.probes import (
+    MOST_SKY,
+    filled_in,
+    probe_grid,
+    probe_light,
+    probe_positions,
+    straight_light,
+)
+from sailenv_ros.bake.rays import RayScene, in_chunks
+from sailenv_ros.bake.sampling import net, tile_shift
+from sailenv_ros.bake.scenery import static_scenery
+from sailenv_ros.bake.settings import BakeSettings
+from sailenv_ros.bake.sides import turned_to_the_light
+from sailenv_ros.bake.sky import panes, sky_picture
+from sailenv_ros.bake.smooth import filled, smoothed
+from sailenv_ros.bake.surfaces import albedo_of, emission_of
+from sailenv_ros.bake.texels import rasterised
+from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
+from sailenv_ros.lights import Light
+from sailenv_ros.snapshot import WorldSnapshot
+
+__all__ = ["Report", "bake"]
+
+Floats = NDArray[np.float32]
+Report = Callable[[str, float], None]
+"""Is told a stage's name and which share of it is done."""
+
+MOST_BACKS = 0.25
+"""A texel that sees more backs of surfaces than this share lies inside of something."""
+
+CHUNK_RAYS = 1_000_000
+"""Cast at a time by one thread."""
+
+
+def bake(
+    snapshot: WorldSnapshot,
+    *,
+    settings: BakeSettings | None = None,
+    report: Report = lambda stage, share: None,
+    workers: int = 0,
+) -> BakedLight:
+    """Work out the light on everything that stands still.
+
+    Parameters
+    ----------
+    snapshot : WorldSnapshot
+        Its poses, materials, sky, and its lights' places count; colours and intensities do not.
+    settings : BakeSettings or None
+    report : callable
+        Is told each stage's name and share of it done, 0 to 1.
+    workers : int
+        Threads; 0 is one for each core. The result is the same for any number.
+    """
+    settings = settings or BakeSettings()
+    work = _Bake(snapshot, settings, report, workers or os.cpu_count() or 1)
+    return work.run()
+
+
+@dataclass(eq=False, slots=True)
+class _Light:
+    """What is known of one light at the texels, and of the surroundings (`light` is None)."""
+
+    light: Light | None
+    direct: Floats
+    visibility: Floats | None = None
+
+
+class _Bake:
+    """One bake; what the stages share."""
+
+    def __init__(
+        self, snapshot: WorldSnapshot, settings: BakeSettings, report: Report, workers: int
+    ) -> None:
+        self._snapshot, self._settings = snapshot, settings
+        self._report, self._workers = report, workers
+
+    def run(self) -> BakedLight:
+        settings, contents = self._settings, self._snapshot.contents
+        scenery = static_scenery(self._snapshot)
+        layout = laid_out(scenery, settings, self._told("surfaces"))
+        scene = RayScene(scenery)
+        texels = turned_to_the_light(scenery, scene, rasterised(scenery, layout))
+        self._scenery, self._texels = scenery, texels
+        two_sided = np.array([m.double_sided for m in scenery.materials], dtype=bool)
+        self._around = Surroundings(
+            scene=scene,
+            faces=scenery.faces,
+            two_sided=two_sided[scenery.material],
+            places=layout.places,
+            index=texels.index,
+            sky=sky_picture(contents.environment),
+            panes=panes(scenery),
+        )
+        self._points = Points(
+            positions=texels.positions,
+            normals=texels.normals,
+            faces=texels.faces,
+            shifts=tile_shift(texels.rows, texels.columns),
+        )
+        albedo = albedo_of(scenery, layout, texels)
+        seen, sky = self._first_look()
+        self._valid = np.mean(seen == BACK, axis=1) <= MOST_BACKS
+        lights = [_Light(None, np.zeros(texels.count, np.float32))]
+        lights += [self._straight(light) for light in contents.lights]
+        radiance = self._radiance(lights, albedo, emission_of(scenery, texels), seen, sky)
+        bounced = self._last_look(radiance)
+        probes = self._probes(lights, radiance)
+        return self._result(layout, lights, bounced, *probes)
+
+    def _told(self, stage: str) -> Callable[[float], None]:
+        self._report(stage, 0.0)
+        return lambda share: self._report(stage, share)
+
+    def _chunks(self, work: Callable[[int, int], None], count: int, rays: int, stage: str) -> None:
+        size = max(CHUNK_RAYS // max(rays, 1), 1)
+        in_chunks(work, count, size, self._workers, self._told(stage))
+
+    def _first_look(self) -> tuple[NDArray[np.int32], Floats]:
+        """Find which texels see which, and how much of the sky arrives straight at each."""
+        count, rays = self._texels.count, self._settings.coarse_rays
+        pattern = net(rays)
+        seen = np.empty((count, rays), dtype=np.int32)
+        sky = np.empty((count, 3), dtype=np.float32)
+        few = net(4)
+
+        def look(first: int, end: int) -> None:
+            points = self._points.part(slice(first, end))
+            seen[first:end], _, directions = seen_from(self._around, points, pattern)
+            sky[first:end] = window_light(self._around, points, seen[first:end], directions, few)
+
+        self._chunks(look, count, rays, "first look")
+        return seen, sky
+
+    def _straight(self, light: Light) -> _Light:
+        count, rays = self._texels.count, self._settings.light_rays
+        pattern = net(rays)
+        direct, sight = np.zeros(count, np.float32), np.zeros(count, np.float32)
+        lit = np.flatnonzero(self._valid)
+
+        def shine(first: int, end: int) -> None:
+            chosen = lit[first:end]
+            points = self._points.part(chosen)
+            direct[chosen], sight[chosen] = arriving(self._around.scene, light, points, pattern)
+
+        self._chunks(shine, len(lit), rays, light.name)
+        return _Light(light, direct, sight if light.type == "directional" else None)
+
+    def _radiance(
+        self,
+        lights: list[_Light],
+        albedo: Floats,
+        emission: Floats,
+        seen: NDArray[np.int32],
+        sky: Floats,
+    ) -> Floats:
+        """Give (N, 3 L) float32: what each texel sends out, light by light."""
+        self._report("bounces", 0.0)
+        first = np.concatenate(
+            [emission + albedo * sky, *(albedo * light.direct[:, None] for light in lights[1:])],
+            axis=1,
+        )
+        first[~self._valid] = 0.0
+        radiance = bounced_radiance(
+            patches_of(self._scenery, self._texels),
+            seen,
+            self._valid,
+            first,
+            albedo,
+            self._settings.bounces,
+        )
+        radiance[~self._valid] = 0.0
+        self._report("bounces", 1.0)
+        return radiance
+
+    def _last_look(self, radiance: Floats) -> Floats:
+        """Give (N, 3 L) float32: what arrives at each texel by way of others and from the sky."""
+        settings = self._settings
+        pattern, window_pattern = net(settings.rays), net(settings.window_rays)
+        light = np.zeros((self._texels.count, radiance.shape[1]), dtype=np.float32)
+        nearness = np.zeros(self._texels.count, dtype=np.float32)
+        lit = np.flatnonzero(self._valid)
+
+        def look(first: int, end: int) -> None:
+            chosen = lit[first:end]
+            light[chosen], nearness[chosen] = gathered(
+                self._around, self._points.part(chosen), pattern, window_pattern, radiance
+            )
+
+        self._chunks(look, len(lit), settings.rays, "last look")
+        light = smoothed(self._scenery, self._texels, light, self._valid, nearness)
+        return filled(self._scenery, self._texels, light, self._valid)
+
+    def _probes(self, lights: list[_Light], radiance: Floats) -> tuple[ProbeGrid, Floats, Floats]:
+        """Give the grid, (L, N, 4) direct and (N, 4, 3 L) bounced light of its probes."""
+        settings = self._settings
+        grid = probe_grid(self._scenery.bounds(), settings)
+        positions = probe_positions(grid)
+        count = len(positions)
+        bounced = np.empty((count, 4, radiance.shape[1]), dtype=np.float32)
+        inside, sky = np.empty(count, dtype=bool), np.empty(count, dtype=np.float32)
+
+        def look(first: int, end: int) -> None:
+            bounced[first:end], inside[first:end], sky[first:end] = probe_light(
+                self._around, positions[first:end], radiance, settings.probe_rays
+            )
+
+        self._chunks(look, count, settings.probe_rays, "probes")
+        direct = np.zeros((len(lights), count, 4), dtype=np.float32)
+        for place, entry in enumerate(lights):
+            if entry.light is not None and entry.light.type != "directional":
+                direct[place] = straight_light(
+                    self._around.scene, entry.light, positions, net(settings.light_rays)
+                )
+        unknown = inside | (sky > MOST_SKY) if (sky[~inside] < MOST_SKY / 2).any() else inside
+        bounced = filled_in(bounced, unknown, grid)
+        direct = np.stack([filled_in(d[..., None], unknown, grid)[..., 0] for d in direct])
+        return grid, direct, bounced
+
+    def _result(
+        self,
+        layout: Layout,
+        lights: list[_Light],
+        bounced: Floats,
+        grid: ProbeGrid,
+        probe_direct: Floats,
+        probe_bounced: Floats,
+    ) -> BakedLight:
+        """Lay everything out as the renderer takes it."""
+        texels, scenery = self._texels, self._scenery
+        at = texels.rows, texels.columns
+        layers = []
+        for place, entry in enumerate(lights):
+            mine = slice(3 * place, 3 * place + 3)
+            known = filled(scenery, texels, entry.direct[:, None], self._valid)
+            direct = np.zeros(texels.index.shape, dtype=np.float16)
+            direct[at] = known[:, 0]
+            map_of = np.zeros((*texels.index.shape, 3), dtype=np.float16)
+            map_of[at] = bounced[:, mine]
+            visibility = None
+            if entry.visibility is not None:
+                sight = filled(scenery, texels, entry.visibility[:, None], self._valid)
+                visibility = np.zeros(texels.index.shape, dtype=np.uint8)
+                visibility[at] = np.rint(sight[:, 0] * 255.0)
+            layers.append(
+                LightLayer(
+                    light=entry.light,
+                    direct=direct,
+                    bounced=map_of,
+                    probe_direct=np.repeat(
+                        probe_direct[place].reshape(*grid.shape, 4, 1), 3, axis=-1
+                    ).astype(np.float16),
+                    probe_bounced=probe_bounced[:, :, mine]
+                    .reshape(*grid.shape, 4, 3)
+                    .astype(np.float16),
+                    visibility=visibility,
+                )
+            )
+        return BakedLight(
+            fingerprint=fingerprint(self._snapshot, self._settings),
+            charts=layout.charts,
+            layers=tuple(layers),
+            probes=grid,
+        )

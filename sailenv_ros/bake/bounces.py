@@ -1,0 +1,111 @@
+"""Hands light on from patch to patch. From what arrives straight to what arrives in the end.
+
+A patch is a tile of 4 by 4 texels, as far as they belong to one object and face one way. Which
+patches see which is found once, with few rays from each texel, and serves all lights and bounces.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.scenery import Scenery
+from sailenv_ros.bake.texels import Texels
+
+__all__ = ["Patches", "bounced_radiance", "patches_of"]
+
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Patches:
+    """Texels in groups.
+
+    Attributes
+    ----------
+    of_texel : (N,) int32
+    count : int
+    """
+
+    of_texel: NDArray[np.int32]
+    count: int
+
+    def means(self, values: Floats, valid: NDArray[np.bool_]) -> Floats:
+        """Give (count, C) float32: means over the valid texels of each, 0 where there are none."""
+        owner = self.of_texel[valid]
+        number = np.maximum(np.bincount(owner, minlength=self.count), 1)
+        sums = [
+            np.bincount(owner, weights=values[valid, c], minlength=self.count)
+            for c in range(values.shape[1])
+        ]
+        means: Floats = (np.stack(sums, axis=1) / number[:, None]).astype(np.float32)
+        return means
+
+
+def patches_of(scenery: Scenery, texels: Texels) -> Patches:
+    """Group the texels."""
+    side = texels.index.shape[1]
+    tile = (texels.rows // 4).astype(np.int64) * (side // 4 + 1) + texels.columns // 4
+    axis = np.argmax(np.abs(texels.normals), axis=1)
+    sign = texels.normals[np.arange(texels.count), axis] > 0
+    owner = scenery.owner[texels.triangle].astype(np.int64)
+    key = ((tile * 6 + axis * 2 + sign) * (len(scenery.instances) + 1)) + owner
+    _, of_texel = np.unique(key, return_inverse=True)
+    count = int(of_texel.max()) + 1 if len(of_texel) else 0
+    return Patches(of_texel=of_texel.astype(np.int32), count=count)
+
+
+def bounced_radiance(
+    patches: Patches,
+    seen: NDArray[np.int32],
+    valid: NDArray[np.bool_],
+    first: Floats,
+    albedo: Floats,
+    bounces: int,
+) -> Floats:
+    """Give (N, C) float32: radiance of each texel with all that was handed on to it.
+
+    Parameters
+    ----------
+    seen : (N, M) int32
+        Texels that the rays of each texel met; negative ones are dark.
+    valid : (N,) bool
+        Texels inside of something know nothing.
+    first : (N, C) float32
+        Radiance of each texel by what arrives straight and what it emits.
+    albedo : (N, 3) float32
+    """
+    channels = first.shape[1]
+    start = patches.means(first, valid)
+    share = np.tile(patches.means(albedo, valid), channels // 3)
+    members = np.argsort(patches.of_texel, kind="stable")
+    members = members[valid[members]].astype(np.int32)
+    bounds = np.searchsorted(patches.of_texel[members], np.arange(patches.count + 1))
+    radiance, arriving = start, np.zeros_like(start)
+    for _ in range(bounces):
+        arriving = np.zeros_like(start)
+        _hand_on(members, bounds, seen, patches.of_texel, radiance, arriving)
+        radiance = start + share * arriving
+    return first + np.tile(albedo, channels // 3) * arriving[patches.of_texel]
+
+
+@numba.njit(cache=True, nogil=True)
+def _hand_on(members, bounds, seen, of_texel, radiance, arriving):  # type: ignore[no-untyped-def]
+    rays = seen.shape[1]
+    channels = radiance.shape[1]
+    for patch in range(len(bounds) - 1):
+        first, end = bounds[patch], bounds[patch + 1]
+        if first == end:
+            continue
+        for place in range(first, end):
+            for m in range(rays):
+                texel = seen[members[place], m]
+                if texel >= 0:
+                    source = of_texel[texel]
+                    for c in range(channels):
+                        arriving[patch, c] += radiance[source, c]
+        for c in range(channels):
+            arriving[patch, c] /= (end - first) * rays

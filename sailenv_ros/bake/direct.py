@@ -1,0 +1,173 @@
+"""What arrives straight from the lights, with soft shadows.
+
+From `Light` and points of surfaces to irradiance / pi, for white light of intensity 1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.rays import NEVER, RayScene
+from sailenv_ros.bake.sampling import fibonacci_sphere
+from sailenv_ros.lights import Light
+
+__all__ = ["LightSamples", "Points", "arriving", "area_sides", "samples_of"]
+
+Floats = NDArray[np.float32]
+
+SUN_RADIUS = math.tan(math.radians(0.4))
+"""Of a directional light's disc at a distance of 1; the sun's own is 0.27 degrees."""
+
+LAMP_RADIUS_M = 0.03
+"""Of point and spot lights, for their shadows' edges alone."""
+
+LIFT_M = 1e-3
+"""Rays begin this far off the surface."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Points:
+    """Points that are lit.
+
+    Attributes
+    ----------
+    positions, normals, faces : (N, 3) float32
+        As in `Texels`.
+    shifts : (N, 2) float32
+        Of the patterns, see `tile_shift`; for nets of one point.
+    """
+
+    positions: Floats
+    normals: Floats
+    faces: Floats
+    shifts: Floats
+
+    def part(self, chosen: slice | NDArray[np.intp]) -> Points:
+        """Give some of them."""
+        return Points(
+            positions=self.positions[chosen],
+            normals=self.normals[chosen],
+            faces=self.faces[chosen],
+            shifts=self.shifts[chosen],
+        )
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class LightSamples:
+    """Rays from points towards one light.
+
+    Attributes
+    ----------
+    towards : (N, M, 3) float32
+        From the point to the light's sample; unit length for directional lights.
+    lengths : (N, M) float32
+        How far nothing may be in the way, in lengths of `towards`.
+    irradiance : (N, M) float32
+        On a surface that faces the sample, if nothing is in the way; the mean over M counts.
+    """
+
+    towards: Floats
+    lengths: Floats
+    irradiance: Floats
+
+
+def area_sides(light: Light) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the vectors along an area light's width and height, as long as these are.
+
+    The width is horizontal; of a light that shines straight up or down it lies along y.
+    """
+    forward = np.asarray(light.direction)
+    across = np.array([-forward[1], forward[0], 0.0])
+    if np.linalg.norm(across) < 1e-6:
+        across = np.array([0.0, 1.0, 0.0])
+    across /= np.linalg.norm(across)
+    return across * light.width_m, np.cross(forward, across) * light.height_m
+
+
+def samples_of(light: Light, positions: Floats, shifts: Floats, pattern: Floats) -> LightSamples:
+    """Choose points on a light for each point that is lit."""
+    at = pattern[None] + shifts[:, None] / np.float32(math.sqrt(len(pattern)))
+    at = at - np.floor(at)
+    if light.type == "directional":
+        return _sun(light, at)
+    if light.type == "area":
+        return _panel(light, positions, at)
+    return _lamp(light, positions, len(pattern))
+
+
+def arriving(
+    scene: RayScene, light: Light, points: Points, pattern: Floats
+) -> tuple[Floats, Floats]:
+    """Give (N,) irradiance / pi, and (N,) the share of the light that is in sight."""
+    samples = samples_of(light, points.positions, points.shifts, pattern)
+    cosine = np.einsum("nmx,nx->nm", samples.towards, points.normals)
+    above = np.einsum("nmx,nx->nm", samples.towards, points.faces) > 0.0
+    cosine /= np.maximum(np.linalg.norm(samples.towards, axis=2), 1e-12)
+    wanted = above & (cosine > 0.0) & (samples.irradiance > 0.0)
+    point, _ = np.nonzero(wanted)
+    origins = points.positions[point] + points.faces[point] * np.float32(LIFT_M)
+    free = np.zeros(wanted.shape, dtype=np.float32)
+    free[wanted] = scene.is_free(origins, samples.towards[wanted], samples.lengths[wanted])
+    light_on = samples.irradiance * np.maximum(cosine, 0.0) * free
+    arrives = light_on.mean(axis=1, dtype=np.float64) / math.pi
+    return arrives.astype(np.float32), free.mean(axis=1, dtype=np.float64).astype(np.float32)
+
+
+def _sun(light: Light, at: Floats) -> LightSamples:
+    forward = np.asarray(light.direction)
+    helper = np.eye(3)[np.argmin(np.abs(forward))]
+    side = np.cross(forward, helper)
+    side /= np.linalg.norm(side)
+    other = np.cross(forward, side)
+    radius, turn = SUN_RADIUS * np.sqrt(at[..., 0]), 2.0 * np.pi * at[..., 1]
+    towards = (
+        -forward
+        + (radius * np.cos(turn))[..., None] * side
+        + (radius * np.sin(turn))[..., None] * other
+    )
+    towards /= np.linalg.norm(towards, axis=2, keepdims=True)
+    return LightSamples(
+        towards=towards.astype(np.float32),
+        lengths=np.full(at.shape[:2], NEVER, np.float32),
+        irradiance=np.ones(at.shape[:2], np.float32),
+    )
+
+
+def _lamp(light: Light, positions: Floats, count: int) -> LightSamples:
+    ball = LAMP_RADIUS_M * fibonacci_sphere(count)
+    middle = np.asarray(light.position_m, dtype=np.float32) - positions
+    towards = middle[:, None] + ball[None]
+    d2 = np.maximum(np.einsum("nx,nx->n", middle, middle), 1e-4).astype(np.float64)
+    reach = d2 / max(light.range_m, 1e-6) ** 2
+    strength = np.clip(1.0 - reach * reach, 0.0, 1.0) ** 2 / d2
+    if light.type == "spot":
+        along = -(middle @ np.asarray(light.direction)) / np.sqrt(d2)
+        outer, inner = (
+            math.cos(math.radians(angle)) for angle in (light.outer_cone_deg, light.inner_cone_deg)
+        )
+        t = np.clip((along - outer) / max(inner - outer, 1e-6), 0.0, 1.0)
+        strength = strength * (t * t * (3.0 - 2.0 * t))
+    return LightSamples(
+        towards=towards,
+        lengths=np.full(towards.shape[:2], 0.999, np.float32),
+        irradiance=np.repeat(strength[:, None], count, axis=1).astype(np.float32),
+    )
+
+
+def _panel(light: Light, positions: Floats, at: Floats) -> LightSamples:
+    width, height = area_sides(light)
+    spots = (
+        np.asarray(light.position_m) + (at[..., :1] - 0.5) * width + (at[..., 1:] - 0.5) * height
+    )
+    towards = (spots - positions[:, None]).astype(np.float32)
+    d2 = np.maximum(np.einsum("nmx,nmx->nm", towards, towards), 1e-4).astype(np.float64)
+    leaving = np.maximum(-(towards @ np.asarray(light.direction)), 0.0) / np.sqrt(d2)
+    return LightSamples(
+        towards=towards,
+        lengths=np.full(towards.shape[:2], 0.999, np.float32),
+        irradiance=(light.width_m * light.height_m * leaving / d2).astype(np.float32),
+    )

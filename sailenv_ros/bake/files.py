@@ -1,0 +1,171 @@
+"""Keeps baked light in the user's cache, by fingerprint. From `BakedLight` to a file and back.
+
+A file that cannot be used is as good as none: it is reported once and baked anew.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.assets.places import cache_folder
+from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, Unwrapping
+from sailenv_ros.lights import Light
+
+__all__ = ["baked_file", "forget_oldest", "load_baked", "store_baked"]
+
+FORMAT = 1
+
+MOST_FILES = 32
+"""The oldest are thrown away beyond it."""
+
+_LAYER_ARRAYS = ("direct", "bounced", "probe_direct", "probe_bounced", "visibility")
+_CHART_ARRAYS = ("vertices", "triangles", "uvs")
+
+_log = logging.getLogger(__name__)
+
+
+def baked_file(fingerprint: str) -> Path:
+    """Give the file for a fingerprint, whether it exists or not."""
+    return cache_folder() / "light" / f"{fingerprint}.npz"
+
+
+def store_baked(baked: BakedLight) -> Path:
+    """Keep baked light; a reader sees all of it or nothing.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    path = baked_file(baked.fingerprint)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".baking-", suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            np.savez(file, allow_pickle=False, **_arrays_of(baked))
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+    forget_oldest(path.parent)
+    return path
+
+
+def load_baked(fingerprint: str) -> BakedLight | None:
+    """Give the light kept for a fingerprint; None if there is none that can be used."""
+    path = baked_file(fingerprint)
+    if not path.is_file():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            baked = _baked_of(arrays)
+        if baked.fingerprint != fingerprint:
+            raise ValueError("it was made for another scene")
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as problem:
+        _log.warning("baked light in %s cannot be used (%s)", path, problem)
+        return None
+    with suppress(OSError):
+        os.utime(path)  # in use: not the first to be thrown away
+    return baked
+
+
+def forget_oldest(folder: Path, most: int = MOST_FILES) -> None:
+    """Remove the files that have not been used for longest, so that `most` remain."""
+    ages = {}
+    for path in folder.glob("*.npz"):
+        with suppress(OSError):
+            ages[path] = path.stat().st_mtime_ns
+    for path in sorted(ages, key=lambda p: (ages[p], p))[: max(len(ages) - most, 0)]:
+        path.unlink(missing_ok=True)
+
+
+def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:
+    arrays: dict[str, NDArray[Any]] = {}
+    unwrappings = list({id(c.unwrapping): c.unwrapping for c in baked.charts.values()}.values())
+    for u, unwrapping in enumerate(unwrappings):
+        for name in _CHART_ARRAYS:
+            for part, array in enumerate(getattr(unwrapping, name)):
+                arrays[f"unwrapping_{u}_{part}_{name}"] = array
+    for place, layer in enumerate(baked.layers):
+        for name in _LAYER_ARRAYS:
+            array = getattr(layer, name)
+            if array is not None:
+                arrays[f"layer_{place}_{name}"] = array
+    number = {id(unwrapping): u for u, unwrapping in enumerate(unwrappings)}
+    description = {
+        "format": FORMAT,
+        "fingerprint": baked.fingerprint,
+        "probes": asdict(baked.probes),
+        "lights": [None if y.light is None else asdict(y.light) for y in baked.layers],
+        "parts": [len(unwrapping.vertices) for unwrapping in unwrappings],
+        "charts": {
+            str(instance): [
+                number[id(chart.unwrapping)],
+                chart.offset,
+                chart.scale,
+                chart.world_from_body.tolist(),
+            ]
+            for instance, chart in baked.charts.items()
+        },
+    }
+    arrays["description"] = np.frombuffer(json.dumps(description).encode(), dtype=np.uint8)
+    return arrays
+
+
+def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
+    description = json.loads(arrays["description"].tobytes())
+    if description["format"] != FORMAT:
+        raise ValueError(f"its format is {description['format']}, not {FORMAT}")
+    unwrappings = [
+        Unwrapping(**{
+            name: tuple(_frozen(arrays[f"unwrapping_{u}_{p}_{name}"]) for p in range(parts))
+            for name in _CHART_ARRAYS
+        })
+        for u, parts in enumerate(description["parts"])
+    ]  # fmt: skip
+    layers = [
+        LightLayer(
+            light=None if light is None else Light(**_with_tuples(light)),
+            **{
+                name: _frozen(arrays[f"layer_{place}_{name}"])
+                for name in _LAYER_ARRAYS
+                if f"layer_{place}_{name}" in arrays
+            },
+        )
+        for place, light in enumerate(description["lights"])
+    ]
+    return BakedLight(
+        fingerprint=description["fingerprint"],
+        charts={
+            int(instance): LightChart(
+                unwrapping=unwrappings[u],
+                offset=tuple(offset),
+                scale=tuple(scale),
+                world_from_body=_frozen(np.array(pose)),
+            )
+            for instance, (u, offset, scale, pose) in description["charts"].items()
+        },
+        layers=tuple(layers),
+        probes=ProbeGrid(**_with_tuples(description["probes"])),
+    )
+
+
+def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
+    return {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
+
+
+def _frozen(array: NDArray[Any]) -> NDArray[Any]:
+    array.flags.writeable = False
+    return array

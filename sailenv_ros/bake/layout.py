@@ -1,0 +1,106 @@
+"""Gives every instance its place in the light map. From `Scenery` to `Layout`.
+
+Knows neither rays nor light.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.packing import packed
+from sailenv_ros.bake.scenery import Scenery, StaticInstance
+from sailenv_ros.bake.settings import BakeSettings
+from sailenv_ros.bake.unwrap import Chart, unwrapped
+from sailenv_ros.baked_light import LightChart
+from sailenv_ros.model import Model
+
+__all__ = ["Layout", "laid_out"]
+
+SIMPLE_TRIANGLES = 1000
+"""Models of fewer triangles are boards and walls, whose large faces show fine shadows."""
+
+COARSER = 1.15
+"""Growth of the texels until everything fits."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Layout:
+    """The light map's plan.
+
+    Attributes
+    ----------
+    side : int
+        Of the map [texels].
+    charts : dict of int to LightChart
+        By instance id.
+    places : (T, 3, 2) float32
+        Of each triangle's corners in the map, x then y [texels]; texel (i, j) covers j to j + 1
+        in x and i to i + 1 in y.
+    """
+
+    side: int
+    charts: dict[int, LightChart]
+    places: NDArray[np.float32]
+
+
+def laid_out(
+    scenery: Scenery, settings: BakeSettings, told: Callable[[float], None] = lambda share: None
+) -> Layout:
+    """Unwrap all models and pack their charts."""
+    coarser = 1.0
+    while True:
+        charts = _unwrapped_models(scenery, settings, coarser, told)
+        own = [charts[instance.model] for instance in scenery.instances]
+        # The border keeps neighbours' texels out of look-ups that rounding moves by a hair.
+        fit = packed([(chart.width + 1, chart.height + 1) for chart in own], settings.max_map)
+        if fit is not None:
+            break
+        coarser *= COARSER
+    side, corners = fit
+    places = np.zeros((scenery.triangle_count, 3, 2), dtype=np.float32)
+    for instance, chart, corner in zip(scenery.instances, own, corners, strict=True):
+        _place(places, instance, chart, corner)
+    return Layout(
+        side=side,
+        places=places,
+        charts={
+            instance.id: LightChart(
+                unwrapping=chart.unwrapping,
+                offset=(x / side, y / side),
+                scale=(chart.width / side, chart.height / side),
+                world_from_body=instance.world_from_body,
+            )
+            for instance, chart, (x, y) in zip(scenery.instances, own, corners, strict=True)
+        },
+    )
+
+
+def _unwrapped_models(
+    scenery: Scenery, settings: BakeSettings, coarser: float, told: Callable[[float], None]
+) -> dict[Model, Chart]:
+    scales: dict[Model, list[tuple[float, float, float]]] = {}
+    for instance in scenery.instances:
+        scales.setdefault(instance.model, []).append(instance.scale)
+    charts = {}
+    for model, sizes in scales.items():
+        largest = tuple(np.abs(sizes).max(axis=0).tolist())
+        simple = model.triangle_count <= SIMPLE_TRIANGLES
+        texel = coarser * (settings.texel_m if simple else settings.fine_texel_m)
+        charts[model] = unwrapped(model, largest, texel)
+        told(len(charts) / len(scales))
+    return charts
+
+
+def _place(
+    places: NDArray[np.float32], instance: StaticInstance, chart: Chart, corner: tuple[int, int]
+) -> None:
+    first = instance.first_triangle
+    size = np.array([chart.width, chart.height], dtype=np.float32)
+    offset = np.array(corner, dtype=np.float32)
+    for triangles, uvs in zip(chart.unwrapping.triangles, chart.unwrapping.uvs, strict=True):
+        places[first : first + len(triangles)] = (uvs * size + offset)[triangles]
+        first += len(triangles)

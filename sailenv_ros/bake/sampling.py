@@ -1,0 +1,91 @@
+"""Evenly spread directions and points. Nothing in but how many; knows no scene.
+
+Everything is deterministic: neighbouring texels of a tile of 4 by 4 take shifted copies of one
+pattern, which together are a pattern 16 times as fine, so that averaging over tiles leaves no
+noise (interleaved sampling, Keller and Heidrich 2001).
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["fibonacci_sphere", "hemisphere_rays", "net", "tile_shift"]
+
+Floats = NDArray[np.float32]
+
+_ORDER = np.array([0, 2, 1, 3], dtype=np.float32)
+"""Neighbours in a tile take places far from each other."""
+
+
+def net(count: int) -> Floats:
+    """Give (count, 2) float32: points of the unit square, one in each of its even parts.
+
+    The set of Hammersley (1960) in base 2, moved to the middles of its intervals.
+    """
+    index = np.arange(count, dtype=np.uint64)
+    bits = max(int(count - 1).bit_length(), 1)
+    mirrored = np.zeros(count, dtype=np.uint64)
+    for bit in range(bits):
+        mirrored |= ((index >> np.uint64(bit)) & np.uint64(1)) << np.uint64(bits - 1 - bit)
+    first = (index + 0.5) / count
+    second = (mirrored + 0.5) / 2.0**bits
+    return np.stack([first, second], axis=1).astype(np.float32)
+
+
+def tile_shift(rows: NDArray[np.int32], columns: NDArray[np.int32]) -> Floats:
+    """Give (N, 2) float32: how far each texel moves a net, in mean distances of its points."""
+    shift = np.stack([_ORDER[columns & 3], _ORDER[rows & 3]], axis=1)
+    moved: Floats = ((shift - 1.5) / 4.0).astype(np.float32)
+    return moved
+
+
+def fibonacci_sphere(count: int) -> Floats:
+    """Give (count, 3) float32: unit vectors spread evenly over the sphere."""
+    index = np.arange(count) + 0.5
+    z = 1.0 - 2.0 * index / count
+    radius = np.sqrt(1.0 - z * z)
+    turn = index * (np.pi * (3.0 - np.sqrt(5.0)))
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn), z], axis=1).astype(np.float32)
+
+
+@numba.njit(cache=True, nogil=True)
+def hemisphere_rays(normals, faces, pattern, shifts, directions):  # type: ignore[no-untyped-def]
+    """Fill in directions whose density is the cosine to the normal, over pi.
+
+    Parameters
+    ----------
+    normals, faces : (N, 3) float32
+        Directions that would run into the face are mirrored at it.
+    pattern : (M, 2) float32
+    shifts : (N, 2) float32
+        Of the pattern, per point.
+    directions : (N, M, 3) float32
+        Filled in; unit length.
+    """
+    for k in range(len(normals)):
+        nx, ny, nz = normals[k]
+        # Duff and others 2017, "Building an orthonormal basis, revisited".
+        sign = 1.0 if nz >= 0.0 else -1.0
+        a = -1.0 / (sign + nz)
+        b = nx * ny * a
+        for m in range(len(pattern)):
+            u = pattern[m, 0] + shifts[k, 0]
+            v = pattern[m, 1] + shifts[k, 1]
+            u -= np.floor(u)
+            v -= np.floor(v)
+            radius = np.sqrt(u)
+            x, y = radius * np.cos(2.0 * np.pi * v), radius * np.sin(2.0 * np.pi * v)
+            z = np.sqrt(max(1.0 - u, 0.0))
+            dx = x * (1.0 + sign * nx * nx * a) + y * b + z * nx
+            dy = x * sign * b + y * (sign + ny * ny * a) + z * ny
+            dz = -x * sign * nx - y * ny + z * nz
+            below = dx * faces[k, 0] + dy * faces[k, 1] + dz * faces[k, 2]
+            if below < 0.0:
+                dx -= 2.0 * below * faces[k, 0]
+                dy -= 2.0 * below * faces[k, 1]
+                dz -= 2.0 * below * faces[k, 2]
+            directions[k, m, 0] = dx
+            directions[k, m, 1] = dy
+            directions[k, m, 2] = dz

@@ -1,0 +1,51 @@
+"""How finely light is baked: nothing in, `BakeSettings` out. Knows no scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["BAKE_VERSION", "BakeSettings"]
+
+BAKE_VERSION = 1
+"""Grows whenever the same scene and settings would give another result."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BakeSettings:
+    """How finely light is baked.
+
+    Attributes
+    ----------
+    texel_m : float
+        Side of a light map's texel on models of few triangles: walls, floors, boards [m].
+    fine_texel_m : float
+        Side of a texel on models of many triangles [m].
+    max_map : int
+        Largest side of the light map [texels]; texels grow until everything fits.
+    rays : int
+        Rays from each texel in the last gathering; texels of a tile of 4 by 4 share 16 times as
+        many directions. A square of a power of two: 4, 16, 64, 256, 1024.
+    coarse_rays : int
+        The same for the bounces before.
+    light_rays, window_rays : int
+        Rays from each texel to each light, and to each window.
+    bounces : int
+        How many times light is handed on before the last gathering.
+    probe_spacing_m : float
+        Distance of neighbouring probes, if there are not too many of them [m].
+    max_probes : int
+    probe_rays : int
+        Rays from each probe.
+    """
+
+    texel_m: float = 0.02
+    fine_texel_m: float = 0.03
+    max_map: int = 2048
+    rays: int = 256
+    coarse_rays: int = 16
+    light_rays: int = 16
+    window_rays: int = 16
+    bounces: int = 6
+    probe_spacing_m: float = 0.4
+    max_probes: int = 8000
+    probe_rays: int = 1024

@@ -1,0 +1,131 @@
+"""Which point of which triangle each texel of the light map stands for.
+
+From `Scenery` and `Layout` to `Texels`. Knows neither rays nor light.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.layout import Layout
+from sailenv_ros.bake.scenery import Scenery
+
+__all__ = ["Texels", "rasterised"]
+
+REACH = 1.5
+"""Texels this near to a triangle stand for its nearest point: bilinear look-ups meet them."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Texels:
+    """The texels in use, row by row.
+
+    Attributes
+    ----------
+    index : (H, W) int32
+        Place of each texel of the map in the arrays below, -1 where it is unused.
+    rows, columns : (N,) int32
+    triangle : (N,) int32
+    weights : (N, 3) float32
+        Of the triangle's corners.
+    positions : (N, 3) float32
+        World frame [m].
+    normals : (N, 3) float32
+        Of the smooth surface, unit length, towards the side that is lit.
+    faces : (N, 3) float32
+        Of the triangle, unit length, to the same side.
+    """
+
+    index: NDArray[np.int32]
+    rows: NDArray[np.int32]
+    columns: NDArray[np.int32]
+    triangle: NDArray[np.int32]
+    weights: NDArray[np.float32]
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    faces: NDArray[np.float32]
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.triangle)
+
+
+def rasterised(scenery: Scenery, layout: Layout) -> Texels:
+    """Find the texels that the charts cover, and those that touch them."""
+    side = layout.side
+    owner = np.full((side, side), -1, dtype=np.int32)
+    weights = np.zeros((side, side, 3), dtype=np.float32)
+    _cover(layout.places, owner, weights, np.full((side, side), REACH * REACH, dtype=np.float32))
+    rows, columns = np.nonzero(owner >= 0)
+    index = np.full((side, side), -1, dtype=np.int32)
+    index[rows, columns] = np.arange(len(rows))
+    triangle, share = owner[rows, columns], weights[rows, columns]
+    faces = scenery.faces[triangle]
+    normals = np.einsum("nc,ncx->nx", share, scenery.normals[triangle])
+    # Normals that point through their own triangle are none.
+    facing = np.einsum("nx,nx->n", normals, faces)
+    normals[facing < 0.05] = faces[facing < 0.05]
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return Texels(
+        index=index,
+        rows=rows.astype(np.int32),
+        columns=columns.astype(np.int32),
+        triangle=triangle,
+        weights=share,
+        positions=np.einsum("nc,ncx->nx", share, scenery.corners[triangle]),
+        normals=normals,
+        faces=faces,
+    )
+
+
+@numba.njit(cache=True, nogil=True)
+def _cover(places, owner, weights, nearest):  # type: ignore[no-untyped-def]
+    """Give each texel the triangle that is nearest to its centre, in order of the triangles."""
+    height, width = owner.shape
+    share = np.zeros(3, np.float32)
+    for t in range(len(places)):
+        corners = places[t]
+        left = max(int(np.floor(corners[:, 0].min() - REACH)), 0)
+        right = min(int(np.ceil(corners[:, 0].max() + REACH)), width)
+        top = max(int(np.floor(corners[:, 1].min() - REACH)), 0)
+        bottom = min(int(np.ceil(corners[:, 1].max() + REACH)), height)
+        for row in range(top, bottom):
+            for column in range(left, right):
+                if nearest[row, column] == 0.0:
+                    continue
+                far = _closest(corners, column + 0.5, row + 0.5, share)
+                if far < nearest[row, column]:
+                    nearest[row, column] = far
+                    owner[row, column] = t
+                    weights[row, column] = share
+
+
+@numba.njit(cache=True, nogil=True)
+def _closest(corners, x, y, share):  # type: ignore[no-untyped-def]
+    """Give the squared distance of a point from a triangle, and in `share` where it is nearest."""
+    ax, ay = corners[0, 0], corners[0, 1]
+    bx, by = corners[1, 0], corners[1, 1]
+    cx, cy = corners[2, 0], corners[2, 1]
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    if abs(area) > 1e-9:
+        wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
+        wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
+        if wb >= 0.0 and wc >= 0.0 and wb + wc <= 1.0:
+            share[0], share[1], share[2] = 1.0 - wb - wc, wb, wc
+            return 0.0
+    best = np.inf
+    for k in range(3):
+        px, py = corners[k, 0], corners[k, 1]
+        dx, dy = corners[(k + 1) % 3, 0] - px, corners[(k + 1) % 3, 1] - py
+        along = ((x - px) * dx + (y - py) * dy) / max(dx * dx + dy * dy, 1e-12)
+        along = min(max(along, 0.0), 1.0)
+        far = (x - px - along * dx) ** 2 + (y - py - along * dy) ** 2
+        if far < best:
+            best = far
+            share[k], share[(k + 1) % 3], share[(k + 2) % 3] = 1.0 - along, along, 0.0
+    return best

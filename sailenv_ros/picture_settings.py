@@ -1,0 +1,81 @@
+"""How an agent's camera turns radiance into its picture: exposure, tone curve, effects.
+
+Travels in `Camera` to the renderer. Concerns the picture alone: no ground truth depends on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+
+__all__ = ["LIMITS", "PictureSettings", "ToneCurve"]
+
+ToneCurve = Literal["filmic", "linear"]
+
+LIMITS: dict[str, tuple[float, float, str]] = {
+    "exposure": (-16.0, 16.0, "stops"),
+    "occlusion_strength": (0.0, 1.0, ""),
+    "occlusion_radius_m": (0.01, 5.0, "m"),
+    "bloom": (0.0, 1.0, ""),
+    "full_well": (0.0, 1e7, "electrons"),
+    "read_noise": (0.0, 1e4, "electrons"),
+}
+"""Least and greatest value of each number, and its unit."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PictureSettings:
+    """What is done to the picture, and to nothing else.
+
+    Attributes
+    ----------
+    exposure : float
+        Stops that the picture is brightened by, on top of the scene's, -16 to 16.
+    tone_curve : {'filmic', 'linear'}
+        ``filmic`` rolls highlights off as film does; ``linear`` is plain sRGB, cut off at white.
+    occlusion_strength : float
+        How much corners and contacts darken the light from around, 0 (off) to 1. Surfaces whose
+        light was baked have that darkness already; among each other they are left alone.
+    occlusion_radius_m : float
+        From how far away surfaces darken each other [m], 0.01 to 5.
+    smooth_edges : bool
+        True if stair-steps are smoothed.
+    bloom : float
+        Share of the light that is spread around bright places, 0 (off) to 1.
+    full_well : float
+        Electrons that a pixel of radiance 1 (after exposure) collects: the fewer, the more noise.
+        0 turns noise off.
+    read_noise : float
+        Standard deviation that reading a pixel adds [electrons]; counts where `full_well` is not 0.
+
+    Raises
+    ------
+    InvalidRequest, UnknownName
+        If one of them is out of its range.
+    """
+
+    exposure: float = 0.0
+    tone_curve: ToneCurve = "filmic"
+    occlusion_strength: float = 0.6
+    occlusion_radius_m: float = 0.25
+    smooth_edges: bool = True
+    bloom: float = 0.0
+    full_well: float = 0.0
+    read_noise: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.tone_curve not in get_args(ToneCurve):
+            raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
+        if not isinstance(self.smooth_edges, bool):
+            raise InvalidRequest("smooth_edges", self.smooth_edges, "true or false")
+        for name, (low, high, unit) in LIMITS.items():
+            value = getattr(self, name)
+            number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+            if not number or not low <= value <= high:
+                accepted = f"a number from {low:g} to {high:g}" + (f" [{unit}]" if unit else "")
+                raise InvalidRequest(name, value, accepted)
+            object.__setattr__(self, name, float(value))

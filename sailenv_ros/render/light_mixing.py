@@ -1,0 +1,155 @@
+"""From baked layers to the light of one moment: each light's layers times what it shines now.
+
+Baked light, lights and surroundings come in; a light map, probes and the lights that the bake
+knows nothing of go out. Plain arithmetic on arrays; nothing here knows OpenGL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
+from sailenv_ros.lights import Environment, Light
+
+__all__ = ["MixedLight", "instance_light", "main_light", "mix", "strength"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class MixedLight:
+    """The light of what stands still, and of the air around it.
+
+    Attributes
+    ----------
+    texels : (H, W, 4) float16
+        Irradiance / pi of everything but the main light's direct part; the share of the main light
+        that is not in shadow.
+    probes : (Z, Y, X, 4, 3) float32
+        As in `LightLayer`, without the main light's direct part.
+    live : tuple of Light
+        Lights that must be drawn as if there were no bake: they were added or moved.
+    main_baked : bool
+        True if the fourth channel of `texels` belongs to the present main light.
+    """
+
+    texels: NDArray[np.float16]
+    probes: NDArray[np.float32]
+    live: tuple[Light, ...]
+    main_baked: bool
+
+
+def strength(light: Light) -> float:
+    """Give a number by which lights are ordered: the stronger the larger."""
+    return light.intensity * max(light.colour)
+
+
+def main_light(lights: Sequence[Light]) -> Light | None:
+    """Give the light that casts the shadow map: the strongest directional one."""
+    suns = [light for light in lights if light.type == "directional" and light.intensity > 0.0]
+    return max(suns, key=strength, default=None)
+
+
+def mix(baked: BakedLight, lights: Sequence[Light], environment: Environment) -> MixedLight:
+    """Add the layers up.
+
+    Ambient light stands in for bounced light where there is no bake. With one, it counts only in
+    so far as it has changed since, so that setting it still has the effect one expects.
+    """
+    surroundings = baked.layers[0]
+    before = baked.environment or environment
+    sky = _ratio(_mean_sky(environment), _mean_sky(before)).astype(np.float32)
+    more = np.subtract(environment.ambient, before.ambient).astype(np.float32)
+    texels = surroundings.bounced.astype(np.float32) * sky + more
+    probes = surroundings.probe_bounced.astype(np.float32) * sky
+    probes[..., 0, :] += more
+    shown = np.full(texels.shape[:2], 255, np.uint8)
+    main = main_light(lights)
+    main_baked = False
+    present = {light.name: light for light in lights}
+    known = set()
+    for layer in baked.layers[1:]:
+        assert layer.light is not None
+        light = present.get(layer.light.name)
+        if light is None or not _stands_alike(light, layer.light):
+            continue
+        known.add(light.name)
+        is_main = light is main and layer.visibility is not None
+        _add(texels, probes, layer, light, direct=not is_main)
+        if is_main and layer.visibility is not None:
+            shown, main_baked = layer.visibility, True
+    four = np.empty((*texels.shape[:2], 4), np.float16)
+    four[..., :3] = np.maximum(texels, 0.0)
+    four[..., 3] = shown * np.float32(1.0 / 255.0)
+    live = tuple(light for light in lights if light.name not in known and light is not main)
+    return MixedLight(texels=four, probes=probes, live=live, main_baked=main_baked)
+
+
+def instance_light(
+    probes: NDArray[np.float32], grid: ProbeGrid, points: NDArray[np.float64]
+) -> NDArray[np.float32]:
+    """Interpolate probes at points; beyond the grid its border goes on.
+
+    Parameters
+    ----------
+    probes : (Z, Y, X, 4, 3) float32
+    grid : ProbeGrid
+    points : (N, 3) float64
+        World frame [m].
+
+    Returns
+    -------
+    light : (N, 4, 3) float32
+    """
+    last = np.array(grid.shape[::-1]) - 1
+    at = (points - np.asarray(grid.origin_m)) / np.asarray(grid.spacing_m)
+    at = np.clip(at, 0.0, last)
+    low = np.minimum(at.astype(np.intp), np.maximum(last - 1, 0))
+    share = (at - low).astype(np.float32)
+    result = np.zeros((len(points), 4, 3), np.float32)
+    for corner in np.ndindex(2, 2, 2):
+        weight = np.prod(np.where(corner, share, 1.0 - share), axis=1)
+        x, y, z = np.minimum(low + corner, last).T
+        result += weight[:, None, None] * probes[z, y, x]
+    return result
+
+
+def _add(
+    texels: NDArray[np.float32],
+    probes: NDArray[np.float32],
+    layer: LightLayer,
+    light: Light,
+    *,
+    direct: bool,
+) -> None:
+    power = (np.asarray(light.colour) * light.intensity).astype(np.float32)
+    bounced = power * np.float32(light.indirect_multiplier)
+    texels += layer.bounced * bounced
+    probes += layer.probe_bounced * bounced
+    if direct:
+        texels += layer.direct[..., None] * power
+        probes += layer.probe_direct * power
+
+
+def _stands_alike(light: Light, baked: Light) -> bool:
+    """Tell if two lights differ in nothing but what layers are multiplied by."""
+    power = (baked.colour, baked.intensity, baked.indirect_multiplier)
+    colour, intensity, indirect = power
+    alike: bool = (
+        replace(light, colour=colour, intensity=intensity, indirect_multiplier=indirect) == baked
+    )
+    return alike
+
+
+def _ratio(now: NDArray[np.float64], before: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Divide; under a black sky nothing can have come from it, so nothing is scaled."""
+    ratio: NDArray[np.float64] = np.divide(now, before, out=np.ones(3), where=before > 1e-6)
+    return ratio
+
+
+def _mean_sky(environment: Environment) -> NDArray[np.float64]:
+    zenith, horizon = np.asarray(environment.sky_zenith), np.asarray(environment.sky_horizon)
+    mean: NDArray[np.float64] = 0.5 * (zenith + horizon)
+    return mean

@@ -1,0 +1,66 @@
+// What see-through surfaces do to the picture behind them: each colour is dimmed by what does not
+// come through, and what they mirror and scatter themselves is added.
+layout(location = 0, index = 0) out vec4 out_added;    // see picture.glsl
+layout(location = 0, index = 1) out vec4 out_through;  // share of what lies behind
+
+#include "picture.glsl"
+#include "textures.glsl"
+#include "reflections.glsl"
+
+uniform vec3 ambient;
+uniform float sky_share;
+#ifdef BAKED
+uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
+#endif
+
+flat in float instance_id;
+in vec3 optical_normal;
+in vec2 uv;
+flat in vec4 material_colour;
+flat in vec4 material_finish;  // roughness, metallic, alpha cutoff, emission
+
+// Irradiance / pi on a surface.
+vec3 light_around(vec3 world_normal) {
+#ifdef BAKED
+    int id = int(instance_id + 0.5);
+    ivec2 row = ivec2((id & 255) * 3, id >> 8);
+    vec4 facing_to = vec4(1.0, world_normal);
+    return max(vec3(dot(texelFetch(instance_light, row, 0), facing_to),
+                    dot(texelFetch(instance_light, row + ivec2(1, 0), 0), facing_to),
+                    dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to)), 0.0);
+#else
+    return ambient + sky_share * mix(sky_ground, mix(sky_horizon, sky_zenith, 0.5),
+                                     0.5 + 0.5 * world_normal.z);
+#endif
+}
+
+vec3 mirrored_light(vec3 point, vec3 direction, float roughness) {
+#ifdef REFLECTIONS
+    return mirrored_room(world_from_optical * point + eye, direction, roughness);
+#else
+    return ambient + sky_share * sky(direction);
+#endif
+}
+
+void main() {
+    vec4 base = base_colour(material_colour, uv);
+    vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
+    vec3 view = -normalize(ray);
+    vec3 normal = normalize(optical_normal);
+    if (dot(normal, view) < 0.0) normal = -normal;
+    // Schlick's term for a refractive index of 1.5.
+    float grazing = 1.0 - clamp(dot(normal, view), 0.0, 1.0);
+    float g2 = grazing * grazing;
+    float fresnel = 0.04 + 0.96 * g2 * g2 * grazing;
+    // What comes through takes the hue of the material, the more the denser it is.
+    vec3 hue = base.rgb / max(max(base.r, max(base.g, base.b)), 1e-3);
+    vec3 through = (1.0 - fresnel) * (1.0 - base.a) * mix(vec3(1.0), hue, base.a);
+    vec3 world_normal = world_from_optical * normal;
+    vec3 mirrored = world_from_optical * reflect(-view, normal);
+    vec3 added = fresnel * mirrored_light(ray / gl_FragCoord.w, mirrored, material_finish.x);
+    added += (1.0 - fresnel) * base.a * base.rgb * light_around(world_normal);
+    added += base.rgb * (material_finish.w * 16.0);
+    // The share of light from around stays that of what lies behind.
+    out_added = vec4(finished(added, vec3(0.0)).rgb, 0.0);
+    out_through = vec4(through, 1.0);
+}

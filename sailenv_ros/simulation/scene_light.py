@@ -1,0 +1,50 @@
+"""Hangs baked light into worlds, where it has been baked already. From `World` to `World`.
+
+Never bakes: a simulator that runs must not be held up for minutes.
+"""
+
+from __future__ import annotations
+
+import logging
+
+from sailenv_ros.bake.files import load_baked
+from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.world.world import World
+
+__all__ = ["BAKE_COMMAND", "SceneLight"]
+
+BAKE_COMMAND = "sailenv scene bake"
+
+_log = logging.getLogger(__name__)
+
+
+class SceneLight:
+    """Finds the baked light of worlds; keeps the last in mind, so that a reset loads nothing."""
+
+    def __init__(self) -> None:
+        self._last: BakedLight | None = None
+
+    def hang(self, world: World, scene: str) -> None:
+        """Give a world its baked light, or say how to have it baked.
+
+        Parameters
+        ----------
+        world : World
+            Just built.
+        scene : str
+            The name or file by which a user asks for it.
+        """
+        name = fingerprint(world.snapshot())
+        if self._last is None or self._last.fingerprint != name:
+            self._last = load_baked(name)
+        if self._last is not None:
+            world.set_baked(self._last)
+            return
+        _log.info(
+            "the light of scene %s is not baked yet and is worked out from frame to frame; "
+            "for bounced light and soft shadows: %s %s",
+            scene,
+            BAKE_COMMAND,
+            scene,
+        )

@@ -1,0 +1,124 @@
+"""Pictures under baked light, against the light that was put into the map."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sailenv_ros.frame import VIEWS
+from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Environment, Light
+from tests.render.conftest import Render
+from tests.support.baked import SIZE, baked, chart, layer
+from tests.support.picture import linear
+from tests.support.tiny_scenes import (
+    FORWARD,
+    Thing,
+    box_mesh,
+    camera_at,
+    model_of,
+    snapshot_of,
+    wall_mesh,
+)
+
+AHEAD = Pose((3.0, 0.0, 0.0))
+WALL = model_of(wall_mesh(8.0, 8.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
+ALBEDO = np.array([0.5, 0.4, 0.3])
+DARK = Environment(sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0))
+SUN = Light(name="sun", type="directional", direction=(1.0, 0.0, 0.0), intensity=1.5)
+
+pytestmark = pytest.mark.gl
+
+
+def test_a_matt_surface_shows_albedo_times_the_map(render: Render) -> None:
+    """Radiance is albedo times irradiance / pi, read at the surface's own place."""
+    # In the map u runs to the right: a ramp from left to right.
+    ramp = np.linspace(0.0, 1.0, SIZE)[None, :, None]
+    light = baked({1: chart(WALL, AHEAD)}, [], layer(None, bounced=ramp * np.ones(3)))
+    scene = snapshot_of([Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=light)
+    camera = camera_at()
+    got = linear(render(scene, camera, "rgb")["rgb"]).mean(axis=0)
+    columns = np.arange(camera.intrinsics.width)
+    y = -(columns - camera.intrinsics.cx) / camera.intrinsics.fx * 3.0
+    u = 4 / SIZE + (0.5 - y / 8.0) * (SIZE - 8) / SIZE
+    expected = np.clip(u * SIZE - 0.5, 0, SIZE - 1) / (SIZE - 1)
+    np.testing.assert_allclose(got, expected[:, None] * ALBEDO, rtol=0.05, atol=0.003)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_the_main_light_arrives_as_far_as_the_map_says(render: Render, share: float) -> None:
+    """Its irradiance times albedo / pi times the share that is not in shadow."""
+    matt = model_of(wall_mesh(8.0, 8.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
+    light = baked({1: chart(matt, AHEAD)}, [layer(SUN, visible=share)])
+    scene = snapshot_of([Thing(matt, AHEAD)], lights=(SUN,), environment=DARK, baked=light)
+    got = linear(render(scene, camera_at(), "rgb")["rgb"]).mean(axis=(0, 1))
+    # Beside the matt part a little is reflected by the surface itself, hardly any at roughness 1.
+    np.testing.assert_allclose(got, share * 1.5 * ALBEDO / np.pi, rtol=0.08, atol=0.004)
+
+
+def test_what_moves_is_lit_from_the_probes(render: Render) -> None:
+    """A surface without a chart has c0 + c . n, each colour with its own four numbers."""
+    probes = np.zeros((4, 3))
+    probes[0] = 0.5, 0.25, 0.125
+    probes[1] = -0.25, 0.0, 0.125  # along x: the wall's normal is -x
+    light = baked({}, [], layer(None, probe_bounced=probes))
+    scene = snapshot_of([Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=light)
+    got = linear(render(scene, camera_at(), "rgb")["rgb"]).mean(axis=(0, 1))
+    np.testing.assert_allclose(got, ALBEDO * [0.75, 0.25, 0.0], rtol=0.04, atol=0.004)
+
+
+def test_what_was_moved_leaves_its_light_behind(render: Render) -> None:
+    """An instance that does not stand where it was baked is lit from the probes."""
+    surroundings = layer(None, bounced=0.8, probe_bounced=np.array([[0.2] * 3] + [[0.0] * 3] * 3))
+    light = baked({1: chart(WALL, Pose((3.0, 0.0, 0.01)))}, [], surroundings)
+    scene = snapshot_of([Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=light)
+    got = linear(render(scene, camera_at(), "rgb")["rgb"]).mean(axis=(0, 1))
+    np.testing.assert_allclose(got, 0.2 * ALBEDO, rtol=0.04, atol=0.003)
+
+
+def test_what_moves_casts_on_what_stands_still(render: Render) -> None:
+    """A box between sun and wall: its shadow lies on the wall, where the map says all is lit."""
+    box = model_of(box_mesh(0.5))
+    light = baked({1: chart(WALL, AHEAD)}, [layer(SUN, visible=1.0)])
+    slanted = replace(SUN, direction=(1.0, 0.5, 0.0))
+    light = baked({1: chart(WALL, AHEAD)}, [layer(slanted, visible=1.0)])
+
+    def picture(box_x: float) -> np.ndarray:  # type: ignore[type-arg]
+        things = [Thing(WALL, AHEAD), Thing(box, Pose((box_x, -0.5, 0.0)))]
+        scene = snapshot_of(things, lights=(slanted,), environment=DARK, baked=light)
+        return linear(render(scene, camera_at(), "rgb")["rgb"])
+
+    camera = camera_at()
+    # The ray of the sun through the box's middle at x = 2 meets the wall at y = -0.5 + 0.5.
+    at = round(camera.intrinsics.cx), round(camera.intrinsics.cy)
+    assert picture(2.0)[at[1], at[0]].max() < 0.01
+    assert picture(-3.0)[at[1], at[0]].min() > 0.05
+
+
+def test_a_mirror_shows_the_room(render: Render) -> None:
+    """A smooth metal wall ahead shows what stands behind the camera, in its baked light."""
+    mirror = model_of(wall_mesh(8.0, 8.0), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0)
+    back = Pose.from_rpy_deg((-4.0, 0.0, 0.0), (0.0, 0.0, 180.0))
+    glowing = model_of(wall_mesh(40.0, 40.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
+    light = baked({1: chart(mirror, AHEAD), 2: chart(glowing, back)}, [], layer(None, bounced=0.8))
+    things = [Thing(mirror, AHEAD), Thing(glowing, back)]
+    scene = snapshot_of(things, lights=(), environment=DARK, baked=light)
+    got = linear(render(scene, camera_at(), "rgb")["rgb"])
+    middle = got[got.shape[0] // 2, got.shape[1] // 2]
+    np.testing.assert_allclose(middle, 0.8 * ALBEDO, rtol=0.1)
+
+
+def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:
+    """Every other view is the same, to the byte, with and without it."""
+    views = [view for view in VIEWS if view != "rgb"]
+    box = model_of(box_mesh(0.5))
+    things = [Thing(WALL, AHEAD), Thing(box, Pose((2.0, 0.3, 0.1)))]
+    light = baked({1: chart(WALL, AHEAD)}, [layer(SUN, visible=1.0)])
+    found = []
+    for bake in (None, light):
+        scene = snapshot_of(things, lights=(SUN,), environment=DARK, baked=bake)
+        found.append(render(scene, camera_at(), "rgb", *views, past=(scene, camera_at(FORWARD))))
+    for view in views:
+        assert found[0][view].tobytes() == found[1][view].tobytes(), view

@@ -1,0 +1,133 @@
+"""See-through surfaces: in the picture by their formula, in the ground truth not at all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sailenv_ros.frame import VIEWS
+from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Environment
+from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.render.tone import srgb
+from tests.render.conftest import Render
+from tests.support.tiny_scenes import (
+    FRAME_NS,
+    Thing,
+    box_mesh,
+    camera_at,
+    contents_of,
+    model_of,
+    moved,
+    snapshot_of,
+    two_instants,
+    wall_mesh,
+)
+
+LEVEL = 0.3
+GREY = (LEVEL, LEVEL, LEVEL)
+UNIFORM = Environment(sky_zenith=GREY, sky_horizon=GREY, sky_ground=GREY)
+PLAIN = PictureSettings(tone_curve="linear", occlusion_strength=0.0, smooth_edges=False)
+EYE = replace(camera_at(), picture=PLAIN)
+WALL = wall_mesh(30.0, 30.0)
+
+
+def glass(rgba: tuple[float, float, float, float], distance_m: float, **material: object) -> Thing:
+    """A sheet at right angles to the view that fills the picture."""
+    sheet = model_of(WALL, base_colour=rgba, alpha="blend", roughness=0.05, **material)
+    return Thing(sheet, Pose((distance_m, 0, 0)))
+
+
+def test_ground_truth_is_of_what_lies_behind(render: Render) -> None:
+    """With panes that move before everything, all other views are the same bytes as without."""
+    before, after, past, now = two_instants()
+    drawn = before.contents.instances
+    pane = glass((0.2, 0.5, 0.3, 0.7), 0.0, double_sided=True)
+    # Their ids follow the others'.
+    (first, second) = contents_of([pane, pane], first_id=len(drawn) + 1).instances
+    contents = replace(before.contents, instances=(*drawn, first, second))
+    glazed = [
+        replace(
+            snapshot,
+            contents=contents,
+            world_from_body=np.concatenate([snapshot.world_from_body, panes]),
+            histories=np.ones(len(drawn) + 2, np.int64),
+        )
+        for snapshot, panes in (
+            (before, [Pose((1.0, 0, 0)).matrix(), Pose((2.0, 0, 0)).matrix()]),
+            (after, [Pose((1.5, 0, 0)).matrix(), Pose((2.5, 0, 0)).matrix()]),
+        )
+    ]
+    names = list(VIEWS)
+    plain = render(after, now, *names, past=(before, past))
+    seen = render(glazed[1], now, *names, past=(glazed[0], past))
+    assert len(np.unique(plain["instance"])) > 5
+    for name in set(names) - {"rgb"}:
+        assert seen[name].tobytes() == plain[name].tobytes(), name
+    assert (seen["rgb"] != plain["rgb"]).any(axis=-1).mean() > 0.9
+
+
+@pytest.mark.parametrize("alpha", [0.0, 0.25, 0.8])
+def test_what_comes_through_and_what_is_added(render: Render, alpha: float) -> None:
+    """Head-on: (1 - F)(1 - a)(1 - a + a hue) of what lies behind, F mirrored, (1 - F) a lit."""
+    colour, behind = np.array([0.1, 0.4, 0.2]), np.array([0.6, 0.5, 0.05])
+    environment = replace(UNIFORM, background="colour", background_colour=tuple(behind))
+    pane = glass((*colour, alpha), 2.0)
+    rgb = render(snapshot_of([pane], lights=(), environment=environment), EYE, "rgb")["rgb"]
+    fresnel, hue = 0.04, colour / colour.max()
+    expected = (1 - fresnel) * (1 - alpha) * (1 - alpha + alpha * hue) * behind
+    expected += fresnel * LEVEL + (1 - fresnel) * alpha * colour * LEVEL
+    assert np.abs(rgb[35:37, 47:49] - 255 * srgb(expected)).max() <= 1.0
+
+
+def test_clear_glass_in_uniform_light_is_invisible(render: Render) -> None:
+    """What it mirrors is what it keeps back, at every angle."""
+    box = model_of(box_mesh(1.2), base_colour=(1, 1, 1, 0), alpha="blend", double_sided=True)
+    scene = snapshot_of(
+        [Thing(box, Pose.from_rpy_deg((2.0, 0, 0), (10, 20, 30)))], lights=(), environment=UNIFORM
+    )
+    assert np.ptp(render(scene, EYE, "rgb")["rgb"].astype(int)) <= 1
+
+
+def test_the_nearest_pane_comes_last(render: Render) -> None:
+    """The order in which a scene names its panes does not matter; where they are does."""
+    red, blue = (0.9, 0.05, 0.05, 0.6), (0.05, 0.05, 0.9, 0.6)
+
+    def seen(*panes: Thing) -> np.ndarray:
+        scene = snapshot_of(list(panes), lights=(), environment=UNIFORM)
+        return render(scene, EYE, "rgb")["rgb"].astype(int)
+
+    red_first = seen(glass(red, 2.0), glass(blue, 3.0))
+    np.testing.assert_array_equal(red_first, seen(glass(blue, 3.0), glass(red, 2.0)))
+    blue_first = seen(glass(blue, 2.0), glass(red, 3.0))
+    assert (red_first[..., 0] - red_first[..., 2] > 40).all()
+    assert (blue_first[..., 2] - blue_first[..., 0] > 40).all()
+
+
+def test_glass_behind_a_wall_is_not_seen(render: Render) -> None:
+    """And a wall that moves out of the way shows it."""
+    wall = Thing(model_of(wall_mesh(60, 60)), Pose((2.0, 0, 0)))
+    pane = glass((0.2, 0.9, 0.2, 0.8), 3.0)
+    bare = render(snapshot_of([wall]), EYE, "rgb")["rgb"]
+    both = [wall, pane]
+    contents = contents_of(both)
+    hidden = render(snapshot_of(both, contents=contents), EYE, "rgb")["rgb"]
+    np.testing.assert_array_equal(hidden, bare)
+    aside = moved(both, Pose((4.0, 0, 0)), pane.pose)
+    shown = render(snapshot_of(aside, contents=contents, time_ns=FRAME_NS), EYE, "rgb")["rgb"]
+    assert (shown[..., 1].astype(int) - shown[..., 0] > 30).all()
+
+
+def test_a_map_colours_glass(render: Render) -> None:
+    """Texels of alpha 0 are clear, others dense: stained glass."""
+    texture = np.zeros((8, 8, 4), np.uint8)
+    texture[:, :4] = (255, 0, 0, 255)
+    pane = glass((1, 1, 1, 1), 2.0, base_colour_texture=np.repeat(np.repeat(texture, 16, 0), 16, 1))
+    black = replace(UNIFORM, background="colour", background_colour=(0.5, 0.5, 0.5))
+    narrow = replace(EYE, intrinsics=replace(EYE.intrinsics, vertical_fov_deg=100.0))
+    rgb = render(snapshot_of([pane], lights=(), environment=black), narrow, "rgb")["rgb"]
+    left, right = rgb[36, 46].astype(int), rgb[36, 50].astype(int)
+    assert left[0] > left[1] + 40
+    assert np.ptp(right) <= 1

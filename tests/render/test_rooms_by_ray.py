@@ -1,0 +1,70 @@
+"""The rooms' labels and depth against rays: every pixel that is not at an edge."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+import pytest
+
+from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.geometry import look_at
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.snapshot import WorldSnapshot
+from tests.render.conftest import Render
+from tests.support.embree_cast import RayCast
+
+pytestmark = pytest.mark.gl
+
+VIEWS_PER_ROOM = 4
+WIDTH, HEIGHT = 320, 240
+
+
+@pytest.fixture(scope="module", params=["room_01", "room_02", "room_03"])
+def room(request: pytest.FixtureRequest) -> Iterator[WorldSnapshot]:
+    """A room after a second, when things have moved."""
+    counter = itertools.count(1)
+    world = SceneLibrary().build(request.param, 0, 1, lambda: next(counter))
+    world.step(240)
+    yield world.snapshot()
+    world.close()
+
+
+def test_labels_and_depth_are_what_rays_meet(room: WorldSnapshot, render: Render) -> None:
+    """All ids away from edges, all depths away from edges to 1e-4, from places all about."""
+    rays = RayCast(room)
+    compared = 0
+    for turn in np.arange(VIEWS_PER_ROOM) * 2.0 * np.pi / VIEWS_PER_ROOM + 0.4:
+        eye = (1.1 * np.cos(turn), 1.0 * np.sin(turn), 1.5)
+        target = (-1.5 * np.cos(turn), -1.5 * np.sin(turn), 0.7)
+        camera = Camera(
+            intrinsics=CameraIntrinsics(width=WIDTH, height=HEIGHT), pose=look_at(eye, target)
+        )
+        views = render(room, camera, "instance", "depth", "category")
+        ids, depth, masked = rays.look(camera)
+        inside = ~_near_edges(ids, depth) & ~_grown(masked)
+        compared += int(inside.sum())
+        assert (views["instance"][inside] == ids[inside]).all()
+        table = room.contents.category_of_instance
+        assert (views["category"][inside] == table[ids[inside]]).all()
+        np.testing.assert_allclose(views["depth"][inside], depth[inside], rtol=1e-4)
+    assert compared > 0.6 * VIEWS_PER_ROOM * WIDTH * HEIGHT
+
+
+def _grown(mask: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+    return cv2.dilate(mask.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
+
+
+def _near_edges(ids: np.ndarray, depth: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+    """Tell pixels beside another instance, or beside another surface of the same one."""
+    kernel = np.ones((3, 3), np.uint8)
+    as_float = ids.astype(np.float32)
+    other = cv2.dilate(as_float, kernel) != cv2.erode(as_float, kernel)
+    # A surface seen at a slant changes its inverse depth evenly: no second difference.
+    inverse = np.where(np.isfinite(depth), 1.0 / depth, 0.0)
+    bend = np.zeros(ids.shape)
+    bend[:, 1:-1] += np.abs(inverse[:, 2:] - 2.0 * inverse[:, 1:-1] + inverse[:, :-2])
+    bend[1:-1] += np.abs(inverse[2:] - 2.0 * inverse[1:-1] + inverse[:-2])
+    return other | _grown(bend > 0.0005)
