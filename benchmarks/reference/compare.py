@@ -1,7 +1,7 @@
 """Compare the renderer's pictures with those of a path tracer: same scene, same cameras.
 
     python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
-        [--size W H] [--trace-only | --no-trace] [--output FOLDER]
+        [--size W H] [--trace-only | --no-trace | --last] [--output FOLDER]
 
 Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
 (ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
@@ -65,6 +65,9 @@ def _arguments() -> argparse.Namespace:
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--trace-only", action="store_true", help="do not render ours")
     either.add_argument("--no-trace", action="store_true", help="take what the cache has")
+    either.add_argument(
+        "--last", action="store_true", help="take the last traced, though the scene has changed"
+    )
     return parser.parse_args()
 
 
@@ -103,7 +106,8 @@ def _compared(
         scene_of(snapshot, Parts(HOME / "parts")),
         {name: sensor(camera) for name, camera in cameras.items()},
         arguments.samples,
-        may_trace=not arguments.no_trace,
+        may_trace=not (arguments.no_trace or arguments.last),
+        or_last=arguments.last,
     )
     for name in cameras.keys() - references.keys():
         print(f"{scene}/{name}: no traced picture of this scene in the cache", file=sys.stderr)

@@ -59,7 +59,13 @@ class Traced:
 
 
 def traced_views(
-    name: str, scene: Dict, sensors: Mapping[str, Dict], samples: int, *, may_trace: bool = True
+    name: str,
+    scene: Dict,
+    sensors: Mapping[str, Dict],
+    samples: int,
+    *,
+    may_trace: bool = True,
+    or_last: bool = False,
 ) -> dict[str, Traced]:
     """Give the traced pictures of a scene by the names of its cameras.
 
@@ -75,6 +81,9 @@ def traced_views(
         Per pixel.
     may_trace : bool
         False takes what is there.
+    or_last : bool
+        True takes, of what is missing, the last one of that scene's and camera's name and size:
+        the scene has been changed since.
 
     Raises
     ------
@@ -84,6 +93,9 @@ def traced_views(
         If tracing failed.
     """
     files = {view: _file(name, view, scene, sensors[view], samples) for view in sensors}
+    missing = missing_views(files)
+    for view in missing if or_last else ():
+        files[view] = _last(name, view, sensors[view]["film"]) or files[view]
     missing = missing_views(files)
     if missing and may_trace:
         _trace(name, scene, {view: (sensors[view], files[view]) for view in missing}, samples)
@@ -124,6 +136,13 @@ def _file(name: str, view: str, scene: Dict, sensor: Dict, samples: int) -> Path
     text = json.dumps([METHOD, scene, sensor, samples], sort_keys=True)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     return HOME / "traces" / f"{name}-{view}-{digest}.npz"
+
+
+def _last(name: str, view: str, film: Dict) -> Path | None:
+    """Find the file that was written last for a camera's name and size."""
+    found = sorted((HOME / "traces").glob(f"{name}-{view}-*.npz"), key=lambda f: f.stat().st_mtime)
+    size = (film["height"], film["width"], 3)
+    return next((file for file in reversed(found) if _read(file).radiance.shape == size), None)
 
 
 def _trace(name: str, scene: Dict, views: Mapping[str, tuple[Dict, Path]], samples: int) -> None:

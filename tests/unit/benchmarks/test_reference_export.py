@@ -6,6 +6,7 @@ import dataclasses
 import io
 import json
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -348,3 +349,22 @@ def test_without_the_tracer_one_is_told_how_to_get_it(
     assert tracing.traced_views("test", scene, sensors, 4, may_trace=False) == {}
     with pytest.raises(tracing.ToolMissing, match="setup"):
         tracing.traced_views("test", scene, sensors, 4)
+
+
+def test_the_last_traced_picture_stands_in_where_that_is_wanted(
+    parts: Parts, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a changed scene the newest picture of a camera's name and size is taken, if asked for."""
+    monkeypatch.setattr(tracing, "HOME", tmp_path)
+    (tmp_path / "traces").mkdir()
+    for age, (number, height) in enumerate([(1, 48), (2, 480), (3, 480), (4, 48)]):
+        file = tmp_path / "traces" / f"test-front-{number}.npz"
+        image = np.full((height, height * 4 // 3, 3), number, np.float32)
+        np.savez(file, radiance=image, raw=image, noise=0.1, noise_denoised=0.01, seconds=1.0)
+        os.utime(file, (1000 - age, 1000 - age))
+    scene = export.scene_of(world_of(Material()), parts)
+    sensors = {"front": export.sensor(Camera())}
+    taken = tracing.traced_views("test", scene, sensors, 4, may_trace=False, or_last=True)
+    assert taken["front"].radiance.shape == (480, 640, 3)
+    assert taken["front"].radiance[0, 0, 0] == 2.0
+    assert tracing.traced_views("test", scene, sensors, 4, may_trace=False) == {}
