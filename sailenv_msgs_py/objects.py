@@ -27,6 +27,8 @@ __all__ = [
     "LIGHT_FIELDS",
     "behaviour_from_msg",
     "behaviour_to_msg",
+    "keys_from_json",
+    "keys_to_json",
     "light_changes_from_msg",
     "object_state_from_response",
     "object_state_to_response",
@@ -60,11 +62,7 @@ def behaviour_to_msg(behaviour: Mapping[str, Any]) -> msgs.Behaviour:
     if not isinstance(behaviour, Mapping) or not isinstance(behaviour.get("type"), str):
         raise InvalidRequest("behaviour", behaviour, "a mapping with its type and parameters")
     parameters = {key: value for key, value in behaviour.items() if key != "type"}
-    try:
-        text = json.dumps(parameters, default=_as_list) if parameters else ""
-    except (TypeError, ValueError, RecursionError):
-        accepted = "of numbers, texts, truth values and lists of them"
-        raise InvalidRequest("parameters of a behaviour", parameters, accepted) from None
+    text = keys_to_json("parameters of a behaviour", parameters) if parameters else ""
     return msgs.Behaviour(type=behaviour["type"], parameters_json=text)
 
 
@@ -76,14 +74,43 @@ def behaviour_from_msg(msg: msgs.Behaviour) -> dict[str, Any]:
     InvalidRequest
         If its parameters are no JSON object.
     """
-    try:
-        parameters = json.loads(msg.parameters_json or "{}")
-    except (ValueError, RecursionError):
-        parameters = None
-    if not isinstance(parameters, dict) or "type" in parameters:
-        accepted = 'a JSON object such as {"angular_velocity": [0, 0, 45]}'
+    accepted = 'a JSON object such as {"angular_velocity": [0, 0, 45]}'
+    parameters = keys_from_json("parameters_json", msg.parameters_json, accepted)
+    if "type" in parameters:
         raise InvalidRequest("parameters_json", msg.parameters_json, accepted)
     return {"type": msg.type, **parameters}
+
+
+def keys_to_json(what: str, keys: Mapping[str, Any]) -> str:
+    """Write keys of a scene file with their values as a JSON object.
+
+    Raises
+    ------
+    InvalidRequest
+        If a value is nothing that JSON has.
+    """
+    try:
+        return json.dumps(dict(keys), default=_as_list)
+    except (TypeError, ValueError, RecursionError):
+        accepted = "of numbers, texts, truth values and lists of them"
+        raise InvalidRequest(what, keys, accepted) from None
+
+
+def keys_from_json(what: str, text: str, accepted: str) -> dict[str, Any]:
+    """Read what `keys_to_json` wrote; an empty text is an empty object.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is no JSON object; `accepted` says what would be.
+    """
+    try:
+        keys = json.loads(text or "{}")
+    except (ValueError, RecursionError):
+        keys = None
+    if not isinstance(keys, dict):
+        raise InvalidRequest(what, text, accepted)
+    return keys
 
 
 def object_state_to_response(state: ObjectState, response: GetObject.Response) -> None:

@@ -6,7 +6,7 @@ defaults for the rest (the colours of the sky).
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Literal, cast
 
 from std_msgs.msg import ColorRGBA, Header
 
@@ -14,7 +14,13 @@ import sailenv_msgs.msg as msgs
 from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
-from sailenv_msgs_py.transforms import point_to_msg, vector_to_msg, xyz_from_msg
+from sailenv_msgs_py.transforms import (
+    point_to_msg,
+    pose_from_msg,
+    pose_to_msg,
+    vector_to_msg,
+    xyz_from_msg,
+)
 from sailenv_ros.labels import Category, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light, LightType
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
@@ -59,7 +65,7 @@ def scene_info_to_msg(info: SceneInfo) -> msgs.SceneInfo:
         lights=[light_to_msg(light) for light in info.lights],
         environment=environment_to_msg(info.environment),
         agents=[agent_spec_to_msg(spec) for spec in info.agents],
-        movers=[msgs.Mover(name=mover.name, controller=mover.controller) for mover in info.movers],
+        movers=[_mover_to_msg(mover) for mover in info.movers],
         renderer=info.renderer,
     )
 
@@ -83,7 +89,7 @@ def scene_info_from_msg(msg: msgs.SceneInfo) -> SceneInfo:
         lights=tuple(light_from_msg(light) for light in msg.lights),
         environment=_environment_from_msg(msg.environment),
         agents=tuple(agent_spec_from_msg(agent) for agent in msg.agents),
-        movers=tuple(MoverInfo(name=m.name, controller=m.controller) for m in msg.movers),
+        movers=tuple(_mover_from_msg(mover) for mover in msg.movers),
         renderer=msg.renderer,
     )
 
@@ -158,6 +164,26 @@ def _environment_from_msg(msg: msgs.Environment) -> Environment:
         background="sky" if msg.sky else "colour",
         background_colour=rgb_from_msg(msg.background_colour),
         exposure=float(msg.exposure),
+    )
+
+
+def _mover_to_msg(mover: MoverInfo) -> msgs.Mover:
+    return msgs.Mover(
+        name=mover.name,
+        controller=mover.controller,
+        waypoints=[pose_to_msg(pose) for pose in mover.waypoints],
+        total_time=float(mover.total_time_s),
+        loop=mover.loop,
+    )
+
+
+def _mover_from_msg(msg: msgs.Mover) -> MoverInfo:
+    return MoverInfo(
+        name=msg.name,
+        controller=cast(Literal["waypoint", "rigidbody"], msg.controller),
+        waypoints=tuple(pose_from_msg(pose) for pose in msg.waypoints),
+        total_time_s=msg.total_time,
+        loop=msg.loop,
     )
 
 

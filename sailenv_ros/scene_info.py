@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from sailenv_ros.agents import AgentSpec
+from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 
@@ -26,10 +27,19 @@ class MoverInfo:
     name : str
     controller : {'waypoint', 'rigidbody'}
         What drives it: the scene's waypoints, or commands and set poses.
+    waypoints : tuple of Pose
+        Its track, run through at equal times.
+    total_time_s : float
+        Time to run through all of them once [s].
+    loop : bool
+        True if the last waypoint leads on to the first.
     """
 
     name: str
     controller: Literal["waypoint", "rigidbody"]
+    waypoints: tuple[Pose, ...] = ()
+    total_time_s: float = 30.0
+    loop: bool = True
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -28,6 +28,8 @@ def _isolate_ros() -> None:
 
 
 _isolate_ros()
+# What its user has saved on this machine is no part of the tests.
+os.environ["SAILENV_SCENES"] = str(ROOT / "build" / "no_scenes")
 
 INSTALLED_PREFIX = os.environ.get("SAILENV_INSTALLED_PREFIX", "")
 """Set by scripts/test: where the package under test was installed to; else it is the sources'."""

@@ -16,6 +16,7 @@ from std_srvs.srv import Trigger
 
 from sailenv_msgs.srv import ChangeScene, Reset, Step
 from sailenv_msgs_py.stamps import ns_from_stamp
+from sailenv_ros.agent.edit_requests import EditRequests
 from sailenv_ros.agent.light_requests import LightRequests
 from sailenv_ros.agent.object_requests import ObjectRequests
 from sailenv_ros.agent.shared import acquire, release
@@ -52,7 +53,7 @@ class Instance:
     moving: bool
 
 
-class SimulatorClient(ObjectRequests, LightRequests):
+class SimulatorClient(ObjectRequests, LightRequests, EditRequests):
     """Requests to a simulator, and what it announces.
 
     Parameters

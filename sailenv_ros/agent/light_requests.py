@@ -11,7 +11,15 @@ from typing import Any
 from numpy.typing import ArrayLike
 from std_msgs.msg import ColorRGBA
 
-from sailenv_msgs.srv import GetAmbientLight, GetLight, SetAmbientLight, SetBackground, SetLight
+from sailenv_msgs.srv import (
+    AddLight,
+    GetAmbientLight,
+    GetLight,
+    RemoveLight,
+    SetAmbientLight,
+    SetBackground,
+    SetLight,
+)
 from sailenv_msgs_py.objects import LIGHT_FIELDS
 from sailenv_msgs_py.scene_info import colour_to_msg, light_from_msg, light_to_msg, rgb_from_msg
 from sailenv_ros.agent.asking import Asking, text_of
@@ -57,6 +65,40 @@ class LightRequests(Asking):
             light=light_to_msg(wanted), fields=[_FIELDS[name] for name in changes]
         )
         return light_from_msg(self._call(SetLight, "set_light", request).light)
+
+    def add_light(self, light_name: str, light_type: str, /, **attributes: Any) -> Light:
+        """Put one more light into the scene; give it.
+
+        Parameters
+        ----------
+        light_name : str
+            Unique in the scene.
+        light_type : {'directional', 'point', 'spot', 'area'}
+        **attributes
+            By their names in `Light`; the rest are its defaults.
+
+        >>> agent.add_light("lamp", "point", position_m=(0, 1, 2))  # doctest: +SKIP
+        """
+        for name in attributes:
+            if name not in _FIELDS or name == "type":
+                raise UnknownName("attribute of a light", name, _FIELDS)
+        given: dict[str, Any] = {"name": text_of("light_name", light_name), "type": light_type}
+        request = AddLight.Request(light=light_to_msg(Light(**{**given, **attributes})), fields=[])
+        added = light_from_msg(self._call(AddLight, "add_light", request).light)
+        self._await_info(
+            lambda info: any(light.name == light_name for light in info.lights),
+            f"the light {light_name!r}",
+        )
+        return added
+
+    def remove_light(self, light_name: str) -> None:
+        """Take a light out of the scene."""
+        request = RemoveLight.Request(name=text_of("light_name", light_name))
+        self._call(RemoveLight, "remove_light", request)
+        self._await_info(
+            lambda info: all(light.name != light_name for light in info.lights),
+            f"the end of light {light_name!r}",
+        )
 
     # -- the original client's -------------------------------------------------------------
 

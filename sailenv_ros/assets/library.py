@@ -107,6 +107,29 @@ class AssetLibrary:
                 self._loaded[name] = self._source_of[name].load(name)
             return self._loaded[name]
 
+    def peek(self, name: str) -> Asset:
+        """Give an asset as `get` does, but keep none that was not in use.
+
+        Raises
+        ------
+        UnknownName, AssetError
+            As `get`.
+        """
+        name = self.canonical(name)
+        with self._lock:
+            loaded = self._loaded.get(name)
+        return loaded or self._source_of[name].load(name)
+
+    def source(self, name: str) -> AssetSource:
+        """Give what an asset comes from, by its catalogue or display name.
+
+        Raises
+        ------
+        UnknownName
+            If no asset has that name.
+        """
+        return self._source_of[self.canonical(name)]
+
     def add(self, asset: Asset) -> None:
         """Add an asset that is there already, e.g. one that a user uploaded.
 

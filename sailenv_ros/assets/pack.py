@@ -111,6 +111,17 @@ class AssetPack:
         """What `pack.yaml` says of each asset, by catalogue name."""
         return MappingProxyType(self._entries)
 
+    def fingerprint(self, name: str) -> str:
+        """Give a text that changes whenever an asset does: the pack's own, else of its file."""
+        if self.content.fingerprint:
+            return f"{self.content.fingerprint} {name}"
+        entry = self._entries[name]
+        try:
+            file = (self.folder / entry.file).stat()
+        except OSError:
+            return f"{self.folder} {entry!r}"
+        return f"{self.folder} {entry!r} {file.st_size} {file.st_mtime_ns}"
+
     def load(self, name: str) -> Asset:
         """Read one asset's file.
 

@@ -16,9 +16,8 @@ from sailenv_ros.bake.bounces import bounced_radiance, patches_of
 from sailenv_ros.bake.direct import Points, arriving
 from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.bake.gather import BACK, Surroundings, gathered, seen_from, window_light
-from sailenv_ros.bake.layout import Layout, laid_out
+from sailenv_ros.bake.layout import Layout, is_simple, laid_out
 from sailenv_ros.bake.probes import (
-    MOST_SKY,
     filled_in,
     probe_grid,
     probe_light,
@@ -30,6 +29,7 @@ from sailenv_ros.bake.sampling import net, tile_shift
 from sailenv_ros.bake.scenery import static_scenery
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.bake.sides import turned_to_the_light
+from sailenv_ros.bake.sight import in_sight, look_from
 from sailenv_ros.bake.sky import panes, sky_picture
 from sailenv_ros.bake.smooth import filled, smoothed
 from sailenv_ros.bake.surfaces import albedo_of, emission_of
@@ -42,7 +42,7 @@ __all__ = ["Report", "bake"]
 
 Floats = NDArray[np.float32]
 Report = Callable[[str, float], None]
-"""Is told a stage's name and which share of it is done."""
+"""Is told the name of the stage and which share of the whole is done, 0 to 1."""
 
 MOST_BACKS = 0.25
 """A texel that sees more backs of surfaces than this share lies inside of something."""
@@ -66,7 +66,7 @@ def bake(
         Its poses, materials, sky, and its lights' places count; colours and intensities do not.
     settings : BakeSettings or None
     report : callable
-        Is told each stage's name and share of it done, 0 to 1.
+        See `Report`.
     workers : int
         Threads; 0 is one for each core. The result is the same for any number.
     """
@@ -92,19 +92,24 @@ class _Bake:
     ) -> None:
         self._snapshot, self._settings = snapshot, settings
         self._report, self._workers = report, workers
+        self._done = 0.0
 
     def run(self) -> BakedLight:
         settings, contents = self._settings, self._snapshot.contents
         scenery = static_scenery(self._snapshot)
-        layout = laid_out(scenery, settings, self._told("surfaces"))
         scene = RayScene(scenery)
+        self._grid = probe_grid(scenery.bounds(), settings)
+        self._spots = probe_positions(self._grid)
+        self._told("what is in sight", 0.04)
+        self._air = look_from(scenery, scene, self._spots, settings.probe_rays)
+        seen_ones = in_sight(scenery, self._air.seen)
+        layout = laid_out(scenery, settings, seen_ones, self._told("surfaces", 0.06))
         texels = turned_to_the_light(scenery, scene, rasterised(scenery, layout))
         self._scenery, self._texels = scenery, texels
-        two_sided = np.array([m.double_sided for m in scenery.materials], dtype=bool)
         self._around = Surroundings(
             scene=scene,
             faces=scenery.faces,
-            two_sided=two_sided[scenery.material],
+            two_sided=scenery.two_sided,
             places=layout.places,
             index=texels.index,
             sky=sky_picture(contents.environment),
@@ -118,6 +123,7 @@ class _Bake:
         )
         albedo = albedo_of(scenery, layout, texels)
         seen, sky = self._first_look()
+        self._nearness = np.zeros(texels.count, dtype=np.float32)
         self._valid = np.mean(seen == BACK, axis=1) <= MOST_BACKS
         lights = [_Light(None, np.zeros(texels.count, np.float32))]
         lights += [self._straight(light) for light in contents.lights]
@@ -126,13 +132,17 @@ class _Bake:
         probes = self._probes(lights, radiance)
         return self._result(layout, lights, bounced, *probes)
 
-    def _told(self, stage: str) -> Callable[[float], None]:
-        self._report(stage, 0.0)
-        return lambda share: self._report(stage, share)
+    def _told(self, stage: str, weight: float) -> Callable[[float], None]:
+        """Begin a stage that takes this share of the whole time."""
+        begun, self._done = self._done, min(self._done + weight, 1.0)
+        self._report(stage, begun)
+        return lambda share: self._report(stage, begun + weight * share)
 
-    def _chunks(self, work: Callable[[int, int], None], count: int, rays: int, stage: str) -> None:
+    def _chunks(
+        self, work: Callable[[int, int], None], count: int, rays: int, told: Callable[[float], None]
+    ) -> None:
         size = max(CHUNK_RAYS // max(rays, 1), 1)
-        in_chunks(work, count, size, self._workers, self._told(stage))
+        in_chunks(work, count, size, self._workers, told)
 
     def _first_look(self) -> tuple[NDArray[np.int32], Floats]:
         """Find which texels see which, and how much of the sky arrives straight at each."""
@@ -147,7 +157,7 @@ class _Bake:
             seen[first:end], _, directions = seen_from(self._around, points, pattern)
             sky[first:end] = window_light(self._around, points, seen[first:end], directions, few)
 
-        self._chunks(look, count, rays, "first look")
+        self._chunks(look, count, rays, self._told("first look", 0.15))
         return seen, sky
 
     def _straight(self, light: Light) -> _Light:
@@ -161,7 +171,8 @@ class _Bake:
             points = self._points.part(chosen)
             direct[chosen], sight[chosen] = arriving(self._around.scene, light, points, pattern)
 
-        self._chunks(shine, len(lit), rays, light.name)
+        share = 0.18 / len(self._snapshot.contents.lights)
+        self._chunks(shine, len(lit), rays, self._told(light.name, share))
         return _Light(light, direct, sight if light.type == "directional" else None)
 
     def _radiance(
@@ -173,7 +184,7 @@ class _Bake:
         sky: Floats,
     ) -> Floats:
         """Give (N, 3 L) float32: what each texel sends out, light by light."""
-        self._report("bounces", 0.0)
+        told = self._told("bounces", 0.05)
         first = np.concatenate(
             [emission + albedo * sky, *(albedo * light.direct[:, None] for light in lights[1:])],
             axis=1,
@@ -188,49 +199,61 @@ class _Bake:
             self._settings.bounces,
         )
         radiance[~self._valid] = 0.0
-        self._report("bounces", 1.0)
+        told(1.0)
         return radiance
 
     def _last_look(self, radiance: Floats) -> Floats:
         """Give (N, 3 L) float32: what arrives at each texel by way of others and from the sky."""
-        settings = self._settings
-        pattern, window_pattern = net(settings.rays), net(settings.window_rays)
-        light = np.zeros((self._texels.count, radiance.shape[1]), dtype=np.float32)
-        nearness = np.zeros(self._texels.count, dtype=np.float32)
-        lit = np.flatnonzero(self._valid)
+        settings, texels = self._settings, self._texels
+        window_pattern = net(settings.window_rays)
+        light = np.zeros((texels.count, radiance.shape[1]), dtype=np.float32)
+        owner = self._scenery.owner[texels.triangle]
+        simple = np.array([is_simple(instance.model) for instance in self._scenery.instances])
 
-        def look(first: int, end: int) -> None:
-            chosen = lit[first:end]
-            light[chosen], nearness[chosen] = gathered(
-                self._around, self._points.part(chosen), pattern, window_pattern, radiance
-            )
+        def look_with(rays: int, lit: NDArray[np.intp], told: Callable[[float], None]) -> None:
+            pattern = net(rays)
 
-        self._chunks(look, len(lit), settings.rays, "last look")
-        light = smoothed(self._scenery, self._texels, light, self._valid, nearness)
-        return filled(self._scenery, self._texels, light, self._valid)
+            def look(first: int, end: int) -> None:
+                chosen = lit[first:end]
+                points = self._points.part(chosen)
+                light[chosen], self._nearness[chosen] = gathered(
+                    self._around, points, pattern, window_pattern, radiance
+                )
+
+            self._chunks(look, len(lit), rays, told)
+
+        if texels.count:
+            plain = simple[owner]
+            chosen = np.flatnonzero(self._valid & plain)
+            look_with(settings.rays, chosen, self._told("last look at walls", 0.37))
+            chosen = np.flatnonzero(self._valid & ~plain)
+            look_with(settings.fine_rays, chosen, self._told("last look at furniture", 0.11))
+        return self._even(light)
+
+    def _even(self, values: Floats) -> Floats:
+        """Smooth values of texels, and carry them into those that lie inside of something."""
+        values = smoothed(self._scenery, self._texels, values, self._valid, self._nearness)
+        return filled(self._scenery, self._texels, values, self._valid)
 
     def _probes(self, lights: list[_Light], radiance: Floats) -> tuple[ProbeGrid, Floats, Floats]:
         """Give the grid, (L, N, 4) direct and (N, 4, 3 L) bounced light of its probes."""
-        settings = self._settings
-        grid = probe_grid(self._scenery.bounds(), settings)
-        positions = probe_positions(grid)
+        settings, grid, positions = self._settings, self._grid, self._spots
         count = len(positions)
         bounced = np.empty((count, 4, radiance.shape[1]), dtype=np.float32)
-        inside, sky = np.empty(count, dtype=bool), np.empty(count, dtype=np.float32)
 
         def look(first: int, end: int) -> None:
-            bounced[first:end], inside[first:end], sky[first:end] = probe_light(
+            bounced[first:end] = probe_light(
                 self._around, positions[first:end], radiance, settings.probe_rays
             )
 
-        self._chunks(look, count, settings.probe_rays, "probes")
+        self._chunks(look, count, settings.probe_rays, self._told("probes", 0.04))
         direct = np.zeros((len(lights), count, 4), dtype=np.float32)
         for place, entry in enumerate(lights):
             if entry.light is not None and entry.light.type != "directional":
                 direct[place] = straight_light(
                     self._around.scene, entry.light, positions, net(settings.light_rays)
                 )
-        unknown = inside | (sky > MOST_SKY) if (sky[~inside] < MOST_SKY / 2).any() else inside
+        unknown = ~self._air.useful
         bounced = filled_in(bounced, unknown, grid)
         direct = np.stack([filled_in(d[..., None], unknown, grid)[..., 0] for d in direct])
         return grid, direct, bounced
@@ -250,7 +273,10 @@ class _Bake:
         layers = []
         for place, entry in enumerate(lights):
             mine = slice(3 * place, 3 * place + 3)
-            known = filled(scenery, texels, entry.direct[:, None], self._valid)
+            # An area light's shadows are as soft as the texels are fine, and its rays are few.
+            soft = entry.light is not None and entry.light.type == "area"
+            known = entry.direct[:, None]
+            known = self._even(known) if soft else filled(scenery, texels, known, self._valid)
             direct = np.zeros(texels.index.shape, dtype=np.float16)
             direct[at] = known[:, 0]
             map_of = np.zeros((*texels.index.shape, 3), dtype=np.float16)

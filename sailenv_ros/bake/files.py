@@ -23,11 +23,18 @@ from sailenv_ros.assets.places import cache_folder
 from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, Unwrapping
 from sailenv_ros.lights import Light
 
-__all__ = ["baked_file", "forget_oldest", "load_baked", "store_baked"]
+__all__ = [
+    "baked_file",
+    "forget_oldest",
+    "is_baked",
+    "load_baked",
+    "remember",
+    "store_baked",
+]
 
 FORMAT = 1
 
-MOST_FILES = 32
+MOST_FILES = 24
 """The oldest are thrown away beyond it."""
 
 _LAYER_ARRAYS = ("direct", "bounced", "probe_direct", "probe_bounced", "visibility")
@@ -81,14 +88,38 @@ def load_baked(fingerprint: str) -> BakedLight | None:
     return baked
 
 
+def remember(stamp: str, fingerprint: str) -> None:
+    """Keep in mind which light belongs to a scene file, so that nobody need build the scene."""
+    note = baked_file(fingerprint).with_name(f"{stamp}.known")
+    with suppress(OSError):
+        note.parent.mkdir(parents=True, exist_ok=True)
+        note.write_text(fingerprint, encoding="ascii")
+        forget_oldest(note.parent)
+
+
+def is_baked(stamp: str) -> bool:
+    """Tell whether the light of a scene file is known and there."""
+    note = baked_file(stamp).with_suffix(".known")
+    try:
+        fingerprint = note.read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError):
+        return False
+    return _is_fingerprint(fingerprint) and baked_file(fingerprint).is_file()
+
+
+def _is_fingerprint(text: str) -> bool:
+    return len(text) == 32 and all(c in "0123456789abcdef" for c in text)
+
+
 def forget_oldest(folder: Path, most: int = MOST_FILES) -> None:
-    """Remove the files that have not been used for longest, so that `most` remain."""
-    ages = {}
-    for path in folder.glob("*.npz"):
-        with suppress(OSError):
-            ages[path] = path.stat().st_mtime_ns
-    for path in sorted(ages, key=lambda p: (ages[p], p))[: max(len(ages) - most, 0)]:
-        path.unlink(missing_ok=True)
+    """Remove the files that have not been used for longest, so that `most` of a kind remain."""
+    for kind in ("*.npz", "*.known"):
+        ages = {}
+        for path in folder.glob(kind):
+            with suppress(OSError):
+                ages[path] = path.stat().st_mtime_ns
+        for path in sorted(ages, key=lambda p: (ages[p], p))[: max(len(ages) - most, 0)]:
+            path.unlink(missing_ok=True)
 
 
 def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:

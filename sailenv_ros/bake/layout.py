@@ -18,10 +18,15 @@ from sailenv_ros.bake.unwrap import Chart, unwrapped
 from sailenv_ros.baked_light import LightChart
 from sailenv_ros.model import Model
 
-__all__ = ["Layout", "laid_out"]
+__all__ = ["Layout", "is_simple", "laid_out"]
 
 SIMPLE_TRIANGLES = 1000
 """Models of fewer triangles are boards and walls, whose large faces show fine shadows."""
+
+MOST_TEXELS = 50_000
+"""That a model of many triangles takes, if larger texels can help it: leaves are many."""
+
+TRIALS = 8
 
 COARSER = 1.15
 """Growth of the texels until everything fits."""
@@ -47,13 +52,27 @@ class Layout:
     places: NDArray[np.float32]
 
 
+def is_simple(model: Model) -> bool:
+    """Tell whether a model has few triangles, so that its light is seen in full."""
+    return model.triangle_count <= SIMPLE_TRIANGLES
+
+
 def laid_out(
-    scenery: Scenery, settings: BakeSettings, told: Callable[[float], None] = lambda share: None
+    scenery: Scenery,
+    settings: BakeSettings,
+    in_sight: NDArray[np.bool_],
+    told: Callable[[float], None] = lambda share: None,
 ) -> Layout:
-    """Unwrap all models and pack their charts."""
+    """Unwrap all models and pack their charts.
+
+    Parameters
+    ----------
+    in_sight : (T,) bool
+        Triangles that are seen at all.
+    """
     coarser = 1.0
     while True:
-        charts = _unwrapped_models(scenery, settings, coarser, told)
+        charts = _unwrapped_models(scenery, settings, in_sight, coarser, told)
         own = [charts[instance.model] for instance in scenery.instances]
         # The border keeps neighbours' texels out of look-ups that rounding moves by a hair.
         fit = packed([(chart.width + 1, chart.height + 1) for chart in own], settings.max_map)
@@ -80,19 +99,43 @@ def laid_out(
 
 
 def _unwrapped_models(
-    scenery: Scenery, settings: BakeSettings, coarser: float, told: Callable[[float], None]
+    scenery: Scenery,
+    settings: BakeSettings,
+    in_sight: NDArray[np.bool_],
+    coarser: float,
+    told: Callable[[float], None],
 ) -> dict[Model, Chart]:
-    scales: dict[Model, list[tuple[float, float, float]]] = {}
+    users: dict[Model, list[StaticInstance]] = {}
     for instance in scenery.instances:
-        scales.setdefault(instance.model, []).append(instance.scale)
+        users.setdefault(instance.model, []).append(instance)
     charts = {}
-    for model, sizes in scales.items():
-        largest = tuple(np.abs(sizes).max(axis=0).tolist())
-        simple = model.triangle_count <= SIMPLE_TRIANGLES
-        texel = coarser * (settings.texel_m if simple else settings.fine_texel_m)
-        charts[model] = unwrapped(model, largest, texel)
-        told(len(charts) / len(scales))
+    for model, instances in users.items():
+        seen = np.zeros(model.triangle_count, dtype=bool)
+        for instance in instances:
+            first = instance.first_triangle
+            seen |= in_sight[first : first + model.triangle_count]
+        largest = np.abs([instance.scale for instance in instances]).max(axis=0)
+        charts[model] = _unwrapped(model, tuple(largest.tolist()), seen, settings, coarser)
+        told(len(charts) / len(users))
     return charts
+
+
+def _unwrapped(
+    model: Model,
+    scale: tuple[float, float, float],
+    seen: NDArray[np.bool_],
+    settings: BakeSettings,
+    coarser: float,
+) -> Chart:
+    if is_simple(model):
+        return unwrapped(model, scale, coarser * settings.texel_m, seen)
+    texel = coarser * settings.fine_texel_m
+    for _ in range(TRIALS):
+        chart = unwrapped(model, scale, texel, seen)
+        if chart.width * chart.height <= MOST_TEXELS:
+            break
+        texel *= COARSER
+    return chart
 
 
 def _place(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.direct import samples_of
-from sailenv_ros.bake.gather import BACK, NOTHING, Surroundings
+from sailenv_ros.bake.gather import BACK, Surroundings
 from sailenv_ros.bake.rays import RayScene
 from sailenv_ros.bake.sampling import fibonacci_sphere
 from sailenv_ros.bake.settings import BakeSettings
@@ -20,15 +20,6 @@ from sailenv_ros.lights import Light
 __all__ = ["filled_in", "probe_grid", "probe_light", "probe_positions", "straight_light"]
 
 Floats = NDArray[np.float32]
-
-MOST_BACKS = 0.15
-"""A probe that sees more backs of surfaces than this share is inside of something."""
-
-LEAST_VIEW_M = 0.5
-"""A probe that nowhere sees farther is inside of something, too."""
-
-MOST_SKY = 0.5
-"""A probe that sees more sky stands outside of a room, if there are any that see little."""
 
 
 def probe_grid(bounds: NDArray[np.float64], settings: BakeSettings) -> ProbeGrid:
@@ -57,32 +48,15 @@ def probe_positions(grid: ProbeGrid) -> Floats:
     return positions
 
 
-def probe_light(
-    around: Surroundings, positions: Floats, radiance: Floats, rays: int
-) -> tuple[Floats, NDArray[np.bool_], Floats]:
-    """Give what arrives at probes from surfaces and sky.
-
-    Returns
-    -------
-    light : (N, 4, C) float32
-        See `LightLayer`.
-    inside : (N,) bool
-        True for probes inside of something.
-    sky : (N,) float32
-        Share of the directions that lead into the sky.
-    """
+def probe_light(around: Surroundings, positions: Floats, radiance: Floats, rays: int) -> Floats:
+    """Give (N, 4, C) float32: what arrives at probes from surfaces and sky; see `LightLayer`."""
     directions = fibonacci_sphere(rays)
     light = np.zeros((len(positions), 4, radiance.shape[1]), dtype=np.float32)
-    inside = np.zeros(len(positions), dtype=bool)
-    sky = np.zeros(len(positions), dtype=np.float32)
     for k, position in enumerate(positions):
         hits = around.scene.hits(np.tile(position, (rays, 1)), directions)
         texels = around.texels_hit(hits, directions)
-        sky[k] = np.mean(texels == NOTHING)
-        farthest = float(hits.distance.max())
-        inside[k] = np.mean(texels == BACK) > MOST_BACKS or farthest < LEAST_VIEW_M
         _collect(texels, directions, radiance, around.sky, light[k])
-    return light, inside, sky
+    return light
 
 
 def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Floats) -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.masks import is_mostly_there
-from sailenv_ros.model import Material, Model
+from sailenv_ros.model import Material, Mesh, Model
 from sailenv_ros.snapshot import WorldSnapshot
 
 __all__ = ["Scenery", "StaticInstance", "static_scenery"]
@@ -72,6 +72,12 @@ class Scenery:
     solid: NDArray[np.bool_]
 
     @property
+    def two_sided(self) -> NDArray[np.bool_]:
+        """(T,) bool: triangles whose back is drawn like their front."""
+        table = np.array([material.double_sided for material in self.materials], dtype=bool)
+        return table[self.material]
+
+    @property
     def triangle_count(self) -> int:
         """How many triangles there are."""
         return len(self.corners)
@@ -111,10 +117,7 @@ def static_scenery(snapshot: WorldSnapshot) -> Scenery:
 class _Piece:
     """One part of one instance in the world frame."""
 
-    def __init__(self, instance: StaticInstance, mesh: object, owner: int, material: int) -> None:
-        from sailenv_ros.model import Mesh
-
-        assert isinstance(mesh, Mesh)
+    def __init__(self, instance: StaticInstance, mesh: Mesh, owner: int, material: int) -> None:
         scale = np.asarray(instance.scale, dtype=np.float64)
         rotation = instance.world_from_body[:3, :3]
         points = (mesh.positions * scale) @ rotation.T + instance.world_from_body[:3, 3]
@@ -123,7 +126,6 @@ class _Piece:
         self.corners = points[mesh.triangles].astype(np.float32)
         self.normals = (normals / np.maximum(length, 1e-12))[mesh.triangles].astype(np.float32)
         self.uvs = mesh.uvs[mesh.triangles]
-        self.mirrored = bool(np.prod(scale) < 0)
         self.owner, self.material = owner, material
 
 

@@ -23,10 +23,12 @@ class BakeSettings:
     max_map : int
         Largest side of the light map [texels]; texels grow until everything fits.
     rays : int
-        Rays from each texel in the last gathering; texels of a tile of 4 by 4 share 16 times as
-        many directions. A square of a power of two: 4, 16, 64, 256, 1024.
+        Rays from each texel of a model of few triangles in the last gathering; texels of a tile of
+        4 by 4 share 16 times as many directions. A square of a power of two: 4, 16, 64, 256, 1024.
+    fine_rays : int
+        The same for models of many triangles, whose shapes hide what noise remains.
     coarse_rays : int
-        The same for the bounces before.
+        The same for the bounces before, of all models.
     light_rays, window_rays : int
         Rays from each texel to each light, and to each window.
     bounces : int
@@ -42,6 +44,7 @@ class BakeSettings:
     fine_texel_m: float = 0.03
     max_map: int = 2048
     rays: int = 256
+    fine_rays: int = 64
     coarse_rays: int = 16
     light_rays: int = 16
     window_rays: int = 16

@@ -30,8 +30,7 @@ LIFT_M = 1e-3
 
 def turned_to_the_light(scenery: Scenery, scene: RayScene, texels: Texels) -> Texels:
     """Turn the texels of two-sided triangles whose back is the open side."""
-    two_sided = np.array([material.double_sided for material in scenery.materials], dtype=bool)
-    asked = np.flatnonzero(two_sided[scenery.material])
+    asked = np.flatnonzero(scenery.two_sided)
     if not len(asked):
         return texels
     openness = [_openness(scenery, scene, asked, sign) for sign in (1.0, -1.0)]

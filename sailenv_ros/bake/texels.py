@@ -19,6 +19,12 @@ __all__ = ["Texels", "rasterised"]
 REACH = 1.5
 """Texels this near to a triangle stand for its nearest point: bilinear look-ups meet them."""
 
+EDGE = 1e-3
+"""Points of which a corner's weight is less lie on the edge."""
+
+EDGE_M = 3e-3
+"""How far they are moved in [m]."""
+
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Texels:
@@ -64,7 +70,8 @@ def rasterised(scenery: Scenery, layout: Layout) -> Texels:
     rows, columns = np.nonzero(owner >= 0)
     index = np.full((side, side), -1, dtype=np.int32)
     index[rows, columns] = np.arange(len(rows))
-    triangle, share = owner[rows, columns], weights[rows, columns]
+    triangle = owner[rows, columns]
+    share = _off_the_edges(scenery.corners[triangle], weights[rows, columns])
     faces = scenery.faces[triangle]
     normals = np.einsum("nc,ncx->nx", share, scenery.normals[triangle])
     # Normals that point through their own triangle are none.
@@ -81,6 +88,16 @@ def rasterised(scenery: Scenery, layout: Layout) -> Texels:
         normals=normals,
         faces=faces,
     )
+
+
+def _off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Give the weights of points a little further in: at the very edge others may begin."""
+    middles = corners.mean(axis=1)
+    points = np.einsum("nc,ncx->nx", share, corners)
+    far = np.maximum(np.linalg.norm(middles - points, axis=1), 1e-9)
+    inwards = np.where(share.min(axis=1) < EDGE, np.minimum(EDGE_M / far, 1.0 / 3.0), 0.0)
+    moved = share * (1.0 - inwards[:, None]) + inwards[:, None] / 3.0
+    return np.asarray(moved, dtype=np.float32)
 
 
 @numba.njit(cache=True, nogil=True)

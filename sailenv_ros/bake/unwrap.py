@@ -6,15 +6,22 @@ Knows neither where instances stand nor what lights them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import xatlas
 from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import Unwrapping
-from sailenv_ros.model import Model
+from sailenv_ros.model import Mesh, Model
 
 __all__ = ["Chart", "unwrapped"]
+
+UNSEEN = 0.2
+"""Share of the usual fineness that surfaces have which nobody sees."""
+
+_Flat: TypeAlias = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]
+"""Copied vertices, triangles and places, as xatlas gives them."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -33,7 +40,12 @@ class Chart:
     height: int
 
 
-def unwrapped(model: Model, scale: tuple[float, float, float], texel_m: float) -> Chart:
+def unwrapped(
+    model: Model,
+    scale: tuple[float, float, float],
+    texel_m: float,
+    in_sight: NDArray[np.bool_] | None = None,
+) -> Chart:
     """Lay a model flat.
 
     Parameters
@@ -44,45 +56,57 @@ def unwrapped(model: Model, scale: tuple[float, float, float], texel_m: float) -
         Of the instance for which the texels have their size.
     texel_m : float
         Side of a texel [m].
+    in_sight : (T,) bool or None
+        Triangles that are seen at all, part after part; the others' texels are larger.
     """
+    seen = np.ones(model.triangle_count, bool) if in_sight is None else in_sight
     atlas = xatlas.Atlas()
-    drawn = [part.mesh for part in model.parts if len(part.mesh.triangles)]
-    for mesh in drawn:
-        points = mesh.positions * np.abs(np.asarray(scale, dtype=np.float32))
-        atlas.add_mesh(points.astype(np.float32), np.array(mesh.triangles))
+    first = 0
+    pieces: list[list[NDArray[np.intp]]] = []
+    for part in model.parts:
+        own = seen[first : first + len(part.mesh.triangles)]
+        first += len(own)
+        pieces.append(
+            [chosen for chosen in (np.flatnonzero(own), np.flatnonzero(~own)) if len(chosen)]
+        )
+        for chosen in pieces[-1]:
+            size = np.abs(np.asarray(scale)) * (1.0 if own[chosen[0]] else UNSEEN)
+            points = (part.mesh.positions * size).astype(np.float32)
+            atlas.add_mesh(points, np.ascontiguousarray(part.mesh.triangles[chosen]))
     packing = xatlas.PackOptions()
     packing.texels_per_unit = 1.0 / texel_m
     packing.padding = 1
     packing.bilinear = True
     atlas.generate(xatlas.ChartOptions(), packing)
-    found = iter([atlas.get_mesh(i) for i in range(len(drawn))])
+    number = iter(range(atlas.mesh_count))
     parts = [
-        next(found) if len(part.mesh.triangles) else _nothing(len(part.mesh.positions))
-        for part in model.parts
+        _joined(part.mesh, [(chosen, atlas.get_mesh(next(number))) for chosen in chosens])
+        for part, chosens in zip(model.parts, pieces, strict=True)
     ]
     return Chart(
         unwrapping=Unwrapping(
-            vertices=tuple(_frozen_indices(part[0]) for part in parts),
-            triangles=tuple(_frozen_indices(part[1]) for part in parts),
-            uvs=tuple(_frozen_floats(part[2]) for part in parts),
+            vertices=tuple(part[0] for part in parts),
+            triangles=tuple(part[1] for part in parts),
+            uvs=tuple(part[2] for part in parts),
         ),
         width=atlas.width,
         height=atlas.height,
     )
 
 
-def _nothing(count: int) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]:
-    vertices = np.arange(count, dtype=np.uint32)
-    return vertices, np.zeros((0, 3), np.uint32), np.zeros((count, 2), np.float32)
-
-
-def _frozen_indices(array: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    array = np.ascontiguousarray(array, dtype=np.uint32)
-    array.flags.writeable = False
-    return array
-
-
-def _frozen_floats(array: NDArray[np.float32]) -> NDArray[np.float32]:
-    array = np.ascontiguousarray(array, dtype=np.float32)
-    array.flags.writeable = False
-    return array
+def _joined(
+    mesh: Mesh, found: list[tuple[NDArray[np.intp], _Flat]]
+) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]:
+    """Put the pieces of a part together again, its triangles in their own order."""
+    vertices, uvs = [np.zeros(0, np.uint32)], [np.zeros((0, 2), np.float32)]
+    triangles = np.zeros(mesh.triangles.shape, dtype=np.uint32)
+    count = 0
+    for chosen, (copied, corners, places) in found:
+        triangles[chosen] = corners + np.uint32(count)
+        vertices.append(copied)
+        uvs.append(places)
+        count += len(copied)
+    joined = np.concatenate(vertices), triangles, np.concatenate(uvs)
+    for array in joined:
+        array.flags.writeable = False
+    return joined

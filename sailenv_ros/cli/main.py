@@ -26,7 +26,7 @@ COMMANDS = {
     "play": "publish a recording on the topics it was recorded from",
     "record": "record what agents see in an MCAP bag",
     "run": "start the simulator, with or without ROS",
-    "scene": "check, render, list and begin scenes, export the schema of the format",
+    "scene": "check, render, bake, list and begin scenes, export the schema of the format",
 }
 """What each subcommand does, by its name, which is its module's too."""
 

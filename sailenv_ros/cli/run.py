@@ -11,11 +11,13 @@ import time
 from pathlib import Path
 from typing import Any, get_args
 
+from sailenv_ros.cli.scene_bake import bake_before_running
 from sailenv_ros.errors import SimulationClosed
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.scenes import default_scene
 
 __all__ = ["add_parser", "run"]
 
@@ -40,12 +42,17 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--protocol", choices=get_args(Protocol), default="0.5")
     parser.add_argument("--seed", type=int, default=0, help="of every random number")
     parser.add_argument(
+        "--no-bake", action="store_true", help="do not work out a room's light beforehand"
+    )
+    parser.add_argument(
         "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
     )
 
 
 def run(args: argparse.Namespace) -> int:
     """Run until it is ended by Ctrl-C or SIGTERM; 0 then."""
+    if not args.no_bake:
+        bake_before_running(args.scene or default_scene(), args.scenes)
     return _run_alone(args) if args.no_ros else _become_the_node(args)
 
 

@@ -1,4 +1,4 @@
-"""`sailenv scene`: check, list, render and begin scene files, export the format's JSON Schema."""
+"""`sailenv scene`: check, list, render, bake and begin scenes, export the format's JSON Schema."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.behaviours import behaviour_kinds
-from sailenv_ros.cli import scene_render
+from sailenv_ros.cli import scene_bake, scene_render
 from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownName
 from sailenv_ros.resources import resource_path
 from sailenv_ros.scene.catalogue import SUFFIXES, SceneCatalogue
@@ -33,7 +33,7 @@ __all__ = ["add_parser", "run"]
 def add_parser(subparsers: Any) -> None:
     """Add the command to those of `sailenv`."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "scene", help="check, render, list and begin scenes, export the schema of the format"
+        "scene", help="check, render, bake, list and begin scenes, export the schema of the format"
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
@@ -47,6 +47,9 @@ def add_parser(subparsers: Any) -> None:
     actions.add_parser("list", help="list the scenes that come with the package")
     scene_render.add_arguments(
         actions.add_parser("render", help="render a scene from a viewpoint into a picture file")
+    )
+    scene_bake.add_arguments(
+        actions.add_parser("bake", help="work out the light of rooms beforehand")
     )
     new = actions.add_parser("new", help="write a commented scene to begin with")
     new.add_argument("file", type=Path, metavar="FILE", help="where to; must not exist")
@@ -70,6 +73,8 @@ def run(args: argparse.Namespace) -> int:
         return _list()
     if args.action == "render":
         return scene_render.render_scene(args)
+    if args.action == "bake":
+        return scene_bake.bake_scenes(args)
     if args.action == "new":
         return _new(args.file)
     return _schema(args.output, check=args.check)

@@ -8,7 +8,15 @@ from typing import Any
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from sailenv_msgs.srv import GetAmbientLight, GetLight, SetAmbientLight, SetBackground, SetLight
+from sailenv_msgs.srv import (
+    AddLight,
+    GetAmbientLight,
+    GetLight,
+    RemoveLight,
+    SetAmbientLight,
+    SetBackground,
+    SetLight,
+)
 from sailenv_msgs_py.objects import light_changes_from_msg
 from sailenv_msgs_py.scene_info import colour_to_msg, light_to_msg, rgb_from_msg
 from sailenv_ros.lights import light_named
@@ -35,12 +43,25 @@ class LightServices:
 
     def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
         return (
+            ("add_light", AddLight, self._add_light),
+            ("remove_light", RemoveLight, self._remove_light),
             ("get_light", GetLight, self._get_light),
             ("set_light", SetLight, self._set_light),
             ("get_ambient_light", GetAmbientLight, self._get_ambient_light),
             ("set_ambient_light", SetAmbientLight, self._set_ambient_light),
             ("set_background", SetBackground, self._set_background),
         )
+
+    async def _add_light(self, request: AddLight.Request, response: AddLight.Response) -> None:
+        attributes = light_changes_from_msg(request.light, request.fields)
+        attributes.pop("type", None)
+        name, type_ = request.light.name, request.light.type
+        response.light = light_to_msg(await self._ask("add_light", name, type_, **attributes))
+
+    async def _remove_light(
+        self, request: RemoveLight.Request, response: RemoveLight.Response
+    ) -> None:
+        await self._ask("remove_light", request.name)
 
     async def _get_light(self, request: GetLight.Request, response: GetLight.Response) -> None:
         response.light = light_to_msg(light_named(request.name, await self._ask("lights")))

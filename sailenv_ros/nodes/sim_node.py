@@ -28,6 +28,7 @@ from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.diagnostics import Diagnostics
+from sailenv_ros.nodes.edit_services import EditServices
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
 from sailenv_ros.nodes.light_services import LightServices
@@ -91,6 +92,7 @@ class SimNode:
             ObjectServices(node, requests),
             LightServices(node, requests),
             MotionServices(node, requests),
+            EditServices(node, requests),
         )
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if parameters.agent is None else parameters.agent.name

@@ -13,13 +13,20 @@ from typing import Any
 from pydantic import ValidationError
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest
-from sailenv_ros.scene.checks import findings
+from sailenv_ros.scene.checks import Finding, findings
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.scene.spec_objects import ObjectSpec
 from sailenv_ros.scene.yaml_nodes import Loc, compose
 
-__all__ = ["checked_object", "checked_objects", "free_name", "plain_value", "read_document"]
+__all__ = [
+    "checked_object",
+    "checked_objects",
+    "checked_scene",
+    "free_name",
+    "plain_value",
+    "read_document",
+]
 
 MAX_FAULTS = 20
 """So many are told at most; a hostile description must not cost minutes."""
@@ -56,23 +63,53 @@ def checked_objects(
     return _checked(entries, knowledge, what="objects")
 
 
+def checked_scene(data: Mapping[str, Any], knowledge: SceneKnowledge, *, what: str) -> SceneSpec:
+    """Check a whole scene that stands in no file.
+
+    Parameters
+    ----------
+    data : mapping
+        With the keys of a scene file.
+    knowledge : SceneKnowledge
+        What assets, categories, behaviours, materials and skies there are.
+    what : str
+        What an error calls it.
+
+    Raises
+    ------
+    InvalidEntry
+        With every fault, by its place.
+    """
+    spec, found = _validated(data, knowledge)
+    if spec is None or found:
+        faults = [(_field(finding.loc), finding.message) for finding in found]
+        raise InvalidEntry(what, data, dict.fromkeys(faults))
+    return spec
+
+
 def _checked(
     entries: Sequence[Any], knowledge: SceneKnowledge, *, what: str
 ) -> tuple[ObjectSpec, ...]:
     # A scene of nothing else, so that the sentences are those of a scene file.
     data = {"version": 1, "objects": [plain_value(entry) for entry in entries]}
+    spec, found = _validated(data, knowledge)
+    if spec is None or found:
+        faults = [(_field(finding.loc[1:]), finding.message) for finding in found]
+        if len(entries) == 1:
+            faults = [(field.removeprefix("[0]").lstrip("."), text) for field, text in faults]
+        raise InvalidEntry(what, entries, dict.fromkeys(faults))
+    return spec.objects
+
+
+def _validated(
+    data: Mapping[str, Any], knowledge: SceneKnowledge
+) -> tuple[SceneSpec | None, list[Finding]]:
     spec, error = None, None
     try:
         spec = SceneSpec.model_validate(data)
     except ValidationError as problem:
         error = problem
-    found = list(islice(findings(data, error, knowledge), MAX_FAULTS))
-    if spec is None or found:
-        faults = [(_field(finding.loc), finding.message) for finding in found]
-        if len(entries) == 1:
-            faults = [(field.removeprefix("[0]").lstrip("."), text) for field, text in faults]
-        raise InvalidEntry(what, entries, dict.fromkeys(faults))
-    return spec.objects
+    return spec, list(islice(findings(data, error, knowledge), MAX_FAULTS))
 
 
 def read_document(text: str) -> Any:
@@ -118,8 +155,8 @@ def plain_value(value: Any, *, depth: int = 20) -> Any:
 
 
 def _field(loc: Loc) -> str:
-    """Write a place below ``objects``: ``[2].scale``."""
+    """Write a place as ``objects[2].scale``."""
     text = ""
-    for part in loc[1:]:
+    for part in loc:
         text += f"[{part}]" if isinstance(part, int) else f".{part}"
-    return text
+    return text.lstrip(".")

@@ -50,10 +50,17 @@ class _Kind:
         """Describe it to JSON Schema."""
         raise NotImplementedError
 
+    def written(self, value: Any) -> Any:
+        """Give a value as a file has it, in the shortest form that `check` reads as the same."""
+        return value
+
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.check)
+        writing = core_schema.plain_serializer_function_ser_schema(
+            self.written, when_used="json-unless-none"
+        )
+        return core_schema.no_info_plain_validator_function(self.check, serialization=writing)
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
@@ -175,10 +182,19 @@ class Several:
             raise fault(f"must be {self.what}, got {shown(value)}")
         return tuple(value)
 
+    def written(self, value: tuple[Any, ...]) -> Any:
+        """Give the entries as a file has them; equal ones as one where that is accepted."""
+        return value[0] if self.one_for_all and len(set(value)) == 1 else list(value)
+
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        return core_schema.no_info_before_validator_function(self.check, handler(source))
+        writing = core_schema.plain_serializer_function_ser_schema(
+            self.written, when_used="json-unless-none"
+        )
+        return core_schema.no_info_before_validator_function(
+            self.check, handler(source), serialization=writing
+        )
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
@@ -216,6 +232,13 @@ class Colour(_Kind):
             pass
         hint = "; an unquoted # begins a comment in YAML" if value is None else ""
         raise fault(f"must be {self.accepted}, got {shown(value)}{hint}")
+
+    def written(self, value: Any) -> Any:
+        """Give ``#rrggbb`` where it stands for exactly these numbers, else the numbers."""
+        if max(value) > 1.0:
+            return list(value)
+        encoded = "#" + "".join(f"{round(255 * _encoded(part)):02x}" for part in value)
+        return encoded if linear_from_srgb(encoded) == tuple(value) else list(value)
 
     def json_schema(self) -> dict[str, Any]:
         """Describe it to JSON Schema."""
@@ -294,3 +317,9 @@ def _linear(encoded: float) -> float:
     if encoded <= 0.04045:
         return encoded / 12.92
     return float(((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def _encoded(linear: float) -> float:
+    if linear <= 0.0031308:
+        return 12.92 * linear
+    return float(1.055 * linear ** (1.0 / 2.4) - 0.055)

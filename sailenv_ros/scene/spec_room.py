@@ -14,6 +14,8 @@ from pydantic import (
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
+    SerializerFunctionWrapHandler,
+    model_serializer,
     model_validator,
 )
 from pydantic_core import core_schema
@@ -59,10 +61,17 @@ class _OrNone:
             return {}
         return None if value is False else value
 
+    def written(self, value: object, handler: SerializerFunctionWrapHandler) -> object:
+        """Give the word for nothing or for the defaults, else the keys that are given."""
+        return False if value is None else handler(value) or True
+
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        return core_schema.no_info_before_validator_function(self.check, handler(source))
+        writing = core_schema.wrap_serializer_function_ser_schema(self.written, when_used="json")
+        return core_schema.no_info_before_validator_function(
+            self.check, handler(source), serialization=writing
+        )
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
@@ -88,6 +97,11 @@ class SurfaceSpec(SceneModel):
     @classmethod
     def _by_name(cls, value: Any, handler: ModelWrapValidatorHandler[SurfaceSpec]) -> SurfaceSpec:
         return handler({"material": value} if isinstance(value, str) else value)
+
+    @model_serializer(mode="wrap", when_used="json")
+    def _to_name(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any] | str:
+        dumped: dict[str, Any] = handler(self)
+        return dumped["material"] if set(dumped) == {"material"} else dumped
 
     @classmethod
     def __get_pydantic_json_schema__(

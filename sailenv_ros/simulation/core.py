@@ -17,6 +17,7 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_requests import AgentRequests
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.motion_requests import MotionRequests
+from sailenv_ros.simulation.save_requests import SaveRequests
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.world_requests import Entries, WorldRequests
@@ -41,7 +42,7 @@ def checked_real_time_factor(factor: float) -> float:
     return factor
 
 
-class SimulationCore(AgentRequests, MotionRequests, WorldRequests):
+class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests):
     """World, renderer and agents of one simulation.
 
     Parameters
@@ -95,6 +96,11 @@ class SimulationCore(AgentRequests, MotionRequests, WorldRequests):
         return self._world
 
     @property
+    def library(self) -> SceneLibrary:
+        """Where scenes and assets come from."""
+        return self._library
+
+    @property
     def runs_by_itself(self) -> bool:
         """True if simulated time follows the wall clock now."""
         return self._mode == "realtime" and not self._paused
@@ -126,7 +132,13 @@ class SimulationCore(AgentRequests, MotionRequests, WorldRequests):
             environment=contents.environment,
             agents=self._agents.specs,
             movers=tuple(
-                MoverInfo(name=mover.name, controller=mover.controller)
+                MoverInfo(
+                    name=mover.name,
+                    controller=mover.controller,
+                    waypoints=mover.waypoints,
+                    total_time_s=mover.total_time_s,
+                    loop=mover.loop,
+                )
                 for mover in self._world.movers.values()
             ),
             renderer=self._renderer.description,

@@ -6,7 +6,7 @@ Knows no thread and no renderer.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
@@ -21,6 +22,9 @@ from sailenv_ros.world.mover import Controller, MoverCommand
 from sailenv_ros.world.world import World
 
 __all__ = ["MotionRequests"]
+
+MAX_WAYPOINTS = 1000
+MAX_TIME_S = 1e6
 
 
 class MotionRequests:
@@ -77,6 +81,36 @@ class MotionRequests:
         command: Any = {"linear_m_s": linear_m_s, "angular_rad_s": angular_rad_s}
         self._world.drive(mover, MoverCommand(**command))
 
+    def set_waypoints(
+        self,
+        waypoints: Sequence[Pose],
+        *,
+        mover: str = "",
+        append: bool = False,
+        total_time_s: float | None = None,
+        loop: bool | None = None,
+    ) -> None:
+        """Give a mover another track, or a longer one; without waypoints it stays where it is."""
+        found = self._world.mover(mover)
+        poses = _checked_waypoints(waypoints)
+        poses = (*found.waypoints, *poses) if append else poses
+        if len(poses) > MAX_WAYPOINTS:
+            accepted = f"at most {MAX_WAYPOINTS}"
+            raise InvalidRequest("number of waypoints", len(poses), accepted)
+        found.lead(
+            poses,
+            total_time_s=found.total_time_s
+            if total_time_s is None
+            else _checked_time(total_time_s),
+            loop=found.loop if loop is None else bool(loop),
+            time_ns=self._world.sim_time_ns,
+        )
+        self._announce()
+
+    def mover_pose(self, mover: str = "") -> Pose:
+        """Say where a mover is; the empty name means the scene's first."""
+        return self._world.mover(mover).pose_at(self._world.sim_time_ns)
+
     def _confines(self, agent: str, distance_m: float) -> NDArray[np.float64]:
         """Give the planes of an agent's view; none while there is no such agent."""
         for record in self._agents:
@@ -88,3 +122,17 @@ class MotionRequests:
 
     def _announce(self) -> None:
         raise NotImplementedError
+
+
+def _checked_waypoints(waypoints: object) -> tuple[Pose, ...]:
+    if not isinstance(waypoints, Sequence) or not all(isinstance(p, Pose) for p in waypoints):
+        raise InvalidRequest("waypoints", waypoints, "a list of sailenv_ros.geometry.Pose")
+    return tuple(waypoints)
+
+
+def _checked_time(total_time_s: object) -> float:
+    is_number = isinstance(total_time_s, int | float) and not isinstance(total_time_s, bool)
+    if not is_number or not 0.0 < total_time_s <= MAX_TIME_S:  # type: ignore[operator]  # a number
+        accepted = f"a number above 0 and at most {MAX_TIME_S:g} [s]"
+        raise InvalidRequest("total_time_s", total_time_s, accepted)
+    return float(total_time_s)  # type: ignore[arg-type]  # as above

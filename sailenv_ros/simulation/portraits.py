@@ -27,6 +27,12 @@ from sailenv_ros.world.world import World
 __all__ = ["PortraitStudio"]
 
 VERTICAL_FOV_DEG = 28.0
+FLOOR_SCALE = 4.0
+"""The floor reaches beyond the picture's edges."""
+
+LIFT_M = 0.001
+"""What is flat lies upon the floor, not in it [m]."""
+
 FLOOR_COLOUR = (0.30, 0.30, 0.31)
 
 _SURROUNDINGS = Environment(
@@ -128,8 +134,8 @@ class PortraitStudio:
             epoch=number,
             next_revision=lambda: number,
             placements=[
-                self._placement("floor", self._floor, 1.0, 0.0),
-                self._placement("object", asset, scale, -low_z * scale),
+                self._placement("floor", self._floor, FLOOR_SCALE, 0.0),
+                self._placement("object", asset, scale, LIFT_M - low_z * scale),
             ],
             movers=[Mover(name="mover", start=Pose(), track=None, controller="waypoint")],
             categories=self._categories,

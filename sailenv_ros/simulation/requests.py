@@ -19,6 +19,7 @@ from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.simulation.edit_requests import EditRequests
 
 __all__ = ["REQUESTS", "Requests", "wait_for"]
 
@@ -26,8 +27,10 @@ T = TypeVar("T")
 
 REQUESTS = frozenset(
     {
+        "add_light",
         "attach_behaviour",
         "capture",
+        "change_object",
         "change_scene",
         "delete_agent",
         "despawn_object",
@@ -38,12 +41,17 @@ REQUESTS = frozenset(
         "lights",
         "load_scenario",
         "move_object",
+        "mover_pose",
         "pause",
         "register_agent",
+        "remove_light",
         "reset",
         "resume",
+        "save_scene",
+        "scene_text",
         "set_ambient_light",
         "set_background",
+        "set_environment",
         "set_follow",
         "set_light",
         "set_mover_controller",
@@ -52,17 +60,20 @@ REQUESTS = frozenset(
         "set_rate",
         "set_real_time_factor",
         "set_rotation",
+        "set_waypoints",
         "spawn_object",
         "spawnable_display_names",
         "step",
+        "thumbnail",
         "toggle_follow",
         "upload_model",
     }
 )
-"""Names that `Simulation.request` takes: the public requests of `SimulationCore`."""
+"""Names that `Simulation.request` takes: public requests of `SimulationCore`, and what needs no
+world: models and thumbnails."""
 
 
-class Requests:
+class Requests(EditRequests):
     """The blocking methods; `Simulation` adds the queue that `request` puts them into."""
 
     def request(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:

@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -13,21 +14,26 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.own_pack import add_to_own_pack
+from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.assets.places import standard_pack_folder
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
+from sailenv_ros.bake.settings import BAKE_VERSION
 from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.lights import Environment
 from sailenv_ros.model import Asset
 from sailenv_ros.scene.catalogue import SceneCatalogue
 from sailenv_ros.scene.entries import checked_object, checked_objects, free_name
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
-from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
+from sailenv_ros.scene.places import user_scene_folder
+from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.simulation.scene_light import SceneLight
 from sailenv_ros.world.bodies import Placement
-from sailenv_ros.world.build import build_world, make_placement
+from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
 
 __all__ = ["DEFAULT_SCENE", "SCENE_WITHOUT_FURNITURE", "SceneLibrary", "default_scene"]
@@ -63,16 +69,20 @@ class SceneLibrary:
     Parameters
     ----------
     scene_paths : sequence of Path
-        More folders with scenes, beside the package's own.
+        More folders with scenes, beside the user's and the package's own. Scenes are saved into
+        the first of them, or into the user's where there is none.
     """
 
     def __init__(self, scene_paths: Sequence[Path] = ()) -> None:
-        self._catalogue = SceneCatalogue(scene_paths)
+        self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
+        self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._packs = installed_packs()
         self._skies = sky_files(pack.folder for pack in self._packs)
         self._assets = AssetLibrary(installed_sources(self._packs))
         self._light = SceneLight()
         self._uploads = 0
+        self._uploaded: set[str] = set()
+        self._unkept: set[str] = set()
         self._files: dict[str, Path] = {}
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
 
@@ -125,7 +135,7 @@ class SceneLibrary:
         SceneError
             If its file has faults.
         """
-        return load_scene(self._path(scene), knowledge=self.knowledge)
+        return load_scene(self.path(scene), knowledge=self.knowledge)
 
     def build(
         self,
@@ -154,8 +164,25 @@ class SceneLibrary:
             self._light.hang(world, str(scene))
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
-            self._files[spec.name] = self._path(scene)
+            self._files[spec.name] = self.path(scene)
         return world
+
+    def stamp(self, scene: str | Path) -> str:
+        """Give a text that changes with the scene's file and with the packs it may use.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such scene.
+        """
+        digest = blake2b(digest_size=16)
+        path = self.path(scene)
+        digest.update(f"{path} {BAKE_VERSION}".encode())
+        files = [path, *(pack.folder / PACK_FILE for pack in self._packs)]
+        for file in files:
+            if file.is_file():
+                digest.update(file.read_bytes())
+        return digest.hexdigest()
 
     def canonical_asset(self, name: str) -> str:
         """Give the catalogue name of an asset's catalogue or display name.
@@ -166,6 +193,17 @@ class SceneLibrary:
             If there is no such asset.
         """
         return self._assets.canonical(name)
+
+    def asset_fingerprint(self, name: str) -> str:
+        """Give what changes whenever an asset does; empty for one that came to this simulator."""
+        source = self._assets.source(name)
+        if isinstance(source, AssetPack):
+            return source.fingerprint(name)
+        return "" if name in self._uploaded else "of the package itself"
+
+    def peek_asset(self, name: str) -> Asset:
+        """Give an asset without keeping one that no world needs; see `AssetLibrary.get`."""
+        return self._assets.peek(name)
 
     def add_upload(self, asset: Asset, *, rename: bool) -> str:
         """Add a user's asset to the catalogue; give its name there.
@@ -193,6 +231,8 @@ class SceneLibrary:
                 break
         self._assets.add(asset)
         self._uploads += 1
+        self._uploaded.add(asset.name)
+        self._unkept.add(asset.name)
         return asset.name
 
     def placement(
@@ -232,8 +272,41 @@ class SceneLibrary:
         """Give the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
 
-    def _path(self, scene: str | Path) -> Path:
+    @property
+    def own_folder(self) -> Path:
+        """The folder that scenes are saved into."""
+        return self._own_folder
+
+    def is_uploaded(self, asset: str) -> bool:
+        """Say of a catalogue name if its model lies in no pack: a scene file cannot name it."""
+        return asset in self._unkept
+
+    def keep_model(self, asset: str) -> None:
+        """Put an uploaded model into the user's own pack, so that scene files can name it.
+
+        Raises
+        ------
+        NameTaken, AssetError
+            If the pack cannot take it.
+        """
+        add_to_own_pack(self._assets.get(asset), source="uploaded to a running simulator")
+        self._unkept.discard(asset)
+
+    def path(self, scene: str | Path) -> Path:
+        """Find a scene's file; see `load`."""
         return self._files.get(str(scene)) or self._catalogue.path(scene)
+
+    def environment(self, spec: EnvironmentSpec) -> Environment:
+        """Give the surroundings that an entry describes.
+
+        Raises
+        ------
+        UnknownName, AssetError
+            If there is no such sky, or it cannot be read.
+        """
+        return make_environment(spec, self._skies)
+
+    # -- inside ----------------------------------------------------------------------------
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec

@@ -24,6 +24,7 @@ from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.requests import REQUESTS, Requests, wait_for
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.thumbnails import Thumbnails
 from sailenv_ros.simulation.upload_queue import UploadQueue
 from sailenv_ros.world.world import World
 
@@ -100,6 +101,7 @@ class Simulation(Requests):
         self._uploads = UploadQueue(
             lambda asset, rename: self._submit(lambda core: core.add_model(asset, rename=rename))
         )
+        self._thumbnails = Thumbnails(self._library, backend, render_device)
         started: Future[None] = Future()
 
         def make_core() -> SimulationCore:
@@ -166,6 +168,8 @@ class Simulation(Requests):
             raise UnknownName("request", name, sorted(REQUESTS))
         if name == "upload_model":
             return self._uploads.begin(*args, **kwargs)
+        if name == "thumbnail":
+            return self._thumbnails.begin(*args, **kwargs)
         return self._submit(lambda core: getattr(core, name)(*args, **kwargs))
 
     # -- streams and listeners -------------------------------------------------------------
@@ -198,6 +202,7 @@ class Simulation(Requests):
         """End the simulation: break off what runs, free everything; a second call does nothing."""
         self._closing = True
         self._uploads.close()
+        self._thumbnails.close()
         self._nudge()
         atexit.unregister(self.close)
         if threading.current_thread() is not self._thread:
@@ -303,6 +308,11 @@ class Simulation(Requests):
             self._queue.append((future, call))
             self._wake.notify_all()
         return future
+
+    def _library(self) -> SceneLibrary:
+        if self._core is None:
+            raise SimulationClosed(self._ended or "it has not begun")
+        return self._core.library
 
     def _nudge(self) -> None:
         with self._wake:

@@ -12,13 +12,16 @@ from typing import Any, Literal, TypeAlias
 
 from numpy.typing import ArrayLike
 
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light, light_named
+from sailenv_ros.lights import Light, LightType, light_named
 from sailenv_ros.model import Asset
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.entries import free_name
+from sailenv_ros.scene.describing import MOTION_KEYS, PLACE_KEYS, light_entry
+from sailenv_ros.scene.entries import checked_scene, free_name, plain_value
+from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.simulation.agent_table import AgentTable
+from sailenv_ros.simulation.saving import environment_entry
 from sailenv_ros.simulation.scenario import scenario_entries
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
@@ -28,6 +31,21 @@ __all__ = ["Entries", "WorldRequests"]
 
 Entries: TypeAlias = Sequence[Mapping[str, Any]]
 """Objects as a scene file describes them, besides those of the scene."""
+
+CHANGEABLE = (
+    "name",
+    "category",
+    "scale",
+    "static",
+    "mass",
+    "gravity",
+    "friction",
+    "restitution",
+    "colour",
+    "metallic",
+    "roughness",
+)
+"""Keys of an object that `change_object` takes; it is moved by `move_object`."""
 
 _LIGHT_FIELDS = tuple(field.name for field in fields(Light) if field.name != "name")
 
@@ -88,6 +106,30 @@ class WorldRequests:
         _require_pose(pose)
         self._world.put_body(self._world.find(obj), pose, teleport=bool(teleport))
 
+    def change_object(self, obj: int | str, /, **changes: Any) -> None:
+        """Change what an object is, by the keys of a scene file; None takes the asset's own."""
+        world = self._world
+        instance_id = world.find(obj)
+        body = world.body(instance_id)
+        told = body.placement.entry
+        if told is None:
+            accepted = "one of the scene's own; parts of the room are described by its file alone"
+            raise InvalidRequest("object", body.placement.name, accepted)
+        for key in changes:
+            if key not in CHANGEABLE:
+                raise UnknownName("key of an object that can be changed", key, CHANGEABLE)
+        placement = self._library.placement(
+            {**_without_place(told), **_place(body.pose()), **changes},
+            world,
+            seed=self._seed,
+            start_s=0.0,
+        )
+        assert placement.entry is not None
+        changed = {key: getattr(placement.entry, key) for key in changes}
+        entry = told.model_copy(update=changed)
+        world.replace_body(instance_id, replace(placement, entry=entry))
+        self._announce()
+
     def get_object(self, obj: int | str) -> ObjectState:
         """Say what and where an object is."""
         return self._world.object_state(self._world.find(obj))
@@ -128,6 +170,28 @@ class WorldRequests:
             self._announce()
         return changed
 
+    def add_light(self, name: str, type_: LightType, /, **attributes: Any) -> Light:
+        """Put one more light into the scene, by attributes of `Light`; give it."""
+        lights = self.lights()
+        for key in attributes:
+            if key not in _LIGHT_FIELDS or key == "type":
+                raise UnknownName("attribute of a light", key, _LIGHT_FIELDS)
+        if any(light.name == name for light in lights):
+            raise NameTaken("light", name)
+        added = Light(name=name, type=type_, **attributes)
+        entries = [light_entry(light) for light in (*lights, added)]
+        # A file must be able to say it: name, range and number of lights.
+        checked_scene({"version": 1, "lights": entries}, self._library.knowledge, what="light")
+        self._world.set_lights((*lights, added))
+        self._announce()
+        return added
+
+    def remove_light(self, name: str) -> None:
+        """Take a light out of the scene."""
+        removed = light_named(name, self.lights())
+        self._world.set_lights([light for light in self.lights() if light is not removed])
+        self._announce()
+
     def set_ambient_light(self, colour: ArrayLike) -> None:
         """Set the light that arrives from everywhere (linear radiance)."""
         environment: Any = self._world.contents.environment
@@ -142,6 +206,20 @@ class WorldRequests:
         chosen = environment.background_colour if colour is None else colour
         changed = replace(environment, background=kind, background_colour=chosen)
         self._world.set_environment(changed)
+        self._announce()
+
+    def set_environment(self, /, **changes: Any) -> None:
+        """Change the surroundings, by the keys of `environment` in a scene file."""
+        world = self._world
+        assert world.described is not None
+        for key in changes:
+            if key not in EnvironmentSpec.model_fields:
+                raise UnknownName("key of environment", key, EnvironmentSpec.model_fields)
+        entry = {**environment_entry(world), **plain_value(changes)}
+        data = {"version": 1, "environment": entry}
+        checked = checked_scene(data, self._library.knowledge, what="environment").environment
+        world.set_environment(self._library.environment(checked))
+        world.described = world.described.model_copy(update={"environment": checked})
         self._announce()
 
     # -- scenarios -------------------------------------------------------------------------
@@ -176,3 +254,12 @@ class WorldRequests:
 def _require_pose(pose: object) -> None:
     if not isinstance(pose, Pose):
         raise InvalidRequest("pose", pose, "a sailenv_ros.geometry.Pose")
+
+
+def _without_place(entry: ObjectSpec) -> dict[str, Any]:
+    """Give the keys of an entry, but for where it is and how it moves."""
+    return entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, *MOTION_KEYS})
+
+
+def _place(pose: Pose) -> dict[str, Any]:
+    return {"position": pose.position_m, "orientation": pose.orientation_xyzw}

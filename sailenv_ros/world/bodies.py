@@ -7,7 +7,7 @@ in which the model's vertices stand.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,10 +17,10 @@ from sailenv_ros.behaviours import MAX_SPEED_M_S, Action, BodyState, RunningBeha
 from sailenv_ros.errors import InvalidRequest, PhysicsError
 from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
-from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
+from sailenv_ros.world.placement import Placement
 
 __all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement"]
 
@@ -37,70 +37,35 @@ CAREFUL_SPEED_M_S = 0.5
 MAX_DEPTH_M = 0.002
 OUT_OF_WALLS_PER_S = 24.0
 
+TOUCH_M = 0.02
+"""What is nearer may rest on a body."""
+
 _LINK_OF_BASE = -1
 
 _NO_PLANES = np.zeros((0, 4))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Placement:
-    """An object to put into the world.
+class Body:
+    """A placed object; static ones keep the very pose that they were given.
 
     Attributes
     ----------
-    name : str
-        Unique in its scene.
-    asset : Asset
-    category_id : int
-    pose : Pose
-        Of the body frame.
-    scale : (3,) tuple of float
-        Each above 0.
-    static : bool
-        True if physics never moves it.
-    mass_kg : float or None
-        None takes the asset's mass times the scale's volume [kg].
-    gravity : bool
-        False if gravity does not pull it.
-    friction, restitution : float
-    linear_velocity : (3,) tuple of float
-        At the start, world frame [m/s].
-    angular_velocity : (3,) tuple of float
-        At the start, world frame [rad/s].
-    behaviours : tuple of RunningBehaviour
+    placement : Placement
+    mass_kg : float
+        0 for what is static [kg].
+    arranged : bool
+        True until it is put elsewhere by hand: whatever moves it since is physics.
+    told_pose : Pose
+        Where its entry puts it.
+    behaves_as_told : bool
+        True while its behaviours are those of its entry.
     """
-
-    name: str
-    asset: Asset
-    category_id: int
-    pose: Pose
-    scale: Vector3 = (1.0, 1.0, 1.0)
-    static: bool = False
-    mass_kg: float | None = None
-    gravity: bool = True
-    friction: float = 0.5
-    restitution: float = 0.0
-    linear_velocity: Vector3 = (0.0, 0.0, 0.0)
-    angular_velocity: Vector3 = (0.0, 0.0, 0.0)
-    behaviours: tuple[RunningBehaviour, ...] = ()
-
-    def __post_init__(self) -> None:
-        hollow = any(isinstance(shape, TriangleShape) for shape in self.asset.collision)
-        if hollow and not self.static:
-            raise InvalidRequest(
-                f"static of {self.name!r}", False, f"true: {self.asset.name!r} is hollow geometry"
-            )
-        if self.behaviours and self.static:
-            raise InvalidRequest(
-                f"static of {self.name!r}", True, "false for an object that has behaviours"
-            )
-
-
-class Body:
-    """A placed object; static ones keep the very pose that they were given."""
 
     def __init__(self, client: BulletClient, placement: Placement, gravity: Vector3) -> None:
         self.placement = placement
+        self.arranged = True
+        self.told_pose = placement.pose
+        self.behaves_as_told = True
         self._behaviours = placement.behaviours
         self._is_fast = False
         self._client = client
@@ -151,6 +116,7 @@ class Body:
 
     def put(self, pose: Pose) -> None:
         """Set the pose and stop the body."""
+        self.arranged = False
         self._static_pose = pose
         self._matrix = pose.matrix()
         self._client.resetBasePositionAndOrientation(
@@ -196,6 +162,30 @@ class Body:
             sim_time_ns=sim_time_ns,
         )
 
+    def rebuilt(self, placement: Placement, gravity: Vector3) -> Body:
+        """Make the body that another placement says, in the place and the motion of this one.
+
+        Both are in the engine then; `remove` takes this one out of it.
+
+        Raises
+        ------
+        InvalidRequest
+            If it cannot be such a body.
+        """
+        linear, angular = self.velocity()
+        moving = replace(
+            placement,
+            pose=self.pose(),
+            linear_velocity=_three(linear),
+            angular_velocity=_three(angular),
+            behaviours=self._behaviours,
+        )
+        new = Body(self._client, moving, gravity)
+        new.arranged = self.arranged and placement.scale == self.placement.scale
+        new.told_pose = self.told_pose
+        new.behaves_as_told = self.behaves_as_told
+        return new
+
     @property
     def behaviours(self) -> tuple[RunningBehaviour, ...]:
         """What moves it, in the order in which they are asked."""
@@ -221,10 +211,12 @@ class Body:
                 f"at most {MAX_BEHAVIOURS}; detach them first",
             )
         self._behaviours = (*self._behaviours, running)
+        self.behaves_as_told = False
 
     def detach(self) -> None:
         """Let no behaviour move it any more; its speed remains."""
         self._behaviours = ()
+        self.behaves_as_told = False
 
     def act(self, time_s: float, confines: Confines) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""
@@ -238,6 +230,14 @@ class Body:
             self._is_fast = self._tame()
         if self._lift is not None:
             self._push(self._lift)
+
+    def touching_ids(self) -> frozenset[int]:
+        """Give PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
+        low, high = self._client.getAABB(self._id)
+        found = self._client.getOverlappingObjects(
+            [edge - TOUCH_M for edge in low], [edge + TOUCH_M for edge in high]
+        )
+        return frozenset(body for body, _ in found or ())
 
     @property
     def collides(self) -> bool:

@@ -17,12 +17,12 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.lights import Environment
 from sailenv_ros.model import Asset
-from sailenv_ros.scene.spec import MoverSpec, ObjectSpec, RoomSpec, SceneSpec
+from sailenv_ros.scene.spec import EnvironmentSpec, MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
 
-__all__ = ["build_world", "make_placement"]
+__all__ = ["build_world", "make_environment", "make_placement"]
 
 
 def build_world(
@@ -73,14 +73,21 @@ def build_world(
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
-        environment=_environment(spec, skies or {}),
+        environment=make_environment(spec.environment, skies or {}),
         gravity=spec.gravity,
+        described=spec,
     )
 
 
-def _environment(spec: SceneSpec, skies: Mapping[str, Path]) -> Environment:
-    """Give the surroundings; under a photographed sky its means take the place of the colours."""
-    environment = spec.environment.to_environment()
+def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Environment:
+    """Give the surroundings; under a photographed sky its means take the place of the colours.
+
+    Raises
+    ------
+    UnknownName, AssetError
+        If there is no such sky, or it cannot be read.
+    """
+    environment = spec.to_environment()
     if not environment.sky_map:
         return environment
     sky = load_sky(environment.sky_map, skies)
@@ -157,6 +164,7 @@ def make_placement(
         linear_velocity=entry.velocity,
         angular_velocity=(x, y, z),
         behaviours=tuple(behaviours),
+        entry=entry,
     )
 
 
@@ -173,4 +181,11 @@ def _mover(entry: MoverSpec) -> Mover:
         track = WaypointTrack(
             waypoints=entry.waypoint_poses, total_time_s=entry.total_time, loop=entry.loop
         )
-    return Mover(name=entry.name, start=entry.pose, track=track, controller=entry.controller)
+    return Mover(
+        name=entry.name,
+        start=entry.pose,
+        track=track,
+        controller=entry.controller,
+        total_time_s=entry.total_time,
+        loop=entry.loop,
+    )

@@ -83,11 +83,16 @@ class WaypointTrack:
     total_time_s: float
     loop: bool = True
 
+    @property
+    def legs(self) -> int:
+        """How many ways from a waypoint to another there are; 0 for a single one."""
+        count = len(self.waypoints)
+        return count if self.loop and count > 1 else count - 1
+
     def pose_at(self, time_s: float) -> Pose:
         """Interpolate: lines between positions, shorter arcs between orientations, equal times."""
-        count = len(self.waypoints)
-        legs = count if self.loop else count - 1
-        if legs < 1 or count == 1:
+        count, legs = len(self.waypoints), self.legs
+        if legs < 1:
             return self.waypoints[0]
         progress = time_s / self.total_time_s * legs
         if not self.loop and progress >= legs:
@@ -95,6 +100,13 @@ class WaypointTrack:
         leg = int(progress // 1.0)
         first, second = self.waypoints[leg % count], self.waypoints[(leg + 1) % count]
         return interpolate(first, second, progress - leg)
+
+    def progress_at(self, time_s: float) -> float:
+        """Give how many legs are behind it; a track that is closed begins at 0 again."""
+        if not self.legs:
+            return 0.0
+        progress = time_s / self.total_time_s * self.legs
+        return progress % self.legs if self.loop else min(progress, float(self.legs))
 
 
 class Mover:
@@ -108,13 +120,24 @@ class Mover:
     track : WaypointTrack or None
     controller : {'waypoint', 'rigidbody'}
         ``waypoint`` without a track stays at the start.
+    total_time_s, loop
+        Of the track that it may be given, if it has none.
     """
 
     def __init__(
-        self, *, name: str, start: Pose, track: WaypointTrack | None, controller: Controller
+        self,
+        *,
+        name: str,
+        start: Pose,
+        track: WaypointTrack | None,
+        controller: Controller,
+        total_time_s: float = 30.0,
+        loop: bool = True,
     ) -> None:
         self.name = name
         self._track = track
+        self._total_time_s = total_time_s if track is None else track.total_time_s
+        self._loop = loop if track is None else track.loop
         self._controller: Controller = controller
         self._held = start
         self._run_ns = 0
@@ -126,6 +149,21 @@ class Mover:
     def track(self) -> WaypointTrack | None:
         """Where waypoints lead it; None if there are none."""
         return self._track
+
+    @property
+    def waypoints(self) -> tuple[Pose, ...]:
+        """The poses of its track; none if it has no track."""
+        return () if self._track is None else self._track.waypoints
+
+    @property
+    def total_time_s(self) -> float:
+        """Time to run through all the waypoints once [s]."""
+        return self._total_time_s
+
+    @property
+    def loop(self) -> bool:
+        """True if the last waypoint leads on to the first."""
+        return self._loop
 
     @property
     def controller(self) -> Controller:
@@ -167,6 +205,26 @@ class Mover:
         if command is None or not command.moves or time_ns >= self._command_ends_ns:
             return None
         return command
+
+    def lead(
+        self, waypoints: tuple[Pose, ...], *, total_time_s: float, loop: bool, time_ns: int
+    ) -> None:
+        """Give it another track; on the leg that it has reached, it is as far as it was.
+
+        Without waypoints it stays where it is.
+        """
+        track = None
+        if waypoints:
+            track = WaypointTrack(waypoints=waypoints, total_time_s=total_time_s, loop=loop)
+        else:
+            self._held = self.pose_at(time_ns)
+        self._total_time_s, self._loop = total_time_s, loop
+        ran_ns = self._run_ns if self._controller == "rigidbody" else self._ran_ns(time_ns)
+        progress = 0.0 if self._track is None else self._track.progress_at(ran_ns * 1e-9)
+        self._run_ns = 0
+        if track is not None and track.legs:
+            self._run_ns = round(progress / track.legs * track.total_time_s * 1e9)
+        self._since_ns, self._track = time_ns, track
 
     def control(self, controller: Controller, time_ns: int) -> None:
         """Change what drives it; waypoints go on where they were interrupted.

@@ -19,6 +19,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, Confines, Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
@@ -43,9 +44,12 @@ class World:
         Get instance ids 1, 2, 3 … in this order.
     movers : sequence of Mover
         At least one.
+    described : SceneSpec or None
+        What a scene file says of it all; None where there is none.
 
     Attributes
     ----------
+    described : SceneSpec or None
     confines : callable
         ``confines(agent, distance_m)`` gives the (N, 4) planes of an agent's view; none at all
         unless whoever knows the agents has set it.
@@ -63,10 +67,12 @@ class World:
         lights: Sequence[Light] = (),
         environment: Environment | None = None,
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
+        described: SceneSpec | None = None,
     ) -> None:
         self.scene = scene
         self.epoch = epoch
         self.categories = categories
+        self.described = described
         self._next_revision = next_revision
         self._gravity = gravity
         self._lights = tuple(lights)
@@ -90,6 +96,10 @@ class World:
             self.close()
             raise
         self._contents = self._make_contents()
+        self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
+        self._room_parts = frozenset(
+            body.placement.name for body in self._bodies.values() if body.placement.entry is None
+        )
 
     # -- time ------------------------------------------------------------------------------
 
@@ -140,6 +150,17 @@ class World:
     def movers(self) -> Mapping[str, Mover]:
         """The movers by name, in the scene's order; read-only."""
         return MappingProxyType(self._movers)
+
+    @property
+    def missing_parts(self) -> frozenset[str]:
+        """Names of the parts of the room that were there at the start and are no more."""
+        return self._room_parts.difference(body.placement.name for body in self._bodies.values())
+
+    @property
+    def first_bodies(self) -> Mapping[str, Body]:
+        """The bodies of the start that are still there, by the names that they had then."""
+        named = self._first_names.items()
+        return {name: self._bodies[id_] for id_, name in named if id_ in self._bodies}
 
     @property
     def moving_ids(self) -> frozenset[int]:
@@ -229,14 +250,43 @@ class World:
 
     def despawn(self, instance_id: int) -> None:
         """Take an object out of the world; its id is not used again."""
-        self.body(instance_id).remove()
+        gone = self.body(instance_id)
+        self._rouse(gone)
+        gone.remove()
         del self._bodies[instance_id]
         del self._histories[instance_id]
         self._changed()
 
+    def replace_body(self, instance_id: int, placement: Placement) -> None:
+        """Make of an object what another placement says; it stays where it is, and its id too.
+
+        It keeps its motion and its behaviours. Another scale cuts its past off: a point of its
+        surface has no place of before.
+
+        Raises
+        ------
+        NameTaken
+            If another object has the placement's name.
+        InvalidRequest
+            If it cannot be such an object; it is as it was then.
+        """
+        old = self.body(instance_id)
+        if placement.name != old.placement.name:
+            self._require_free_name(placement.name)
+        new = old.rebuilt(placement, self._gravity)
+        self._rouse(old)
+        old.remove()
+        self._bodies[instance_id] = new
+        if placement.scale != old.placement.scale:
+            self._histories[instance_id] = self._new_history()
+            self._forget_chart(instance_id)
+        self._changed()
+
     def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:
         """Move an object and stop it; `teleport` cuts its past off, so flow does not see a jump."""
-        self.body(instance_id).put(pose)
+        moved = self.body(instance_id)
+        self._rouse(moved)
+        moved.put(pose)
         if teleport:
             self._histories[instance_id] = self._new_history()
         self._snapshot = None
@@ -283,8 +333,7 @@ class World:
         client.setPhysicsEngineParameter(deterministicOverlappingPairs=1, numSolverIterations=50)
 
     def _add(self, placement: Placement) -> int:
-        if any(body.placement.name == placement.name for body in self._bodies.values()):
-            raise NameTaken("object", placement.name)
+        self._require_free_name(placement.name)
         if self._last_id >= MAX_INSTANCE_ID:
             raise InvalidRequest(
                 "number of objects",
@@ -296,6 +345,23 @@ class World:
         self._bodies[self._last_id] = body
         self._histories[self._last_id] = self._new_history()
         return self._last_id
+
+    def _require_free_name(self, name: str) -> None:
+        if any(body.placement.name == name for body in self._bodies.values()):
+            raise NameTaken("object", name)
+
+    def _rouse(self, body: Body) -> None:
+        """Wake what sleeps beside or upon a body that is about to leave its place."""
+        touching = body.touching_ids()
+        for other in self._bodies.values():
+            if other is not body and other.bullet_id in touching:
+                other.wake()
+
+    def _forget_chart(self, instance_id: int) -> None:
+        """Take the baked light off an instance whose surface is another now."""
+        if self._baked is not None and instance_id in self._baked.charts:
+            charts = {id_: c for id_, c in self._baked.charts.items() if id_ != instance_id}
+            self._baked = replace(self._baked, charts=charts)
 
     def _new_history(self) -> int:
         self._last_history += 1

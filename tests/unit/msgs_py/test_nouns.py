@@ -188,7 +188,16 @@ def scene_info() -> SceneInfo:
         lights=(sun,),
         environment=Environment(ambient=(0.25, 0.5, 1.0), background="colour", exposure=-1.5),
         agents=(AgentSpec(name="agent", mover="mover"),),
-        movers=(MoverInfo(name="mover", controller="waypoint"),),
+        movers=(
+            MoverInfo(
+                name="mover",
+                controller="waypoint",
+                waypoints=(Pose((1.0, 2.0, 3.0)), Pose.from_rpy_deg((0, 0, 1), (0, 0, 90))),
+                total_time_s=12.5,
+                loop=False,
+            ),
+            MoverInfo(name="cart", controller="rigidbody"),
+        ),
         renderer="blank",
     )
 

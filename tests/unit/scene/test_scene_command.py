@@ -66,6 +66,17 @@ def test_scenes_are_listed_with_their_titles(capsys: pytest.CaptureFixture[str])
     assert "Optical" in lines[[line.split()[0] for line in lines].index("optical")]
 
 
+def test_scenes_of_one_s_own_are_listed_and_checked_by_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a simulator saved is known without a path."""
+    monkeypatch.setenv("SAILENV_SCENES", str(tmp_path))
+    (tmp_path / "my den.yaml").write_text("version: 1\ntitle: My den\n", encoding="utf-8")
+    assert _run("check", "my den") == 0
+    assert _run("list") == 0
+    assert "my den" in capsys.readouterr().out
+
+
 def test_the_schema_is_written_and_found_up_to_date(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

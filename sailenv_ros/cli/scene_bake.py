@@ -1,0 +1,95 @@
+"""`sailenv scene bake`: work out the light of rooms beforehand, with a progress bar.
+
+`sailenv run` uses it too, so that a room is never shown without its light.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+from sailenv_ros.bake.bake import bake
+from sailenv_ros.bake.files import baked_file, is_baked, load_baked, remember, store_baked
+from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.snapshot import WorldSnapshot
+
+__all__ = ["add_arguments", "bake_before_running", "bake_scenes"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the action's arguments to its parser."""
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="names or files")
+    parser.add_argument("--all", action="store_true", help="every scene with a room")
+    parser.add_argument("--force", action="store_true", help="bake anew what is there already")
+
+
+def bake_scenes(args: argparse.Namespace) -> int:
+    """Bake what was asked for; 0 if all is baked in the end.
+
+    Raises
+    ------
+    InvalidRequest
+        If neither scenes nor `--all` are given.
+    """
+    library = SceneLibrary()
+    scenes = [*args.scenes, *(_rooms(library) if args.all else ())]
+    if not scenes:
+        raise InvalidRequest("what to bake", "nothing", "names or files of scenes, or --all")
+    for scene in scenes:
+        print(f"{scene}: {_bake_one(library, scene, force=args.force)}", flush=True)
+    return 0
+
+
+def bake_before_running(scene: str, scene_paths: list[Path]) -> None:
+    """Bake a scene that is about to be shown; quick where nothing is to be done."""
+    library = SceneLibrary(scene_paths)
+    if is_baked(library.stamp(scene)):
+        return
+    if library.load(scene).room is not None:
+        _bake_one(library, scene, force=False)
+
+
+def _rooms(library: SceneLibrary) -> list[str]:
+    return [name for name in library.scene_names if library.load(name).room is not None]
+
+
+def _bake_one(library: SceneLibrary, scene: str, *, force: bool) -> str:
+    """Bake a scene and say what was done."""
+    if library.load(scene).room is None:
+        return "it has no room; its light is worked out from frame to frame"
+    world = library.build(scene, seed=0, epoch=0, next_revision=itertools.count().__next__)
+    try:
+        snapshot = world.snapshot()
+    finally:
+        world.close()
+    name = fingerprint(snapshot)
+    if not force and load_baked(name) is not None:
+        said = f"baked already ({baked_file(name)})"
+    else:
+        path = store_baked(_with_a_bar(snapshot, scene))
+        said = f"baked ({path}, {path.stat().st_size / 1e6:.0f} MB)"
+    remember(library.stamp(scene), name)
+    return said
+
+
+def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description:<32}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
+    )  # fmt: skip
+    with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
+        task = bar.add_task(f"light of {scene}", total=1.0)
+
+        def told(stage: str, share: float) -> None:
+            bar.update(task, description=f"light of {scene}: {stage}", completed=share)
+
+        baked = bake(snapshot, report=told)
+        bar.update(task, description=f"light of {scene}", completed=1.0)
+    return baked

@@ -1,0 +1,309 @@
+"""A running world → what a scene file says of it, as plain data.
+
+What is as its file has it keeps the words of the file: a room, what stands at a wall or upon
+something, a track. What was changed, moved or added is written as it is now. Writes no file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.describing import (
+    PLACE_KEYS,
+    VELOCITY_KEYS,
+    agent_entry,
+    changed_light_entry,
+    light_entry,
+    pose_entry,
+    rounded,
+)
+from sailenv_ros.scene.spec import (
+    AgentSpecModel,
+    EnvironmentSpec,
+    MoverSpec,
+    ObjectSpec,
+    SceneSpec,
+)
+from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.world import World
+
+__all__ = ["described_world", "environment_entry", "unsaid", "uploaded_models"]
+
+Entry = dict[str, Any]
+
+SETTLED_M = 0.002
+SETTLED_DEG = 0.5
+"""What physics has moved by no more, and is at rest, has only settled: it stands as it was put."""
+
+AT_REST = 0.01
+"""Slower is at rest [m/s], [rad/s]."""
+
+_MAY_BE_LEFT_OUT = ("ceiling", "skirting", "curtains")
+"""Parts of a room without which a file can describe it."""
+
+_SKY_COLOURS = ("sky_zenith", "sky_horizon", "sky_ground")
+
+
+def described_world(world: World, agents: AgentTable, *, cameras: Collection[str] = ()) -> Entry:
+    """Give the data of a scene file that this world can be built from.
+
+    Parameters
+    ----------
+    world : World
+        One that was built from a scene.
+    agents : AgentTable
+        Those that the scene brought along are saved as they are now.
+    cameras : collection of str
+        Names of further agents to be saved.
+    """
+    spec = world.described
+    assert spec is not None
+    data: Entry = spec.model_dump(mode="json", exclude_unset=True, exclude={"name"})
+    changed: dict[str, Any] = {
+        "environment": environment_entry(world),
+        "lights": _lights(world, spec),
+        **_room(spec, world.missing_parts),
+        "objects": _objects(world),
+        **_movers(world, spec),
+        "agents": _agents(world, spec, agents, cameras),
+    }
+    data.update(changed)
+    empty = [key for key in changed if not data[key]]
+    for key in empty:
+        del data[key]
+    return {key: data[key] for key in SceneSpec.model_fields if key in data}
+
+
+def unsaid(world: World) -> Iterator[tuple[str, str]]:
+    """Yield what a scene file cannot say of a world: what it is about, and why."""
+    for name in sorted(world.missing_parts):
+        if not name.startswith(_MAY_BE_LEFT_OUT):
+            yield repr(name), "is a part of the room and was taken out, which no scene file can say"
+    for body in world.bodies:
+        if body.placement.entry is None and not body.arranged:
+            name = body.placement.name
+            yield repr(name), "is a part of the room and was moved, which no scene file can say"
+
+
+def uploaded_models(world: World, is_uploaded: Callable[[str], bool]) -> tuple[str, ...]:
+    """Give the catalogue names of the models in a world that this simulator alone has.
+
+    Parameters
+    ----------
+    is_uploaded : callable
+        Says of a catalogue name if it is such a model's.
+    """
+    names = {body.placement.asset.name for body in world.bodies if body.placement.entry}
+    return tuple(sorted(name for name in names if is_uploaded(name)))
+
+
+# -- surroundings --------------------------------------------------------------------------
+
+
+def environment_entry(world: World) -> Entry:
+    """Give the surroundings; colours of the sky are the file's, a photographed one has its own."""
+    assert world.described is not None
+    told = world.described.environment
+    now = world.contents.environment
+    changes = {
+        key: getattr(now, key)
+        for key in EnvironmentSpec.model_fields
+        if key not in _SKY_COLOURS and getattr(now, key) != getattr(told, key)
+    }
+    entry: Entry = told.model_copy(update=changes).model_dump(mode="json", exclude_unset=True)
+    return entry
+
+
+def _room(spec: SceneSpec, missing: Collection[str]) -> Entry:
+    """Give the room as its file has it, without those parts that it may do without."""
+    if spec.room is None:
+        return {}
+    entry: Entry = spec.room.model_dump(mode="json", exclude_unset=True)
+    entry.update({key: False for key in ("ceiling", "skirting") if key in missing})
+    windows = [opening for opening in entry.get("openings", ()) if opening["type"] == "window"]
+    for number, window in enumerate(windows, start=1):
+        if f"curtains {number}" in missing:
+            window["curtains"] = False
+    return {"room": entry}
+
+
+def _lights(world: World, spec: SceneSpec) -> list[Entry]:
+    as_told = {light.name: light for light in spec.lights}
+    return [
+        changed_light_entry(as_told[light.name], light)
+        if light.name in as_told
+        else light_entry(light)
+        for light in world.contents.lights
+    ]
+
+
+# -- objects -------------------------------------------------------------------------------
+
+
+def _objects(world: World) -> list[Entry]:
+    begun, missing = world.first_bodies, world.missing_parts
+    return [
+        _object(body, as_told=_stands_as_told(body, begun, missing))
+        for body in world.bodies
+        if body.placement.entry is not None
+    ]
+
+
+def _object(body: Body, *, as_told: bool) -> Entry:
+    placement = body.placement
+    assert placement.entry is not None
+    entry: Entry = placement.entry.model_dump(
+        mode="json", exclude_unset=True, exclude_defaults=True, exclude={"behaviours"}
+    )
+    if not as_told:
+        for key in (*PLACE_KEYS, *VELOCITY_KEYS):
+            entry.pop(key, None)
+        entry.update(pose_entry(body.pose()))
+        entry.update(_velocities(body))
+    elif "orientation" in entry:
+        del entry["orientation"]
+        entry.update(pose_entry(placement.entry.pose))
+    if placement.static:
+        entry = {key: value for key, value in entry.items() if key not in VELOCITY_KEYS}
+    behaviours = _behaviours(body, placement.entry)
+    return {**entry, "behaviours": behaviours} if behaviours else entry
+
+
+def _stands_as_told(body: Body, begun: Mapping[str, Body], missing: Collection[str]) -> bool:
+    """Say if it stands where its entry puts it, and so does all that carries it."""
+    entry = body.placement.entry
+    if entry is None or not body.arranged:
+        return False
+    # What is at a wall would come nearer to it without the board at its foot.
+    if entry.wall is not None and "skirting" in missing:
+        return False
+    if entry.on is not None:
+        carrier = begun.get(entry.on)
+        if carrier is None or carrier.placement.name != entry.on:
+            return False
+        if not _stands_as_told(carrier, begun, missing):
+            return False
+    return body.placement.static or _only_settled(body)
+
+
+def _only_settled(body: Body) -> bool:
+    first, now = body.told_pose, body.pose()
+    speeds = np.concatenate(body.velocity())
+    at_first = (*body.placement.linear_velocity, *body.placement.angular_velocity)
+    if _is_same(first, now) and np.array_equal(speeds, at_first):
+        return True
+    return (
+        math.dist(first.position_m, now.position_m) <= SETTLED_M
+        and _angle_deg(first, now) <= SETTLED_DEG
+        and float(np.abs(speeds).max()) <= AT_REST
+    )
+
+
+def _is_same(first: Pose, second: Pose) -> bool:
+    """Say if two poses are the same up to rounding."""
+    return math.dist(first.position_m, second.position_m) < 1e-12 and (
+        _angle_deg(first, second) < 1e-6
+    )
+
+
+def _angle_deg(first: Pose, second: Pose) -> float:
+    share = abs(float(np.dot(first.orientation_xyzw, second.orientation_xyzw)))
+    return math.degrees(2.0 * math.acos(min(1.0, share)))
+
+
+def _velocities(body: Body) -> Entry:
+    """Give how it moves, if it does."""
+    if body.placement.static:
+        return {}
+    linear, angular = body.velocity()
+    entry: Entry = {}
+    if _is_fast(linear):
+        entry["velocity"] = rounded(linear.tolist(), 6)
+    if _is_fast(angular):
+        entry["angular_velocity"] = rounded(np.degrees(angular).tolist(), 6)
+    return entry
+
+
+def _is_fast(velocity: NDArray[np.float64]) -> bool:
+    return float(np.abs(velocity).max()) > AT_REST
+
+
+def _behaviours(body: Body, entry: ObjectSpec) -> list[Entry]:
+    if body.behaves_as_told:
+        return [b.model_dump(mode="json", exclude_unset=True) for b in entry.behaviours]
+    return [
+        {
+            "type": running.kind.type,
+            **running.parameters.model_dump(mode="json", exclude_unset=True),
+        }
+        for running in body.behaviours
+    ]
+
+
+# -- movers and agents ---------------------------------------------------------------------
+
+
+def _movers(world: World, spec: SceneSpec) -> Entry:
+    """Give `mover` or `movers`, as the file has it; nothing if it has none and none was changed."""
+    entries = [_mover(world.movers[told.name], told, world.sim_time_ns) for told in spec.all_movers]
+    if spec.movers:
+        return {"movers": entries}
+    return {"mover": entries[0]}
+
+
+def _mover(mover: Mover, told: MoverSpec, time_ns: int) -> Entry:
+    entry: Entry = told.model_dump(mode="json", exclude_unset=True)
+    poses = mover.waypoints
+    if poses != told.waypoint_poses:
+        entry.pop("waypoints", None)
+        as_told = {w.pose: w.model_dump(mode="json", exclude_unset=True) for w in told.waypoints}
+        if poses:
+            entry["waypoints"] = [as_told.get(pose) or pose_entry(pose) for pose in poses]
+    now = {
+        "total_time": mover.total_time_s,
+        "loop": mover.loop,
+        "controller": mover.controller,
+    }
+    for key, value in now.items():
+        if value != getattr(told, key):
+            entry[key] = value
+    is_led = mover.controller == "waypoint" and bool(poses)
+    pose = mover.pose_at(time_ns)
+    if not is_led and (pose != told.pose or poses != told.waypoint_poses):
+        for key in PLACE_KEYS:
+            entry.pop(key, None)
+        entry.update(pose_entry(pose))
+    return entry
+
+
+def _agents(
+    world: World, spec: SceneSpec, agents: AgentTable, cameras: Collection[str]
+) -> list[Entry]:
+    told = {agent.name: agent for agent in spec.agents}
+    missing = [name for name in cameras if name not in told]
+    for name in missing:
+        agents[name]  # which must exist
+    wanted = (*told, *missing)
+    records = {record.spec.name: record for record in agents}
+    return [_agent(records[name], told.get(name), world) for name in wanted if name in records]
+
+
+def _agent(record: AgentRecord, told: AgentSpecModel | None, world: World) -> Entry:
+    spec = record.spec
+    first = world.mover("").name
+    if told is not None:
+        begun = told.to_agent_spec()
+        same = replace(spec, pose=begun.pose) == replace(begun, mover=begun.mover or first)
+        if same and (spec.following or begun.pose == record.pose):
+            return told.model_dump(mode="json", exclude_unset=True)
+    named = replace(spec, mover="" if spec.mover == first else spec.mover)
+    return agent_entry(named, None if spec.following else record.pose)
