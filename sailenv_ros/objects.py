@@ -37,6 +37,8 @@ class ObjectState:
         Along the asset's axes.
     size_m : (3,) tuple of float
         Of the box around it in its own axes, scale included [m].
+    bottom_m : float
+        Lowest z of that box [m]: below 0 for what does not stand on its origin.
     static : bool
         True if physics never moves it.
     mass_kg : float
@@ -60,6 +62,7 @@ class ObjectState:
     pose: Pose
     scale: Vector3
     size_m: Vector3
+    bottom_m: float = 0.0
     static: bool
     mass_kg: float
     linear_velocity: Vector3

@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         folders = item.path.relative_to(ROOT / "tests").parts
         if folders[0] == "ros":
             item.add_marker(pytest.mark.ros)
-        elif folders[0] == "render":
+        elif folders[0] in ("render", "viewer"):
             item.add_marker(pytest.mark.gl)
 
 

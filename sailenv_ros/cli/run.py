@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import logging
 import os
 import signal
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args
 
@@ -18,6 +20,9 @@ from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.scenes import default_scene
+from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
+from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
+from sailenv_ros.viewer import ViewerServer
 
 __all__ = ["add_parser", "run"]
 
@@ -30,7 +35,8 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "run",
         help="start the simulator, with or without ROS",
-        description="Starts the simulator and lets clients of the original SAILenv connect.",
+        description="Starts the simulator and lets clients of the original SAILenv connect; "
+        "a browser shows what its agents see.",
     )
     parser.set_defaults(run=run)
     parser.add_argument("scene", nargs="?", help="name or file (default: a furnished room)")
@@ -40,6 +46,18 @@ def add_parser(subparsers: Any) -> None:
         "--port", type=int, default=DEFAULT_PORT, help="TCP port (default: %(default)s)"
     )
     parser.add_argument("--protocol", choices=get_args(Protocol), default="0.5")
+    parser.add_argument(
+        "--viewer-port", type=int, default=VIEWER_PORT, metavar="PORT",
+        help="of the window in the browser; 0: none (default: %(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--viewer-host", default=VIEWER_HOST, metavar="HOST",
+        help="address of the window; 0.0.0.0: all, with a token (default: %(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--viewer-control", action="store_true",
+        help="let those from other machines not only watch but change things",
+    )  # fmt: skip
     parser.add_argument("--seed", type=int, default=0, help="of every random number")
     parser.add_argument(
         "--no-bake", action="store_true", help="do not work out a room's light beforehand"
@@ -64,6 +82,9 @@ def _become_the_node(args: argparse.Namespace) -> int:
         "gateway.host": args.host,
         "gateway.port": args.port,
         "gateway.protocol": f"'{args.protocol}'",  # a text, not a number
+        "viewer.host": args.viewer_host,
+        "viewer.port": args.viewer_port,
+        "viewer.control": str(args.viewer_control).lower(),
     }
     if args.scenes:
         values["scene_paths"] = "[" + ", ".join(f"'{path}'" for path in args.scenes) + "]"
@@ -81,18 +102,32 @@ def _run_alone(args: argparse.Namespace) -> int:
         server = GatewayServer(
             simulation, host=args.host, port=args.port, protocol=args.protocol
         )  # fmt: skip
-        with server:
+        with server, _viewer(simulation, args) as viewer:
             print(f"scene {simulation.info.scene!r}; renderer: {simulation.info.renderer}")
             print(
                 f"listening on {server.host}:{server.port} for clients of the original SAILenv "
                 f"(protocol {args.protocol}); Ctrl-C ends it",
                 flush=True,
             )
+            if viewer is not None:
+                print(f"open {viewer.url} in a browser to see it", flush=True)
             _wait_for_the_end(simulation)
             # A second Ctrl-C shall not break the clean-up off.
             signal.signal(signal.SIGINT, signal.SIG_IGN)
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
     return 0
+
+
+@contextlib.contextmanager
+def _viewer(simulation: Simulation, args: argparse.Namespace) -> Iterator[ViewerServer | None]:
+    """Serve the window while the block runs, unless its port is 0."""
+    if not args.viewer_port:
+        yield None
+        return
+    with ViewerServer(
+        simulation, host=args.viewer_host, port=args.viewer_port, control=args.viewer_control
+    ) as viewer:
+        yield viewer
 
 
 def _wait_for_the_end(simulation: Simulation) -> None:

@@ -23,6 +23,8 @@ from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
 from sailenv_ros.gateway.commands import Protocol
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import TimeMode
+from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
+from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
 
 __all__ = ["LIVE", "Parameter", "SimParameters", "declare_parameters", "declare_table"]
 
@@ -46,6 +48,10 @@ class SimParameters:
     gateway_port : int
         0 for none.
     gateway_protocol : {'0.5', '0.6'}
+    viewer_host : str
+    viewer_port : int
+        0 for none.
+    viewer_control : bool
     agent : AgentSpec or None
         The agent that is there from the start.
     """
@@ -62,6 +68,9 @@ class SimParameters:
     gateway_host: str
     gateway_port: int
     gateway_protocol: str
+    viewer_host: str
+    viewer_port: int
+    viewer_control: bool
     agent: AgentSpec | None
 
 
@@ -128,6 +137,15 @@ _PARAMETERS: dict[str, _Parameter] = {
     "gateway.protocol": _Parameter(
         "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
     ),
+    "viewer.port": _Parameter(
+        VIEWER_PORT, "TCP port of the window in the browser; 0: none.", 0, 65535
+    ),
+    "viewer.host": _Parameter(
+        VIEWER_HOST, "Address that port listens on; 0.0.0.0: all, with a token in the URL."
+    ),
+    "viewer.control": _Parameter(
+        False, "True: those from other machines may change things there, not only watch."
+    ),
     "agent.name": _Parameter("agent", "Name of the first agent; empty: start without one."),
     "agent.width": _Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
     "agent.height": _Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
@@ -171,6 +189,9 @@ def declare_parameters(node: Node) -> SimParameters:
         gateway_host=values["gateway.host"],
         gateway_port=values["gateway.port"],
         gateway_protocol=values["gateway.protocol"],
+        viewer_host=values["viewer.host"],
+        viewer_port=values["viewer.port"],
+        viewer_control=values["viewer.control"],
         agent=_agent(values),
     )
 

@@ -44,6 +44,7 @@ from sailenv_ros.presence import SimulatorLock
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.transport import use_shared_memory_profile
+from sailenv_ros.viewer import ViewerServer
 
 __all__ = ["SimNode", "main"]
 
@@ -99,11 +100,17 @@ class SimNode:
         self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
         self._gateway = _gateway(simulation, parameters)
+        self._viewer = _viewer(simulation, parameters)
 
     @property
     def simulation(self) -> Simulation:
         """The simulation that is hosted."""
         return self._simulation
+
+    @property
+    def viewer_url(self) -> str:
+        """Address of the window in the browser; empty if there is none."""
+        return "" if self._viewer is None else self._viewer.url
 
     def start(self) -> None:
         """Begin to publish and to serve."""
@@ -116,6 +123,8 @@ class SimNode:
         """End everything but the node; False if the simulation did not end in time."""
         if self._gateway is not None:
             self._gateway.close()
+        if self._viewer is not None:
+            self._viewer.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._endpoints.close()
@@ -187,7 +196,7 @@ def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -
         sim_node = SimNode(node, executor, simulation, parameters)
         try:
             sim_node.start()
-            _greet(node, simulation.info, transport)
+            _greet(node, simulation.info, transport, sim_node.viewer_url)
             while not stop.wait(0.25):
                 if simulation.closed:
                     raise SimulationClosed("of a fault, which the log shows")
@@ -261,18 +270,36 @@ def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer
         return None
 
 
+def _viewer(simulation: Simulation, parameters: SimParameters) -> ViewerServer | None:
+    if not parameters.viewer_port:
+        return None
+    try:
+        return ViewerServer(
+            simulation,
+            host=parameters.viewer_host,
+            port=parameters.viewer_port,
+            control=parameters.viewer_control,
+        )
+    except InvalidRequest as problem:
+        if getattr(problem.__cause__, "errno", None) != errno.EADDRINUSE:
+            raise
+        _log.warning("there is no window in the browser here: %s", problem)
+        return None
+
+
 def _close_loaded(loading: Future[Simulation]) -> None:
     if loading.exception() is None:
         loading.result().close()
 
 
-def _greet(node: Node, info: SceneInfo, transport: str) -> None:
+def _greet(node: Node, info: SceneInfo, transport: str, url: str) -> None:
     namespace = node.get_namespace().rstrip("/")
     agents = [spec.name for spec in info.agents]
+    window = f"{url} in a browser, or " if url else ""
     see = f"ros2 run rqt_image_view rqt_image_view {namespace}/{agents[0]}/rgb" if agents else "-"
     node.get_logger().info(
         f"scene {info.scene!r} in {namespace or '/'}; renderer: {info.renderer}; {transport}; "
-        f"agents: {', '.join(agents) or 'none'}; to see: {see}"
+        f"agents: {', '.join(agents) or 'none'}; to see: {window}{see}"
     )
 
 

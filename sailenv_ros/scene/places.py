@@ -51,20 +51,30 @@ def write_scene(folder: Path, name: str, text: str, *, overwrite: bool) -> Path:
     unfinished = folder / f".{name}.{os.getpid()}.unfinished"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        unfinished.write_text(text, encoding="utf-8")
         try:
-            if not overwrite:
-                path.open("x").close()
-            unfinished.replace(path)
+            unfinished.write_text(text, encoding="utf-8")
+            _put(unfinished, path, overwrite=overwrite)
         finally:
             unfinished.unlink(missing_ok=True)
-    except FileExistsError:
-        accepted = "one that no file has yet, unless it shall be overwritten"
-        raise InvalidRequest("scene name", name, accepted) from None
     except OSError as problem:
         accepted = f"one that can be written in {folder} ({problem.strerror})"
+        if isinstance(problem, FileExistsError) and path.exists():
+            accepted = "one that no file has yet, unless it shall be overwritten"
         raise InvalidRequest("scene name", name, accepted) from None
     return path
+
+
+def _put(finished: Path, path: Path, *, overwrite: bool) -> None:
+    if overwrite:
+        finished.replace(path)
+        return
+    # Taking the name and filling it are two steps: only the first can be refused.
+    path.open("x").close()
+    try:
+        finished.replace(path)
+    except OSError:
+        path.unlink(missing_ok=True)
+        raise
 
 
 def checked_scene_name(name: object) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
@@ -71,6 +72,11 @@ class AgentRequests:
     def set_rate(self, agent: str, rate_hz: float) -> None:
         """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
         self._agents.set_rate(agent, rate_hz, self._world)
+        self._announce()
+
+    def set_intrinsics(self, agent: str, intrinsics: CameraIntrinsics) -> None:
+        """Give an agent another lens; its next frame has no flow, for it has no past."""
+        self._agents.set_intrinsics(agent, intrinsics)
         self._announce()
 
     def set_picture(self, agent: str, settings: PictureSettings) -> None:

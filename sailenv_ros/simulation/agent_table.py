@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
-from sailenv_ros.camera import Camera
+from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
@@ -195,6 +195,22 @@ class AgentTable:
         record.due_count = 0
         if rate_hz:
             record.skip_to(world.step_count)
+
+    def set_intrinsics(self, name: str, intrinsics: CameraIntrinsics) -> None:
+        """Change what an agent's camera sees; what it saw before cannot be compared with it.
+
+        Raises
+        ------
+        InvalidRequest
+            If its depth picture would then end before the near plane.
+        """
+        record = self[name]
+        if intrinsics == record.spec.intrinsics:
+            return
+        spec = replace(record.spec, intrinsics=intrinsics)
+        record.registered = replace(record.registered, intrinsics=intrinsics)
+        record.spec = spec
+        record.forget()
 
     def set_picture(self, name: str, settings: PictureSettings) -> None:
         """Change what is done to an agent's pictures."""

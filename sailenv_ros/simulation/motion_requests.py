@@ -81,6 +81,10 @@ class MotionRequests:
         command: Any = {"linear_m_s": linear_m_s, "angular_rad_s": angular_rad_s}
         self._world.drive(mover, MoverCommand(**command))
 
+    def turn_mover(self, mover: str = "", *, pitch_rad: float = 0.0, yaw_rad: float = 0.0) -> None:
+        """Turn a mover at once, as a hand on a mouse does; what it walks by goes on."""
+        self._world.mover(mover).turn(pitch_rad, yaw_rad)
+
     def set_waypoints(
         self,
         waypoints: Sequence[Pose],

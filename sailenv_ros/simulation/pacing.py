@@ -51,9 +51,10 @@ class Pacer:
         target = self._step + int((now - self._wall_s) * self._steps_per_s + 1e-6)
         lag_s = (target - step) / self._steps_per_s
         if lag_s > MAX_LAG_S:
-            self.lost_s += lag_s
-            self.restart(step)
-            return step + 1
+            # Frames that take longer than this still find a world that has moved.
+            self.lost_s += lag_s - MAX_LAG_S
+            self._wall_s, self._step = now - MAX_LAG_S, step
+            return step + int(MAX_LAG_S * self._steps_per_s)
         return target
 
     def wait_s(self, step: int) -> float:

@@ -14,6 +14,7 @@ from typing import Any, Literal, TypeVar
 from numpy.typing import ArrayLike
 
 from sailenv_ros.agents import AgentPose, AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
@@ -54,6 +55,7 @@ REQUESTS = frozenset(
         "set_background",
         "set_environment",
         "set_follow",
+        "set_intrinsics",
         "set_light",
         "set_mover_controller",
         "set_picture",
@@ -68,6 +70,7 @@ REQUESTS = frozenset(
         "step",
         "thumbnail",
         "toggle_follow",
+        "turn_mover",
         "upload_model",
     }
 )
@@ -130,6 +133,12 @@ class Requests(EditRequests):
     def set_rate(self, agent: str, rate_hz: float, *, timeout_s: float = 30.0) -> None:
         """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
         self._ask("set_rate", timeout_s, agent, rate_hz)
+
+    def set_intrinsics(
+        self, agent: str, intrinsics: CameraIntrinsics, *, timeout_s: float = 30.0
+    ) -> None:
+        """Give an agent another lens or size; its next frame has no flow."""
+        self._ask("set_intrinsics", timeout_s, agent, intrinsics)
 
     def set_picture(
         self, agent: str, settings: PictureSettings, *, timeout_s: float = 30.0
@@ -356,6 +365,17 @@ class Requests(EditRequests):
         self._ask(
             "drive_mover", timeout_s, mover, linear_m_s=linear_m_s, angular_rad_s=angular_rad_s
         )
+
+    def turn_mover(
+        self,
+        mover: str = "",
+        *,
+        pitch_rad: float = 0.0,
+        yaw_rad: float = 0.0,
+        timeout_s: float = 30.0,
+    ) -> None:
+        """Turn a mover at once: pitch (down is positive), yaw (left is positive) [rad]."""
+        self._ask("turn_mover", timeout_s, mover, pitch_rad=pitch_rad, yaw_rad=yaw_rad)
 
     def _ask(self, name: str, timeout_s: float, /, *args: Any, **kwargs: Any) -> Any:
         """Queue a request and wait; its result has the type of the core's method."""

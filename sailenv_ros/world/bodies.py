@@ -151,6 +151,7 @@ class Body:
             pose=self.pose(),
             scale=placement.scale,
             size_m=_three((high - low) * np.asarray(placement.scale)),
+            bottom_m=float(low[2] * placement.scale[2]),
             static=placement.static,
             mass_kg=self.mass_kg,
             linear_velocity=_three(linear),

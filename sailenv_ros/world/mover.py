@@ -7,6 +7,7 @@ command moves it (`world.stand` says how far) or the waypoints are given control
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -29,6 +30,8 @@ COMMAND_LASTS_NS = 500_000_000
 
 MAX_COMMAND = 5.0
 """Fastest that is accepted [m/s], [rad/s]."""
+
+MAX_PITCH_DEG = 89.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +66,13 @@ class MoverCommand:
     def moves(self) -> bool:
         """True unless everything is 0."""
         return any((*self.linear_m_s, *self.angular_rad_s))
+
+
+def turned(pose: Pose, pitch_rad: float, yaw_rad: float) -> Pose:
+    """Turn a walker's pose by angles [rad]; it never looks over its zenith or its feet."""
+    roll, pitch, yaw = pose.rpy_deg
+    pitch = max(-MAX_PITCH_DEG, min(MAX_PITCH_DEG, pitch + math.degrees(pitch_rad)))
+    return Pose.from_rpy_deg(pose.position_m, (roll, pitch, yaw + math.degrees(yaw_rad)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -184,6 +194,20 @@ class Mover:
     def moved(self, pose: Pose) -> None:
         """Take note of where a command has brought it."""
         self._held = pose
+
+    def turn(self, pitch_rad: float, yaw_rad: float) -> None:
+        """Turn it where it stands: pitch down, yaw to the left [rad].
+
+        Raises
+        ------
+        InvalidRequest
+            If its waypoints drive it, or an angle is not from -π to π.
+        """
+        if self._controller != "rigidbody":
+            accepted = "'rigidbody' to be turned; change it by set_mover_controller"
+            raise InvalidRequest(f"controller of {self.name!r}", self._controller, accepted)
+        given = vector("angles to turn by", (0.0, pitch_rad, yaw_rad), limit=math.pi)
+        self._held = turned(self._held, given[1], given[2])
 
     def command(self, command: MoverCommand, time_ns: int) -> None:
         """Have it walk, until another command comes or `COMMAND_LASTS_NS` are over.

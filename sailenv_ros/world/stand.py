@@ -11,7 +11,7 @@ import math
 
 from sailenv_ros.geometry import Pose
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient
-from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover import Mover, turned
 
 __all__ = ["STAND_RADIUS_M", "Stand"]
 
@@ -19,8 +19,6 @@ STAND_RADIUS_M = 0.15
 """Room that a camera wants around it."""
 
 STAND_MASS_KG = 1.0
-
-MAX_PITCH_DEG = 89.0
 
 _LINK_OF_BASE = -1
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -85,11 +83,9 @@ class Stand:
         if not pitch_rate and not yaw_rate:
             self._mover.moved(Pose(position, here.orientation_xyzw))
             return
-        roll, pitch, yaw = here.rpy_deg
-        pitch += math.degrees(pitch_rate) / STEPS_PER_SECOND
-        pitch = max(-MAX_PITCH_DEG, min(MAX_PITCH_DEG, pitch))
-        yaw += math.degrees(yaw_rate) / STEPS_PER_SECOND
-        self._mover.moved(Pose.from_rpy_deg(position, (roll, pitch, yaw)))
+        brought = Pose(position, here.orientation_xyzw)
+        by = (pitch_rate / STEPS_PER_SECOND, yaw_rate / STEPS_PER_SECOND)
+        self._mover.moved(turned(brought, *by))
 
     def _stop(self) -> None:
         # It falls meanwhile, by a hair at each step, and meets nothing: nobody can tell.

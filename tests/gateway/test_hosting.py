@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+import urllib.request
 from collections.abc import Iterator
 
 import pytest
@@ -27,8 +28,17 @@ sys.exit(main(sys.argv[1:]))
 
 
 @pytest.fixture
-def process() -> Iterator[subprocess.Popen[str]]:
-    command = [sys.executable, "-c", WITHOUT_ROS, "run", "optical", "--no-ros", "--port", "0"]
+def viewer_port() -> int:
+    """A port for the window that nobody uses."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port: int = probe.getsockname()[1]
+    return port
+
+
+@pytest.fixture
+def process(viewer_port: int) -> Iterator[subprocess.Popen[str]]:
+    words = ["run", "optical", "--no-ros", "--port", "0", "--viewer-port", str(viewer_port)]
+    command = [sys.executable, "-c", WITHOUT_ROS, *words]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as started:
@@ -40,15 +50,19 @@ def process() -> Iterator[subprocess.Popen[str]]:
 @pytest.mark.gl
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_without_ros_there_is_a_simulator_all_the_same(
-    process: subprocess.Popen[str], number: int
+    process: subprocess.Popen[str], viewer_port: int, number: int
 ) -> None:
-    """It says where it listens, gives frames to the original client, and ends with status 0."""
+    """It says where it listens, serves the original client and a page, and ends with status 0."""
     assert process.stdout is not None
     assert "scene 'optical'; renderer: " in process.stdout.readline()
     found = re.match(r"listening on 127\.0\.0\.1:(\d+) for clients", process.stdout.readline())
     assert found
     with original_client(int(found[1]), width=32, height=24) as agent:
         assert agent.get_frame()["main"].shape == (24, 32, 3)
+    url = f"http://127.0.0.1:{viewer_port}/"
+    assert url in process.stdout.readline()
+    with urllib.request.urlopen(url, timeout=20.0) as page:
+        assert b"main.js" in page.read()
     process.send_signal(number)
     _, errors = process.communicate(timeout=30.0)
     assert process.returncode == 0

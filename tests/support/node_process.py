@@ -38,7 +38,12 @@ class NodeProcess:
     ) -> None:
         self.namespace = namespace
         ros = ["--ros-args", "-r", f"__ns:={namespace}", *remaps]
-        defaults = {"publish_clock": False, "scene": "optical", "gateway__port": 0}
+        defaults = {
+            "publish_clock": False,
+            "scene": "optical",
+            "gateway__port": 0,
+            "viewer__port": 0,
+        }
         for name, value in {**defaults, **parameters}.items():
             # Keywords cannot hold dots: agent__width stands for agent.width.
             ros += ["-p", f"{name.replace('__', '.')}:={json.dumps(value)}"]

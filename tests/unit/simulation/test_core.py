@@ -316,6 +316,23 @@ def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
         stream.get(0.0)
 
 
+def test_another_lens_begins_without_a_past(core: SimulationCore) -> None:
+    """The next frame has the new size and refers to no earlier one; a reset keeps the lens."""
+    core.register_agent(spec())
+    core.capture("eye", ("depth",))
+    core.step(8)
+    wide = CameraIntrinsics(width=20, height=10, vertical_fov_deg=90.0)
+    core.set_intrinsics("eye", wide)
+    frame = core.capture("eye", ("depth", "flow"))
+    assert frame["depth"].shape == (10, 20)
+    assert frame.dt_ns == 0
+    core.reset()
+    assert core.info.agents[-1].intrinsics == wide
+    with pytest.raises(InvalidRequest):
+        core.set_intrinsics("eye", CameraIntrinsics(near_m=20.0))
+    assert core.info.agents[-1].intrinsics == wide
+
+
 @pytest.mark.parametrize("rate", [-1.0, 241.0, float("nan"), "often"])
 def test_a_rate_out_of_range_changes_nothing(core: SimulationCore, rate: object) -> None:
     """The old rate stays."""

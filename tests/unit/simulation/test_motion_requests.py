@@ -266,6 +266,41 @@ def test_a_controller_is_switched_while_running(core: SimulationCore) -> None:
 # -- many agents -------------------------------------------------------------------------------
 
 
+def test_a_mover_is_turned_at_once_and_walks_on(core: SimulationCore) -> None:
+    """Angles add up, pitch ends before the zenith, and a command that moves it goes on."""
+    core.drive_mover("cart", linear_m_s=(-0.5, 0.0, 0.0))
+    core.step(24)
+    before = core.mover_pose("cart")
+    core.turn_mover("cart", pitch_rad=0.1, yaw_rad=0.2)
+    core.turn_mover("cart", yaw_rad=0.2)
+    turned = core.mover_pose("cart")
+    assert turned.position_m == before.position_m
+    assert turned.rpy_deg == pytest.approx((0.0, np.degrees(0.1), np.degrees(0.4)))
+    core.step(24)
+    assert core.mover_pose("cart").position_m != before.position_m
+    core.turn_mover("cart", pitch_rad=-3.0)
+    assert core.mover_pose("cart").rpy_deg[1] == pytest.approx(-89.0)
+
+
+@pytest.mark.parametrize(
+    ("mover", "angles"),
+    [
+        ("rail", {"yaw_rad": 0.1}),
+        ("cart", {"yaw_rad": 4.0}),
+        ("cart", {"pitch_rad": float("nan")}),
+        ("nobody", {"yaw_rad": 0.1}),
+    ],
+)
+def test_a_turn_that_is_none_is_refused(
+    core: SimulationCore, mover: str, angles: dict[str, float]
+) -> None:
+    """Waypoints turn a mover themselves; more than half a turn is a mistake."""
+    before = core.mover_pose("cart")
+    with pytest.raises(InvalidRequest):
+        core.turn_mover(mover, **angles)
+    assert core.mover_pose("cart") == before
+
+
 def test_sixteen_agents_each_at_their_own_rate(core: SimulationCore) -> None:
     """All 16 get the frames of their own rate; one whose consumer sleeps takes none from others."""
     rates = {f"agent_{number}": 5.0 * (number + 1) for number in range(MAX_AGENTS - 2)}

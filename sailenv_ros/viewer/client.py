@@ -1,0 +1,382 @@
+"""One client's socket: its messages to commands and to its `Watch`, frames and news back.
+
+Runs in the viewer's event loop. Whatever a client sends is answered in words; what it leaves
+unread ends the conversation. Knows no other client.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from sailenv_ros.errors import InvalidRequest, SailenvError, UnknownName
+from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.pictures.contact_sheet import contact_sheet
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.viewer.arguments import Arguments, arguments_of_text
+from sailenv_ros.viewer.commands import COMMANDS
+from sailenv_ros.viewer.debug_agent import DebugAgent
+from sailenv_ros.viewer.encoding import packed, picture_png, view_png
+from sailenv_ros.viewer.limits import ViewerLimits
+from sailenv_ros.viewer.told import told_scene
+from sailenv_ros.viewer.watch import Watch
+
+__all__ = ["Client"]
+
+_log = logging.getLogger(__name__)
+
+MAX_WORDS = 1000
+
+
+class Client:
+    """A client from its first message to its last.
+
+    Parameters
+    ----------
+    socket : web.WebSocketResponse
+        Prepared already.
+    simulation : Simulation
+    debug_agent : DebugAgent
+    may_change : bool
+        False for who may only watch.
+    limits : ViewerLimits
+    greeting : dict
+        Sent first; what never changes.
+    touch : callable
+        Called after each command that may have changed what is seen.
+    touched : callable
+        Gives how often that was, of all clients.
+    """
+
+    def __init__(
+        self,
+        socket: web.WebSocketResponse,
+        *,
+        simulation: Simulation,
+        debug_agent: DebugAgent,
+        may_change: bool,
+        limits: ViewerLimits,
+        greeting: dict[str, Any],
+        touch: Callable[[], None],
+        touched: Callable[[], int],
+    ) -> None:
+        self.debug_agent = debug_agent
+        self._socket = socket
+        self._simulation = simulation
+        self._may_change = may_change
+        self._limits = limits
+        self._greeting = greeting
+        self._touch, self._touched = touch, touched
+        self._loop = asyncio.get_running_loop()
+        self._watch: Watch | None = None
+        self._selected = 0
+        self._sending = asyncio.Lock()
+        self._news = asyncio.Event()
+        self._told_revision = (-1, -1)
+        self._stats: dict[str, Any] | None = None
+        self._running: set[asyncio.Task[None]] = set()
+        self._sends: set[asyncio.Task[None]] = set()
+        self._second, self._messages = 0.0, 0
+
+    # -- of the desk, for commands ---------------------------------------------------------
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last."""
+        return self._simulation.info
+
+    def frame(self, number: object) -> Frame:
+        """Give a frame that this client was sent lately; None means the last one."""
+        if self._watch is None:
+            raise InvalidRequest("frame", number, "watched first")
+        return self._watch.frame(number)
+
+    def select(self, instance_id: int) -> None:
+        """Have an instance's outline told; 0 for none."""
+        self._selected = instance_id
+        if self._watch is not None:
+            self._watch.selected = instance_id
+
+    async def ask(self, request: str, /, *args: Any, **kwargs: Any) -> Any:
+        """Have the simulation do something; wait for its result."""
+        future = asyncio.wrap_future(self._simulation.request(request, *args, **kwargs))
+        try:
+            return await asyncio.wait_for(future, self._limits.request_s)
+        except asyncio.TimeoutError:
+            accepted = f"something that takes at most {self._limits.request_s:g} s"
+            raise InvalidRequest("request", request, accepted) from None
+
+    @property
+    def rendered_views(self) -> tuple[str, ...]:
+        """Views that are rendered for this client now."""
+        watch = self._watch
+        return () if watch is None else watch.rendered_views
+
+    # -- of the server ---------------------------------------------------------------------
+
+    async def serve(self) -> None:
+        """Answer until the client goes."""
+        await self._send_json({**self._greeting, "control": self._may_change})
+        telling = asyncio.create_task(self._tell())
+        self._news.set()
+        try:
+            await self._listen()
+        finally:
+            self._end_watch()
+            ending = [telling, *self._running, *self._sends]
+            for task in ending:
+                task.cancel()
+            await asyncio.wait(ending, timeout=1.0)
+
+    def scene_changed(self) -> None:
+        """Have the scene told when there is time to."""
+        self._news.set()
+
+    def tell_stats(self, stats: dict[str, Any]) -> None:
+        """Have these numbers told; newer ones take the place of those that wait."""
+        self._stats = stats
+        self._news.set()
+
+    async def close(self) -> None:
+        """Say goodbye."""
+        with contextlib.suppress(Exception):
+            await self._socket.close(code=WSCloseCode.GOING_AWAY, message=b"the simulator ends")
+
+    # -- inside ----------------------------------------------------------------------------
+
+    async def _listen(self) -> None:
+        async for message in self._socket:
+            if message.type == WSMsgType.ERROR:
+                return
+            if not self._admits():
+                words = f"more than {self._limits.messages_per_s} messages in a second"
+                await self._socket.close(
+                    code=WSCloseCode.POLICY_VIOLATION, message=words.encode()
+                )  # fmt: skip
+                return
+            if message.type != WSMsgType.TEXT:
+                await self._refuse(None, InvalidRequest("message", "bytes", "text"))
+                continue
+            try:
+                given = arguments_of_text(message.data)
+            except SailenvError as error:
+                await self._refuse(None, error)
+                continue
+            if given.get("do") == "shown":
+                await self._shown(given)
+            else:
+                await self._begin(given)
+
+    def _admits(self) -> bool:
+        now = self._loop.time()
+        if now - self._second >= 1.0:
+            self._second, self._messages = now, 0
+        self._messages += 1
+        return self._messages <= self._limits.messages_per_s
+
+    async def _shown(self, given: Arguments) -> None:
+        try:
+            if self._watch is not None:
+                self._watch.shown(given.get("number"))
+        except SailenvError as error:
+            await self._refuse(None, error)
+
+    async def _begin(self, given: Arguments) -> None:
+        """Do what is asked for while further messages are read."""
+        if len(self._running) >= self._limits.requests:
+            limit = InvalidRequest(
+                "requests on their way", len(self._running) + 1, f"at most {self._limits.requests}"
+            )
+            await self._refuse(given.get("id"), limit)
+            return
+        task = asyncio.create_task(self._answer(given))
+        self._running.add(task)
+        task.add_done_callback(self._running.discard)
+
+    async def _answer(self, given: Arguments) -> None:
+        number = given.get("id")
+        number = number if isinstance(number, int) else None
+        try:
+            result = await self._done(given)
+        except SailenvError as error:
+            await self._refuse(number, error)
+        except ConnectionError:
+            return
+        except Exception:
+            _log.exception("a viewer's request ends because of a fault")
+            await self._refuse(number, InvalidRequest("request", "it", "without a fault; see log"))
+        else:
+            if isinstance(result, _File):
+                head = {"type": "file", "id": number, "name": result.name, "mime": result.mime}
+                await self._send(packed(head, [result.data]))
+            else:
+                await self._send_json({"type": "reply", "id": number, "result": result})
+
+    async def _done(self, given: Arguments) -> Any:
+        name = given.text("do")
+        own = _OWN.get(name)
+        if own is not None:
+            return await own(self, given)
+        if name not in COMMANDS:
+            raise UnknownName("command", name[:80], sorted({*COMMANDS, *_OWN, "shown"}))
+        command = COMMANDS[name]
+        if command.changes and not self._may_change:
+            accepted = "one that only looks; start the simulator with --viewer-control to allow it"
+            raise InvalidRequest("command", name, accepted)
+        try:
+            return await command.run(self, given)
+        finally:
+            if command.changes:
+                self._touch()
+
+    async def _watch_agent(self, given: Arguments) -> None:
+        agent, views = given.text("agent"), given.entries("views")
+        if not all(isinstance(view, str) for view in views):
+            raise InvalidRequest("views", views, "names of views")
+        if self._watch is not None and self._watch.agent == agent:
+            self._watch.show(views)
+            return
+        first = 1 if self._watch is None else self._watch.next_number
+        watch = Watch(
+            self._simulation,
+            self.debug_agent,
+            agent=agent,
+            views=views,
+            send=self._send_frame,
+            changes=lambda: (self._simulation.info.revision, self._touched()),
+            ended=self._watch_ended,
+            first_number=first,
+        )
+        self._end_watch()
+        self._watch = watch
+        watch.selected = self._selected
+
+    def _end_watch(self) -> None:
+        if self._watch is not None:
+            self._watch.close()
+            self._watch = None
+
+    async def _screenshot(self, given: Arguments) -> _File:
+        """Give one view as a PNG, without loss."""
+        view, frame = given.text("view"), self.frame(given.get("frame"))
+        data = await asyncio.to_thread(
+            view_png, frame, view, categories=self.info.categories, depth_range_m=self._range(frame)
+        )
+        return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_{view}.png", data)
+
+    async def _sheet(self, given: Arguments) -> _File:
+        """Give the five views on one sheet, rendered together at the next instant."""
+        last = self.frame(None)
+        frame: Frame = await self.ask("capture", last.agent, FIVE_VIEWS)
+        data = await asyncio.to_thread(self._sheet_of, frame)
+        return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
+
+    def _sheet_of(self, frame: Frame) -> bytes:
+        table, depth_range_m = self.info.categories, self._range(frame)
+        near_m = frame.camera.intrinsics.near_m
+        return picture_png(
+            contact_sheet(
+                {
+                    view: view_picture(
+                        view,
+                        frame[view],
+                        table=table,
+                        near_m=near_m,
+                        depth_range_m=depth_range_m,
+                    )
+                    for view in FIVE_VIEWS
+                }
+            )
+        )
+
+    def _range(self, frame: Frame) -> float:
+        ranges = (spec.depth_range_m for spec in self.info.agents if spec.name == frame.agent)
+        return next(ranges, 10.0)
+
+    # -- sending ---------------------------------------------------------------------------
+
+    async def _tell(self) -> None:
+        """Tell what is new, the newest alone."""
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            info = self._simulation.info
+            if (info.epoch, info.revision) != self._told_revision:
+                self._told_revision = (info.epoch, info.revision)
+                await self._send_json(told_scene(info))
+            if self._stats is not None:
+                stats, self._stats = self._stats, None
+                await self._send_json(stats)
+
+    def _send_frame(self, message: bytes) -> None:
+        """Send from the watch's thread; at most as many wait as its page may have on their way."""
+        self._from_thread(lambda: self._send(message))
+
+    def _watch_ended(self, why: str) -> None:
+        words = {"type": "watch_ended", "why": why[:MAX_WORDS]}
+        self._from_thread(lambda: self._send_json(words))
+
+    def _from_thread(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._begin_sending, sending)
+
+    def _begin_sending(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        if not self._socket.closed:
+            task = asyncio.create_task(_quietly(sending()))
+            self._sends.add(task)
+            task.add_done_callback(self._sends.discard)
+
+    async def _refuse(self, number: object, error: SailenvError) -> None:
+        words = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
+        await self._send_json({"type": "refused", "id": number, "error": words[:MAX_WORDS]})
+
+    async def _send_json(self, message: dict[str, Any]) -> None:
+        await self._send(json.dumps(message, separators=(",", ":"), allow_nan=False))
+
+    async def _send(self, message: str | bytes) -> None:
+        async with self._sending:
+            if self._socket.closed:
+                return
+            sent = (
+                self._socket.send_str(message)
+                if isinstance(message, str)
+                else self._socket.send_bytes(message)
+            )
+            try:
+                await asyncio.wait_for(sent, self._limits.send_s)
+            except asyncio.TimeoutError:
+                _log.warning("a viewer that does not read is disconnected")
+                self._drop()
+
+    def _drop(self) -> None:
+        """End without a goodbye, which would not be read either."""
+        transport = getattr(getattr(self._socket, "_req", None), "transport", None)
+        if transport is not None:
+            transport.abort()
+
+
+class _File:
+    """What is answered as a file."""
+
+    def __init__(self, name: str, data: bytes) -> None:
+        self.name, self.data, self.mime = name, data, "image/png"
+
+
+async def _quietly(sending: Coroutine[Any, Any, None]) -> None:
+    with contextlib.suppress(ConnectionError, RuntimeError):
+        await sending
+
+
+_OWN: dict[str, Callable[[Client, Arguments], Any]] = {
+    "watch": Client._watch_agent,
+    "screenshot": Client._screenshot,
+    "sheet": Client._sheet,
+}

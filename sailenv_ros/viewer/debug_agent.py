@@ -1,0 +1,71 @@
+"""The debug agent: a camera of the window's own that follows the mover while somebody watches.
+
+Blocking requests to a `Simulation`, from any thread but the simulation's.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import SailenvError
+from sailenv_ros.simulation import Simulation
+
+__all__ = ["NAME", "DebugAgent"]
+
+NAME = "debug_agent"
+
+RATE_HZ = 30.0
+
+
+class DebugAgent:
+    """Comes with the first who watches it and goes with the last.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._guard = threading.Lock()
+        self._watchers = 0
+        self._intrinsics = CameraIntrinsics()
+
+    @property
+    def intrinsics(self) -> CameraIntrinsics:
+        """What its camera sees."""
+        return self._intrinsics
+
+    def begin(self) -> None:
+        """Count one more who watches; register the agent if there is none.
+
+        Raises
+        ------
+        InvalidRequest
+            If there are too many agents.
+        """
+        with self._guard:
+            if all(spec.name != NAME for spec in self._simulation.info.agents):
+                spec = AgentSpec(name=NAME, intrinsics=self._intrinsics, rate_hz=RATE_HZ)
+                self._simulation.register_agent(spec)
+            self._watchers += 1
+
+    def end(self) -> None:
+        """Count one less; remove the agent with the last."""
+        with self._guard:
+            self._watchers -= 1
+            if self._watchers:
+                return
+            # The simulation may have ended, or another client may have deleted it.
+            with contextlib.suppress(SailenvError):
+                self._simulation.delete_agent(NAME)
+
+    def set_intrinsics(self, intrinsics: CameraIntrinsics) -> None:
+        """Change its lens or size, for all who watch it."""
+        with self._guard:
+            self._intrinsics = intrinsics
+            if self._watchers:
+                self._simulation.set_intrinsics(NAME, intrinsics)

@@ -1,0 +1,179 @@
+"""A frame as the page takes it: one binary message of a JSON head and a picture of each view.
+
+`Frame` in, bytes out. The picture is a JPEG, of ids a PNG, which loses nothing. The message begins
+with the head's length (4 bytes, little-endian); the pictures follow in the order of the head.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import weakref
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future
+from functools import partial
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.frame import Frame
+from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.colours import view_picture
+
+__all__ = ["outline", "packed", "packed_frame", "picture_png", "view_png"]
+
+PNG_VIEWS = frozenset({"category", "instance", "flow_valid", "occlusion"})
+
+JPEG_QUALITY = 85
+
+SPECK_PX = 6.0
+"""Area of the smallest hole or island that an outline goes around [px²]."""
+
+_FAST_PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
+
+
+class _SharedPictures:
+    """Encodes each view of a frame once, however many clients are sent it."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        # They go with the frame.
+        self._made: weakref.WeakKeyDictionary[Frame, dict[str, Future[tuple[str, bytes]]]] = (
+            weakref.WeakKeyDictionary()
+        )
+
+    def get(
+        self, frame: Frame, view: str, make: Callable[[], tuple[str, bytes]]
+    ) -> tuple[str, bytes]:
+        """Give the picture; made now, or waited for where another thread makes it."""
+        with self._lock:
+            pictures = self._made.setdefault(frame, {})
+            known = pictures.get(view)
+            mine = pictures.setdefault(view, Future())
+        if known is not None:
+            return known.result()
+        try:
+            mine.set_result(make())
+        except BaseException as fault:
+            mine.set_exception(fault)
+        return mine.result()
+
+
+_shared = _SharedPictures()
+
+
+def packed(head: Mapping[str, Any], pieces: Iterable[bytes] = ()) -> bytes:
+    """Put a head and what belongs to it into one message."""
+    text = json.dumps(head, separators=(",", ":"), allow_nan=False).encode()
+    return b"".join([len(text).to_bytes(4, "little"), text, *pieces])
+
+
+def packed_frame(
+    frame: Frame,
+    views: Sequence[str],
+    *,
+    number: int,
+    categories: CategoryTable,
+    depth_range_m: float,
+    selected: int = 0,
+) -> bytes:
+    """Write a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+        Has at least the `views`; its instance view, if any, tells what is visible.
+    number : int
+        By which the page asks for its values and says that it has shown it.
+    depth_range_m : float
+        Depth that is shown as black [m].
+    selected : int
+        Instance whose outline is told; 0 for none.
+    """
+    pictures = [
+        _shared.get(frame, view, partial(_encoded, frame, view, categories, depth_range_m))
+        for view in views
+    ]
+    lens = frame.camera.intrinsics
+    head: dict[str, Any] = {
+        "type": "frame",
+        "number": number,
+        "agent": frame.agent,
+        "scene": frame.scene,
+        "epoch": frame.epoch,
+        "revision": frame.revision,
+        "sequence": frame.sequence,
+        "time_s": frame.stamp_ns * 1e-9,
+        "width": lens.width,
+        "height": lens.height,
+        "fov_deg": lens.vertical_fov_deg,
+        "lens": [lens.fx, lens.fy, lens.cx, lens.cy],
+        "camera_from_world": frame.camera.camera_from_world[:3].ravel().tolist(),
+        "position": list(frame.camera.pose.position_m),
+        "rpy_deg": list(frame.camera.pose.rpy_deg),
+        "timings_ms": {name: 1e3 * seconds for name, seconds in frame.timings_s.items()},
+        "views": [
+            {"name": view, "mime": mime, "size": len(data)}
+            for view, (mime, data) in zip(views, pictures, strict=True)
+        ],
+    }
+    if "instance" in frame.views:
+        instance = frame["instance"]
+        counts = np.bincount(instance.reshape(-1))
+        ids = np.flatnonzero(counts[1:]) + 1
+        head["visible"] = np.stack([ids, counts[ids]], axis=-1).tolist()
+        head["outline"] = outline(instance, selected) if selected else []
+    return packed(head, (data for _, data in pictures))
+
+
+def view_png(frame: Frame, view: str, *, categories: CategoryTable, depth_range_m: float) -> bytes:
+    """Give one view's picture as a PNG file."""
+    return picture_png(_picture(frame, view, categories, depth_range_m))
+
+
+def picture_png(picture: NDArray[np.uint8]) -> bytes:
+    """Give a picture (H, W, 3) as a PNG file."""
+    return _png(picture, ())
+
+
+def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:
+    """Give the closed lines around an instance's pixels: u, v, u, v, … of each [px].
+
+    Specks beside the largest of them are left out.
+    """
+    mask = (instance == number).astype(np.uint8)
+    lines, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
+    areas = [cv2.contourArea(line) for line in lines]
+    least = min(SPECK_PX, max(areas, default=0.0))
+    kept = (line for line, area in zip(lines, areas, strict=True) if area >= least)
+    return [line.reshape(-1).tolist() for line in kept]
+
+
+def _picture(
+    frame: Frame, view: str, categories: CategoryTable, depth_range_m: float
+) -> NDArray[np.uint8]:
+    return view_picture(
+        view,
+        frame[view],
+        table=categories,
+        near_m=frame.camera.intrinsics.near_m,
+        depth_range_m=depth_range_m,
+    )
+
+
+def _encoded(
+    frame: Frame, view: str, categories: CategoryTable, depth_range_m: float
+) -> tuple[str, bytes]:
+    picture = _picture(frame, view, categories, depth_range_m)
+    if view in PNG_VIEWS:
+        return "image/png", _png(picture, _FAST_PNG)
+    settings = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY)
+    _, data = cv2.imencode(".jpg", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)
+    return "image/jpeg", data.tobytes()
+
+
+def _png(picture: NDArray[np.uint8], settings: Sequence[int]) -> bytes:
+    _, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)
+    return bytes(data.tobytes())

@@ -1,0 +1,96 @@
+// The scene as a whole: save it, begin it with another seed, how fast time runs, who is there.
+
+import { button, download, el, fixed, put, section, toast } from "./dom.js";
+import { pairs } from "./view_panel.js";
+
+const SIZES = [[320, 240], [640, 480], [800, 450], [1280, 720]];
+
+export class ScenePanel {
+  title = "Scene";
+
+  constructor(app) {
+    this.app = app;
+    this.name = el("input", { type: "text", id: "save-name", placeholder: "my_room", spellcheck: false });
+    this.sceneTitle = el("input", { type: "text", id: "save-title", placeholder: "as it was" });
+    this.overwrite = el("input", { type: "checkbox", id: "save-overwrite" });
+    this.saved = el("p", { class: "advice", id: "saved" });
+    this.seed = el("input", { type: "number", min: 0, step: 1, id: "seed" });
+    this.factor = el("input", {
+      type: "number", min: 0.1, max: 10, step: 0.1, id: "factor",
+      on: { change: () => app.try("set_real_time_factor", { factor: Number(this.factor.value) }) },
+    });
+    this.size = el("select", {
+      id: "size",
+      on: {
+        change: () => {
+          const [width, height] = this.size.value.split("x").map(Number);
+          this.app.lens = { ...this.app.lens, width, height };
+          app.try("lens", this.app.lens);
+        },
+      },
+    }, ...SIZES.map(([w, h]) => el("option", { value: `${w}x${h}` }, `${w} × ${h}`)));
+    this.agents = el("dl", { class: "values" });
+    this.about = el("dl", { class: "values" });
+    this.root = el(
+      "div",
+      {},
+      section(
+        "Save as a scene file",
+        el("label", { class: "line" }, el("span", {}, "name"), this.name),
+        el("label", { class: "line" }, el("span", {}, "title"), this.sceneTitle),
+        el("label", { class: "line" }, el("span", {}, "replace it"), this.overwrite),
+        el("div", { class: "buttons" },
+          button("Save", () => this.#save(), { glyph: "save", kind: "primary save" }),
+          button("Download", () => this.#download(), { kind: "download" })),
+        this.saved,
+      ),
+      section(
+        "Time and chance",
+        el("label", { class: "line" }, el("span", {}, "real-time factor"), this.factor),
+        el("label", { class: "line" }, el("span", {}, "seed"), this.seed,
+          button("Begin anew", () => app.try("reset", { seed: Number(this.seed.value) }))),
+        el("label", { class: "line" }, el("span", {}, "picture here"), this.size),
+      ),
+      section("Agents", this.agents),
+      section("Simulator", this.about),
+    );
+  }
+
+  frame() {}
+
+  update(scene) {
+    put(this.seed, scene.seed);
+    put(this.factor, scene.real_time_factor);
+    const lens = this.app.lens;
+    put(this.size, `${lens.width}x${lens.height}`);
+    this.agents.replaceChildren(
+      ...pairs(scene.agents.map((agent) => [
+        agent.name,
+        `${agent.width} × ${agent.height}, ${agent.rate_hz ? `${fixed(agent.rate_hz, 0)} Hz` : "on request"}` +
+          (agent.following ? `, follows ${agent.mover}` : ""),
+      ])),
+    );
+    this.about.replaceChildren(...pairs([
+      ["renderer", scene.renderer],
+      ["objects", String(scene.instances.length)],
+      ["mode", scene.mode],
+    ]));
+  }
+
+  async #save() {
+    const path = await this.app.try("save_scene", {
+      name: this.name.value.trim(), overwrite: this.overwrite.checked,
+      ...(this.sceneTitle.value.trim() ? { title: this.sceneTitle.value.trim() } : {}),
+    });
+    if (path === undefined) return;
+    this.saved.textContent = `Saved: ${path}`;
+    toast("Saved. It is in the list of scenes now.");
+  }
+
+  async #download() {
+    const text = await this.app.try("scene_text", {});
+    if (text === undefined) return;
+    const name = this.name.value.trim() || `${this.app.scene.scene}_edited`;
+    download(`${name}.yaml`, new Blob([text], { type: "application/yaml" }));
+  }
+}

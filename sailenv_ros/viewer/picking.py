@@ -1,0 +1,131 @@
+"""What lies behind a pixel: exactly the values of a frame's arrays, and the point that is seen.
+
+A `Frame` and a pixel in; plain values for JSON, or world coordinates, out.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import Frame
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["pixel_of", "standing_point", "values_at"]
+
+FAR_M = 6.0
+"""What is farther away than this, or nowhere, is placed at this distance ahead instead [m]."""
+
+OFF_WALL_M = 0.3
+"""Room that is left before a wall [m]."""
+
+OFF_FLOOR_M = 0.005
+
+Vector = NDArray[np.float64]
+
+
+def pixel_of(frame: Frame, u: object, v: object) -> tuple[int, int]:
+    """Check a pixel's column and row.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is none of the frame's.
+    """
+    width, height = frame.camera.intrinsics.width, frame.camera.intrinsics.height
+    for what, value, end in (("column", u, width), ("row", v, height)):
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < end:
+            raise InvalidRequest(what, value, f"an integer from 0 to {end - 1}")
+    assert isinstance(u, int)
+    assert isinstance(v, int)
+    return u, v
+
+
+def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> dict[str, Any]:
+    """Give the values at a pixel, as the arrays have them.
+
+    Parameters
+    ----------
+    frame : Frame
+        Views that it has not are left out.
+    info : SceneInfo
+        For names.
+    u, v : int
+        Column and row [px].
+
+    Returns
+    -------
+    values : dict
+        ``rgb`` three integers; ``depth`` [m], None for nothing hit and the text ``"near"`` for
+        nearer than the near plane; ``category``, ``category_id``; ``instance``, ``instance_id``;
+        ``flow`` [px/s], None where it does not exist.
+    """
+    result: dict[str, Any] = {"u": u, "v": v, "sequence": frame.sequence}
+    views = frame.views
+    if "rgb" in views:
+        result["rgb"] = views["rgb"][v, u].tolist()
+    if "depth" in views:
+        depth = float(views["depth"][v, u])
+        result["depth"] = "near" if math.isnan(depth) else depth if math.isfinite(depth) else None
+    if "category" in views:
+        number = int(views["category"][v, u])
+        known = info.categories.get(number)
+        result |= {"category_id": number, "category": known.name if known else ""}
+    if "instance" in views:
+        number = int(views["instance"][v, u])
+        names = (instance.name for instance in info.instances if instance.id == number)
+        result |= {"instance_id": number, "instance": next(names, "")}
+    if "flow" in views:
+        flow = views["flow"][v, u].tolist()
+        result["flow"] = flow if all(map(math.isfinite, flow)) else None
+    return result
+
+
+def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:
+    """Give the place in the world [m] where something can stand that is wanted at a pixel.
+
+    On what is seen there; a bit before it where that is upright; at a distance ahead where nothing
+    near is seen.
+    """
+    camera = frame.camera
+    depth = frame["depth"]
+    at = float(depth[v, u])
+    if not math.isfinite(at) or at > FAR_M:
+        ahead = _optical(frame, u, v, FAR_M / 2.0)
+        return _triple(camera.world_from_camera @ np.append(ahead, 1.0))
+    point = camera.world_from_camera @ np.append(_optical(frame, u, v, at), 1.0)
+    normal = camera.world_from_camera[:3, :3] @ _normal(frame, u, v)
+    if abs(normal[2]) > 0.7:
+        return _triple(point + np.array([0.0, 0.0, OFF_FLOOR_M, 0.0]))
+    point[:3] += OFF_WALL_M * normal
+    return _triple(point)
+
+
+def _optical(frame: Frame, u: int, v: int, depth: float) -> Vector:
+    lens = frame.camera.intrinsics
+    return depth * np.array([(u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0])
+
+
+def _normal(frame: Frame, u: int, v: int) -> Vector:
+    """Estimate the surface's normal from neighbours in the depth view; towards the camera."""
+    depth = frame["depth"]
+    rows, columns = depth.shape
+    reach = 3
+    left, right = max(0, u - reach), min(columns - 1, u + reach)
+    top, bottom = max(0, v - reach), min(rows - 1, v + reach)
+    across = _optical(frame, right, v, depth[v, right]) - _optical(frame, left, v, depth[v, left])
+    down = _optical(frame, u, bottom, depth[bottom, u]) - _optical(frame, u, top, depth[top, u])
+    normal = np.cross(down, across)
+    length = float(np.linalg.norm(normal))
+    if not math.isfinite(length) or length < 1e-12:
+        return np.array([0.0, 0.0, -1.0])
+    sight = _optical(frame, u, v, 1.0)
+    return normal / (length if normal @ sight < 0.0 else -length)
+
+
+def _triple(point: Vector) -> tuple[float, float, float]:
+    return float(point[0]), float(point[1]), float(point[2])

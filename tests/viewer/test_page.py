@@ -1,0 +1,291 @@
+"""The page in a real browser: what people see and do there, against the simulation behind it."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, expect
+
+from sailenv_ros.cli.main import main
+from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.viewer import ViewerServer
+from tests.support.browser import PHONE, OpenPage, chromium
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """The browser of this module's tests."""
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture
+def opened(browser: Browser, server: ViewerServer, simulation: Simulation) -> Iterator[OpenPage]:
+    """The page on the optical scene, as it is at its start, with a first picture."""
+    simulation.change_scene("optical")
+    opened = OpenPage(browser, server.url)
+    opened.wait_for_frames()
+    yield opened
+    opened.close()
+
+
+def controller(simulation: Simulation) -> str:
+    """What drives the mover."""
+    return simulation.info.movers[0].controller
+
+
+def take_over(opened: OpenPage, simulation: Simulation) -> None:
+    """Press Tab until the keys drive the mover."""
+    if controller(simulation) == "waypoint":
+        opened.page.keyboard.press("Tab")
+    until(lambda: controller(simulation) == "rigidbody", "the keys to drive")
+    opened.until(lambda: opened.data("controller") == "rigidbody", "the page to know it")
+
+
+def test_all_five_views_are_shown_and_change(opened: OpenPage) -> None:
+    """Every picture is drawn, moves, and the legend tells what is in it."""
+    before = {view: opened.picture(view) for view in FIVE_VIEWS}
+    opened.until(
+        lambda: all(opened.picture(view) != before[view] for view in FIVE_VIEWS), "new pictures"
+    )
+    assert len(set(before.values())) == len(FIVE_VIEWS)
+    expect(opened.page.locator("#legend .row").first).to_be_visible()
+    expect(opened.page.locator("#fps")).to_contain_text("fps")
+
+
+def test_one_view_is_shown_alone_and_another_large(opened: OpenPage) -> None:
+    """A click on a small picture makes it the large one; the button hides the others."""
+    page = opened.page
+    page.click("[data-view=depth]")
+    expect(page.locator(".tile.main .label")).to_have_text("depth")
+    page.click("#layout")
+    expect(page.locator(".tile:visible")).to_have_count(1)
+    opened.wait_for_frames()
+    before = opened.picture("depth")
+    opened.until(lambda: opened.picture("depth") != before, "the picture alone to move")
+
+
+def test_tab_hands_the_mover_over_and_back(opened: OpenPage, simulation: Simulation) -> None:
+    """As in the original: waypoints or keyboard."""
+    drivers = ("waypoint", "rigidbody")
+    at = drivers.index(controller(simulation))
+    for wanted in (drivers[1 - at], drivers[at]):
+        opened.page.keyboard.press("Tab")
+        until(lambda wanted=wanted: controller(simulation) == wanted, "Tab to hand over")
+
+
+def test_keys_walk_the_mover(opened: OpenPage, simulation: Simulation) -> None:
+    """W goes where it looks, A to its left, E up; what is let go stops."""
+    take_over(opened, simulation)
+    for key, axis in (("w", 0), ("a", 1), ("e", 2)):
+        start = simulation.mover_pose()
+        yaw = math.radians(start.rpy_deg[2])
+        towards = {0: (math.cos(yaw), math.sin(yaw), 0.0), 1: (-math.sin(yaw), math.cos(yaw), 0.0)}
+        direction = np.array(towards.get(axis, (0.0, 0.0, 1.0)))
+        opened.page.keyboard.down(key)
+        opened.until(
+            lambda start=start, direction=direction: (
+                (np.array(simulation.mover_pose().position_m) - start.position_m) @ direction > 0.1
+            ),
+            f"{key} to move the mover",
+        )
+        opened.page.keyboard.up(key)
+        moved = np.array(simulation.mover_pose().position_m) - start.position_m
+        assert np.linalg.norm(moved - (moved @ direction) * direction) < 0.02
+    opened.until(lambda: not moves(simulation), "the mover to stand")
+
+
+def moves(simulation: Simulation) -> bool:
+    """True if the mover is elsewhere after a tenth of a simulated second."""
+    before, time_ns = simulation.mover_pose(), simulation.sim_time_ns
+    until(lambda: simulation.sim_time_ns > time_ns + 100_000_000, "simulated time")
+    return simulation.mover_pose() != before
+
+
+def test_dragging_turns_and_the_wheel_zooms(opened: OpenPage, simulation: Simulation) -> None:
+    """Dragged to the right the picture follows, so the camera turns left; the lens is told."""
+    take_over(opened, simulation)
+    before = simulation.mover_pose().rpy_deg
+    page = opened.page
+    page.mouse.move(*opened.at(0.4, 0.5))
+    page.mouse.down()
+    page.mouse.move(*opened.at(0.6, 0.4), steps=4)
+    page.mouse.up()
+    until(lambda: simulation.mover_pose().rpy_deg[2] > before[2] + 5.0, "a turn to the left")
+    until(lambda: simulation.mover_pose().rpy_deg[1] > before[1] + 2.0, "a look down")
+    lens = simulation.info.agents[-1].intrinsics
+    page.mouse.wheel(0, 300)
+    until(
+        lambda: simulation.info.agents[-1].intrinsics.vertical_fov_deg > lens.vertical_fov_deg,
+        "a wider lens",
+    )
+
+
+def test_the_probe_shows_the_arrays_values(opened: OpenPage, simulation: Simulation) -> None:
+    """While time stands still, what is shown of a pixel is what a capture has there."""
+    page = opened.page
+    page.click("#play")
+    until(lambda: simulation.info.paused, "time to stand")
+    opened.until(lambda: not changes(opened), "the last picture")
+    frame = simulation.capture("debug_agent", ("rgb", "depth", "category", "instance"))
+    height, width = frame["depth"].shape
+    for u, v in ((0.5, 0.5), (0.2, 0.9)):
+        column, row = int(u * width), int(v * height)
+        page.mouse.move(*opened.at((column + 0.5) / width, (row + 0.5) / height))
+        shown = page.locator("#probe")
+        expect(shown).to_contain_text(f"{column}, {row}")
+        expect(shown).to_contain_text(f"({frame['category'][row, column]})")
+        instance = int(frame["instance"][row, column])
+        expect(shown).to_contain_text(f"({instance})" if instance else "none")
+        depth = float(frame["depth"][row, column])
+        expect(shown).to_contain_text(f"{depth:.3f} m" if math.isfinite(depth) else "nothing hit")
+        expect(shown).to_contain_text(", ".join(map(str, frame["rgb"][row, column])))
+    page.click("#step")
+    page.click("#play")
+    until(lambda: not simulation.info.paused, "time to run")
+
+
+def changes(opened: OpenPage) -> bool:
+    """True if another frame is shown within a while."""
+    before = opened.frames
+    opened.page.wait_for_timeout(400)
+    return opened.frames != before
+
+
+def test_a_scene_is_made_without_code(
+    opened: OpenPage, simulation: Simulation, own_scenes: Path
+) -> None:
+    """Spawn, edit, let move, place waypoints, save; the file is valid and gives it all back."""
+    page = opened.page
+    opened.tab("Add")
+    page.fill("#catalogue-search", "cube")
+    page.click("[data-asset=cube]")
+    opened.until(lambda: opened.data("selected") not in ("", "0"), "the new object to be selected")
+    number = int(opened.data("selected"))
+    fill(opened, "#object-name", "my cube")
+    fill(opened, "#scale-x", "0.5")
+    fill(opened, "#position-z", "1.5")
+    fill(opened, "#rpy_deg-z", "30")
+    page.select_option("#object-category", "chair")
+    until(lambda: simulation.get_object(number).category == "chair", "the category")
+    page.click("summary")
+    page.select_option("#behaviour", "rotate_rigidbody")
+    page.click("text=Attach")
+    until(lambda: simulation.get_object(number).behaviours, "the behaviour")
+    opened.tab("Path")
+    page.click("text=Clear")
+    page.click("text=Add here")
+    until(lambda: len(simulation.info.movers[0].waypoints) == 1, "a waypoint")
+    opened.tab("Scene")
+    page.fill("#save-name", "made_here")
+    page.click("button.save")
+    file = own_scenes / "made_here.yaml"
+    until(file.is_file, "the file")
+    assert main(["scene", "check", str(file)]) == 0
+    made = simulation.get_object(number)
+    page.select_option("#scene", "made_here")
+    until(lambda: simulation.info.scene == "made_here", "the saved scene")
+    again = simulation.get_object("my cube")
+    assert (again.asset, again.category) == ("cube", "chair")
+    assert again.scale == pytest.approx((0.5, 1.0, 1.0))
+    assert again.pose.position_m[:2] == pytest.approx(made.pose.position_m[:2], abs=0.3)
+    assert [kind["type"] for kind in again.behaviours] == ["rotate_rigidbody"]
+    assert len(simulation.info.movers[0].waypoints) == 1
+    opened.until(lambda: opened.data("scene") == "made_here", "the page to show it")
+
+
+def fill(opened: OpenPage, selector: str, value: str) -> None:
+    """Type into a field and leave it, once the answer has been shown."""
+    opened.page.fill(selector, value)
+    opened.page.locator(selector).press("Enter")
+    opened.page.locator(selector).blur()
+    # Numbers come back with more digits.
+    expect(opened.page.locator(selector)).to_have_value(re.compile(rf"^{re.escape(value)}\.?0*$"))
+
+
+def test_a_click_selects_and_delete_deletes(opened: OpenPage, simulation: Simulation) -> None:
+    """The outline is drawn around what was clicked; Esc leaves it, Del takes it away."""
+    page = opened.page
+    number = simulation.info.instances[1].id
+    opened.tab("Object")
+    page.click(f"#objects [data-id='{number}']")
+    opened.until(lambda: opened.data("selected") == str(number), "the selection")
+    page.locator("#stage").focus()
+    page.keyboard.press("Escape")
+    opened.until(lambda: opened.data("selected") == "0", "nothing selected")
+    page.mouse.click(*opened.at(0.5, 0.9))
+    opened.until(lambda: opened.data("selected") not in ("", "0"), "a click to select")
+    page.click(f"#objects [data-id='{number}']")
+    page.locator("#stage").focus()
+    page.keyboard.press("Delete")
+    until(lambda: number not in {i.id for i in simulation.info.instances}, "it to be gone")
+
+
+def test_lights_time_and_files(opened: OpenPage, simulation: Simulation, tmp_path: Path) -> None:
+    """A slider dims a light, buttons pause and begin anew, pictures are saved."""
+    page = opened.page
+    opened.tab("Light")
+    page.locator("[data-light=sun] input[type=range]").fill("0")
+    until(lambda: simulation.info.lights[0].intensity == 0.0, "the sun to set")
+    shot = cv2.imread(str(opened.download("#screenshot", tmp_path)))
+    assert shot.shape == (120, 160, 3)
+    sheet = cv2.imread(str(opened.download("#sheet", tmp_path)))
+    assert sheet.shape[1] > 3 * 160
+    epoch = simulation.info.epoch
+    page.click("#reset")
+    until(lambda: simulation.info.epoch > epoch, "a new beginning")
+    assert simulation.info.lights[0].intensity > 0.0
+    opened.wait_for_frames()
+
+
+def test_who_may_only_watch_sees_no_tools(browser: Browser, simulation: Simulation) -> None:
+    """From elsewhere, without --viewer-control: pictures, but nothing to change."""
+    with ViewerServer(simulation, host="0.0.0.0", port=0) as server:
+        token = server.url.partition("?")[2]
+        opened = OpenPage(browser, f"http://127.0.0.1:{server.port}/?{token}")
+        opened.wait_for_frames()
+        expect(opened.page.locator("#watching-only")).to_be_visible()
+        expect(opened.page.locator("#time-buttons")).to_be_hidden()
+        before = controller(simulation)
+        opened.page.keyboard.press("Tab")
+        opened.wait_for_frames()
+        assert controller(simulation) == before
+        opened.close()
+
+
+@pytest.mark.parametrize(("size", "scheme"), [((1280, 720), "light"), ((400, 800), "dark")])
+def test_the_page_fits(
+    browser: Browser, server: ViewerServer, size: tuple[int, int], scheme: str
+) -> None:
+    """Nothing is wider than the window; large pictures are visible; colours follow the system."""
+    opened = OpenPage(
+        browser,
+        server.url,
+        viewport={"width": size[0], "height": size[1]},
+        color_scheme=scheme,
+        has_touch=size == (PHONE["width"], PHONE["height"]),
+    )
+    opened.wait_for_frames(1)
+    page = opened.page
+    for title in ("View", "Object", "Add", "Light", "Path", "Scene"):
+        opened.tab(title)
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    box = page.locator(".tile.main").bounding_box()
+    assert box is not None
+    assert box["x"] >= 0
+    assert box["x"] + box["width"] <= size[0]
+    assert box["y"] + box["height"] <= size[1]
+    paper = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    brightness = sum(map(int, paper.removeprefix("rgb(").removesuffix(")").split(",")))
+    assert (brightness < 3 * 60) is (scheme == "dark")
+    opened.close()
