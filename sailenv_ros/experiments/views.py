@@ -76,6 +76,8 @@ class View:
         The object's visible pixels.
     of_category : (H, W) bool
         The visible pixels of all objects of its category.
+    eye_m : (3,) tuple of float
+        The camera's place in the world [m].
     azimuth_deg, distance_m : float
         Of the camera, from the object's middle.
     cover, visible : float
@@ -88,6 +90,7 @@ class View:
     picture: NDArray[np.uint8]
     target: NDArray[np.bool_]
     of_category: NDArray[np.bool_]
+    eye_m: tuple[float, float, float]
     azimuth_deg: float
     distance_m: float
     cover: float
@@ -108,6 +111,7 @@ class _Subject:
     row: int
     snapshot: WorldSnapshot
     alone: WorldSnapshot
+    boxes: NDArray[np.float64]
     middle: NDArray[np.float64]
     size_m: float
 
@@ -146,6 +150,7 @@ class Stage:
                 self._snapshots[room] = world.snapshot()
             finally:
                 world.close()
+        self._boxes = {room: _boxes_of(shot) for room, shot in self._snapshots.items()}
         self._renderer: RenderBackend = make_backend("auto", None)
         self._lone_renderer: RenderBackend = make_backend("auto", None)
 
@@ -179,8 +184,9 @@ class Stage:
     ) -> list[View]:
         """Choose views of a category's objects, each object in its turn.
 
-        Cameras are drawn at random, each with a distance for a share of the picture; the first that
-        meet the rule are taken. The same seed gives the same views.
+        Cameras are drawn at random, each with a distance for a share of the picture, none in a wall
+        or in another object's box; the first that meet the rule are taken. The same seed gives the
+        same views.
 
         Returns
         -------
@@ -207,7 +213,7 @@ class Stage:
         return [
             subject
             for room, snapshot in self._snapshots.items()
-            for subject in _subjects_of(room, snapshot, category)
+            for subject in _subjects_of(room, snapshot, self._boxes[room], category)
         ]
 
     def _view_of(
@@ -223,6 +229,8 @@ class Stage:
             if (view.room, view.name) == (subject.room, subject.drawn.instance.name)
         ]
         for azimuth_deg, camera, distance_m in _cameras(subject, rule, self._lens, random):
+            if _stands_in_something(subject, np.asarray(camera.pose.position_m)):
+                continue
             if any(_between_deg(azimuth_deg, other) < rule.apart_deg for other in used):
                 continue
             found = self._measured(subject, camera, rule)
@@ -266,6 +274,7 @@ class Stage:
             picture=picture,
             target=instance == shown.id,
             of_category=contents.category_of_instance[instance] == shown.category_id,
+            eye_m=camera.pose.position_m,
             azimuth_deg=azimuth_deg,
             distance_m=distance_m,
             cover=cover,
@@ -273,12 +282,20 @@ class Stage:
         )
 
 
-def _subjects_of(room: str, snapshot: WorldSnapshot, category: str) -> Iterator[_Subject]:
+def _boxes_of(snapshot: WorldSnapshot) -> NDArray[np.float64]:
+    """Give (N, 2, 3) the lowest and the highest corner of each object in its own axes [m]."""
+    drawn = snapshot.contents.instances
+    return np.stack([entry.model.bounds() * np.asarray(entry.scale) for entry in drawn])
+
+
+def _subjects_of(
+    room: str, snapshot: WorldSnapshot, boxes: NDArray[np.float64], category: str
+) -> Iterator[_Subject]:
     contents = snapshot.contents
     for row, drawn in enumerate(contents.instances):
         if drawn.instance.category != category:
             continue
-        low, high = drawn.model.bounds() * np.asarray(drawn.scale)
+        low, high = boxes[row]
         pose = snapshot.world_from_body[row]
         yield _Subject(
             room=room,
@@ -290,6 +307,7 @@ def _subjects_of(room: str, snapshot: WorldSnapshot, category: str) -> Iterator[
                 world_from_body=snapshot.world_from_body[row : row + 1].copy(),
                 histories=snapshot.histories[row : row + 1].copy(),
             ),
+            boxes=boxes,
             middle=pose[:3, :3] @ (0.5 * (low + high)) + pose[:3, 3],
             size_m=float(np.linalg.norm(high - low)),
         )
@@ -310,6 +328,21 @@ def _cameras(
         towards = np.array([math.cos(a) * math.cos(e), math.sin(a) * math.cos(e), math.sin(e)])
         pose = look_at(subject.middle + distance_m * towards, subject.middle)
         yield azimuth_deg, Camera(intrinsics=lens, pose=pose), distance_m
+
+
+def _stands_in_something(subject: _Subject, eye: NDArray[np.float64]) -> bool:
+    """Say if a camera stands in a wall or in furniture: in a box that is not around both."""
+    eye_in, middle_in = (_in_boxes(subject, point) for point in (eye, subject.middle))
+    return bool((eye_in & ~middle_in).any())
+
+
+def _in_boxes(subject: _Subject, point: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Give (N,) in which objects' boxes, each in its own axes, a point of the world lies."""
+    poses = subject.snapshot.world_from_body
+    own = np.einsum("nij,ni->nj", poses[:, :3, :3], point - poses[:, :3, 3])
+    low, high = subject.boxes[:, 0], subject.boxes[:, 1]
+    inside: NDArray[np.bool_] = ((low <= own) & (own <= high)).all(axis=1)
+    return inside
 
 
 def _between_deg(first: float, second: float) -> float:
