@@ -132,6 +132,7 @@ def _evaluated(
         {
             "room": view.room,
             "object": view.name,
+            "eye_m": [round(value, 3) for value in view.eye_m],
             "azimuth_deg": round(view.azimuth_deg, 1),
             "distance_m": round(view.distance_m, 3),
             "cover": round(view.cover, 4),

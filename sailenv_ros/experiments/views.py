@@ -8,18 +8,26 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import look_at
+from sailenv_ros.experiments.view_subjects import (
+    Rule,
+    Subject,
+    between_deg,
+    boxes_of,
+    cameras,
+    stands_in_something,
+    subjects_of,
+)
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.simulation.backends import make_backend
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import DrawnInstance, WorldSnapshot
+from sailenv_ros.snapshot import WorldSnapshot
 
 __all__ = ["ROOMS", "Rule", "Stage", "View", "rule_as_data"]
 
@@ -28,37 +36,6 @@ SETTLE_STEPS = 480
 """Physics steps after which everything has come to rest: 2 s."""
 
 VERTICAL_FOV_DEG = 50.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rule:
-    """Which views count.
-
-    Attributes
-    ----------
-    views : int
-        Of each class.
-    cover : (2,) tuple of float
-        Least and greatest share of the picture that the object's visible pixels take.
-    visible : float
-        Least share of the object that is seen: its pixels over those it would have alone, the part
-        beyond the picture's borders included.
-    apart_deg : float
-        Least angle between the azimuths of two views of one object [deg].
-    elevation_deg : (2,) tuple of float
-        Lowest and highest camera above the horizon [deg].
-    attempts : int
-        Cameras that are tried for each view before it is given up.
-    seed : int
-    """
-
-    views: int = 5
-    cover: tuple[float, float] = (0.02, 0.6)
-    visible: float = 0.7
-    apart_deg: float = 20.0
-    elevation_deg: tuple[float, float] = (5.0, 60.0)
-    attempts: int = 60
-    seed: int = 0
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -76,6 +53,8 @@ class View:
         The object's visible pixels.
     of_category : (H, W) bool
         The visible pixels of all objects of its category.
+    eye_m : (3,) tuple of float
+        The camera's place in the world [m].
     azimuth_deg, distance_m : float
         Of the camera, from the object's middle.
     cover, visible : float
@@ -88,6 +67,7 @@ class View:
     picture: NDArray[np.uint8]
     target: NDArray[np.bool_]
     of_category: NDArray[np.bool_]
+    eye_m: tuple[float, float, float]
     azimuth_deg: float
     distance_m: float
     cover: float
@@ -98,22 +78,6 @@ class View:
         """(4,) box around the visible pixels, as `detections` has boxes."""
         v, u = np.nonzero(self.target)
         return np.array([u.min(), v.min(), u.max() + 1, v.max() + 1], np.float64)
-
-
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class _Subject:
-    """An object in its room."""
-
-    room: str
-    row: int
-    snapshot: WorldSnapshot
-    alone: WorldSnapshot
-    middle: NDArray[np.float64]
-    size_m: float
-
-    @property
-    def drawn(self) -> DrawnInstance:
-        return self.snapshot.contents.instances[self.row]
 
 
 class Stage:
@@ -146,6 +110,7 @@ class Stage:
                 self._snapshots[room] = world.snapshot()
             finally:
                 world.close()
+        self._boxes = {room: boxes_of(shot) for room, shot in self._snapshots.items()}
         self._renderer: RenderBackend = make_backend("auto", None)
         self._lone_renderer: RenderBackend = make_backend("auto", None)
 
@@ -179,8 +144,9 @@ class Stage:
     ) -> list[View]:
         """Choose views of a category's objects, each object in its turn.
 
-        Cameras are drawn at random, each with a distance for a share of the picture; the first that
-        meet the rule are taken. The same seed gives the same views.
+        Cameras are drawn at random, each with a distance for a share of the picture, none in a wall
+        or in another object's box; the first that meet the rule are taken. The same seed gives the
+        same views.
 
         Returns
         -------
@@ -203,16 +169,16 @@ class Stage:
             on_view()
         return chosen
 
-    def _subjects(self, category: str) -> list[_Subject]:
+    def _subjects(self, category: str) -> list[Subject]:
         return [
             subject
             for room, snapshot in self._snapshots.items()
-            for subject in _subjects_of(room, snapshot, category)
+            for subject in subjects_of(room, snapshot, self._boxes[room], category)
         ]
 
     def _view_of(
         self,
-        subject: _Subject,
+        subject: Subject,
         taken: Sequence[View],
         rule: Rule,
         random: np.random.Generator,
@@ -222,8 +188,10 @@ class Stage:
             for view in taken
             if (view.room, view.name) == (subject.room, subject.drawn.instance.name)
         ]
-        for azimuth_deg, camera, distance_m in _cameras(subject, rule, self._lens, random):
-            if any(_between_deg(azimuth_deg, other) < rule.apart_deg for other in used):
+        for azimuth_deg, camera, distance_m in cameras(subject, rule, self._lens, random):
+            if stands_in_something(subject, np.asarray(camera.pose.position_m)):
+                continue
+            if any(between_deg(azimuth_deg, other) < rule.apart_deg for other in used):
                 continue
             found = self._measured(subject, camera, rule)
             if found is not None:
@@ -234,7 +202,7 @@ class Stage:
         return None
 
     def _measured(
-        self, subject: _Subject, camera: Camera, rule: Rule
+        self, subject: Subject, camera: Camera, rule: Rule
     ) -> tuple[float, float, NDArray[np.uint16]] | None:
         """Give cover, visible share and the instance view if they meet the rule."""
         views = self._renderer.render(subject.snapshot, None, camera, ("instance",)).views
@@ -250,7 +218,7 @@ class Stage:
 
     def _pictured(
         self,
-        subject: _Subject,
+        subject: Subject,
         camera: Camera,
         instance: NDArray[np.uint16],
         place: tuple[float, float, float, float],
@@ -266,55 +234,12 @@ class Stage:
             picture=picture,
             target=instance == shown.id,
             of_category=contents.category_of_instance[instance] == shown.category_id,
+            eye_m=camera.pose.position_m,
             azimuth_deg=azimuth_deg,
             distance_m=distance_m,
             cover=cover,
             visible=visible,
         )
-
-
-def _subjects_of(room: str, snapshot: WorldSnapshot, category: str) -> Iterator[_Subject]:
-    contents = snapshot.contents
-    for row, drawn in enumerate(contents.instances):
-        if drawn.instance.category != category:
-            continue
-        low, high = drawn.model.bounds() * np.asarray(drawn.scale)
-        pose = snapshot.world_from_body[row]
-        yield _Subject(
-            room=room,
-            row=row,
-            snapshot=snapshot,
-            alone=replace(
-                snapshot,
-                contents=replace(contents, instances=(drawn,), lights=(), baked=None),
-                world_from_body=snapshot.world_from_body[row : row + 1].copy(),
-                histories=snapshot.histories[row : row + 1].copy(),
-            ),
-            middle=pose[:3, :3] @ (0.5 * (low + high)) + pose[:3, 3],
-            size_m=float(np.linalg.norm(high - low)),
-        )
-
-
-def _cameras(
-    subject: _Subject, rule: Rule, lens: CameraIntrinsics, random: np.random.Generator
-) -> Iterator[tuple[float, Camera, float]]:
-    """Yield azimuth [deg], camera and distance [m]: as many as the rule's attempts."""
-    spread = math.tan(0.5 * math.radians(lens.vertical_fov_deg))
-    for _ in range(rule.attempts):
-        azimuth_deg = float(random.uniform(0.0, 360.0))
-        elevation_deg = float(random.uniform(*rule.elevation_deg))
-        # The share of the picture that a ball around the object would fill, which it seldom does.
-        filled = math.exp(random.uniform(math.log(rule.cover[0] * 3.0), math.log(1.6)))
-        distance_m = max(0.12, 0.5 * subject.size_m / (spread * math.sqrt(filled)))
-        a, e = math.radians(azimuth_deg), math.radians(elevation_deg)
-        towards = np.array([math.cos(a) * math.cos(e), math.sin(a) * math.cos(e), math.sin(e)])
-        pose = look_at(subject.middle + distance_m * towards, subject.middle)
-        yield azimuth_deg, Camera(intrinsics=lens, pose=pose), distance_m
-
-
-def _between_deg(first: float, second: float) -> float:
-    """Give the angle between two azimuths, 0 to 180."""
-    return abs((first - second + 180.0) % 360.0 - 180.0)
 
 
 def rule_as_data(rule: Rule, rooms: Sequence[str]) -> Mapping[str, object]:

@@ -23,6 +23,12 @@ def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
         {"name": "two", "asset": "cube", "category": "chair", "position": [-2, 2, 0.5]},
         {"name": "hidden", "asset": "cube", "category": "couch", "position": [0, -3, 0.25],
          "scale": 0.5},
+        {"name": "small", "asset": "cube", "category": "vase", "position": [5, -5, 0.9],
+         "scale": 0.2},
+        {"name": "block", "asset": "cube", "category": "wall", "position": [5, -5, 0.4],
+         "scale": [1.2, 1.2, 0.8]},
+        {"name": "pane", "asset": "cube", "category": "wall", "position": [5, -5, 1.3],
+         "scale": [1.2, 1.2, 0.2]},
         {"name": "box", "asset": "cube", "category": "wall", "position": [0, -3, 0.26],
          "scale": 0.52},
     ]  # fmt: skip
@@ -57,6 +63,15 @@ def test_the_seed_decides(stage: Stage) -> None:
     for one, two in zip(first, again, strict=True):
         np.testing.assert_array_equal(one.picture, two.picture)
     assert [view.azimuth_deg for view in first] != [view.azimuth_deg for view in other]
+
+
+def test_no_camera_stands_in_another_object(stage: Stage) -> None:
+    """Close above the vase hangs a pane that cameras would often be in; none is."""
+    views = stage.views("vase", replace(RULE, views=8, attempts=200))
+    assert len(views) > 3
+    middle, half = np.array([5.0, -5.0, 1.3]), np.array([0.6, 0.6, 0.1])
+    for view in views:
+        assert (np.abs(np.asarray(view.eye_m) - middle) > half).any()
 
 
 def test_what_is_hidden_has_no_views(stage: Stage) -> None:

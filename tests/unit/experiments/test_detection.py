@@ -25,6 +25,7 @@ def view() -> View:
         picture=np.zeros((30, 40, 3), np.uint8),
         target=target,
         of_category=target,
+        eye_m=(0.0, 0.0, 0.0),
         azimuth_deg=0.0,
         distance_m=1.0,
         cover=target.mean(),
