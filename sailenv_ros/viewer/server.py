@@ -173,6 +173,7 @@ class ViewerServer:
             else:
                 started.set_exception(error)
         finally:
+            self._loop.run_until_complete(_end_of(asyncio.all_tasks(self._loop)))
             self._loop.run_until_complete(self._loop.shutdown_default_executor())
 
     async def _serve(self, started: Future[int]) -> None:
@@ -310,3 +311,11 @@ class ViewerServer:
 
     def _refusal(self, why: str) -> web.Response:
         return web.Response(status=403, text=f"Refused: {why}\n", headers=SECURITY_HEADERS)
+
+
+async def _end_of(tasks: set[asyncio.Task[Any]]) -> None:
+    """End what aiohttp has left, e.g. an answer for which nobody waits any more."""
+    for task in tasks:
+        task.cancel()
+    if tasks:
+        await asyncio.wait(tasks, timeout=1.0)
