@@ -249,14 +249,17 @@ class ViewerServer:
         self._connected += 1
         try:
             await answer.prepare(request)
-            await self._serve_client(answer)
+            await self._serve_client(answer, request.transport)
         finally:
             self._connected -= 1
         return answer
 
-    async def _serve_client(self, answer: web.WebSocketResponse) -> None:
+    async def _serve_client(
+        self, answer: web.WebSocketResponse, transport: asyncio.Transport | None
+    ) -> None:
         client = Client(
             answer,
+            drop=lambda: None if transport is None else transport.abort(),
             simulation=self._simulation,
             debug_agent=self._debug_agent,
             may_change=self._may_change,
