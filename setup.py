@@ -52,13 +52,19 @@ ROS = [
     "ros-jazzy-std-msgs",
     "ros-jazzy-std-srvs",
 ]
+# What the experiments compare with and draw with: `sailenv bench`, `report`, and `sailenv eval`.
+# The original's client, which is timed at the gateway and tested there, declares no dependencies.
+BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
+EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
 DEV = [
     "colcon-common-extensions",
     "hypothesis",
     "import-linter",
     "jsonschema",
+    "matplotlib>=3.8",
     "mcap-ros2-support",
     "mypy",
+    "onnxruntime>=1.17",
     # Drives Debian's Chromium, for the tests of the window.
     "playwright>=1.40",
     "pycocotools",
@@ -111,7 +117,7 @@ setup(
     data_files=data_files(),
     python_requires=">=3.10",
     install_requires=REQUIREMENTS,
-    extras_require={"ros": ROS, "dev": DEV},
+    extras_require={"ros": ROS, "bench": BENCH, "eval": EVAL, "dev": DEV},
     entry_points={
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",

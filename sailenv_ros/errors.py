@@ -17,7 +17,8 @@ Every sentence says what was wrong and what would be accepted, in the user's own
     │   └── SimulatorLost       a simulator that answered before does so no more
     ├── RequestRefused          the simulator refused a request, in its own words
     ├── ProtocolError           bytes of a peer that break the protocol
-    └── RecordingError          a recording that cannot be written or read
+    ├── RecordingError          a recording that cannot be written or read
+    └── MissingPackage          an optional package that is not installed
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ __all__ = [
     "DeadlineExceeded",
     "InvalidEntry",
     "InvalidRequest",
+    "MissingPackage",
     "NameTaken",
     "PhysicsError",
     "ProtocolError",
@@ -240,6 +242,25 @@ class ProtocolError(SailenvError):
 
 class RecordingError(SailenvError):
     """A recording that cannot be written or read."""
+
+
+class MissingPackage(SailenvError, ImportError):
+    """An optional package that something needs is not installed.
+
+    Parameters
+    ----------
+    purpose : str
+        What needs it, e.g. ``"a plot"``.
+    package : str
+    command : str
+        What installs it.
+    """
+
+    def __init__(self, purpose: str, package: str, command: str) -> None:
+        self.purpose = purpose
+        self.package = package
+        self.command = command
+        super().__init__(f"{purpose} needs {package}, which is not installed: {command}")
 
 
 def _shown(value: object) -> str:

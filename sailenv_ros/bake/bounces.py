@@ -20,6 +20,10 @@ __all__ = ["Patches", "bounced_radiance", "patches_of"]
 Floats = NDArray[np.float32]
 
 
+MOST_LEFT = 0.9
+"""Share of its light that a bounce leaves to the next, at most."""
+
+
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Patches:
     """Texels in groups.
@@ -85,10 +89,16 @@ def bounced_radiance(
     members = members[valid[members]].astype(np.int32)
     bounds = np.searchsorted(patches.of_texel[members], np.arange(patches.count + 1))
     radiance, arriving = start, np.zeros_like(start)
+    grown = [np.ones(channels), np.ones(channels)]
     for _ in range(bounces):
-        arriving = np.zeros_like(start)
+        before, arriving = arriving, np.zeros_like(start)
         _hand_on(members, bounds, seen, patches.of_texel, radiance, arriving)
         radiance = start + share * arriving
+        grown = [grown[1], np.sum(arriving - before, axis=0, dtype=np.float64)]
+    if bounces > 1:
+        # All further bounces shrink like the last: they are a geometric series.
+        ratio = np.clip(grown[1] / np.maximum(grown[0], 1e-12), 0.0, MOST_LEFT)
+        arriving += ((arriving - before) * (ratio / (1.0 - ratio))).astype(np.float32)
     return first + np.tile(albedo, channels // 3) * arriving[patches.of_texel]
 
 

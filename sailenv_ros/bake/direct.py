@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.rays import NEVER, RayScene
-from sailenv_ros.bake.sampling import fibonacci_sphere
+from sailenv_ros.bake.sampling import fibonacci_sphere, shifted
 from sailenv_ros.lights import Light
 
 __all__ = ["LightSamples", "Points", "arriving", "area_sides", "samples_of"]
@@ -38,7 +38,7 @@ class Points:
     positions, normals, faces : (N, 3) float32
         As in `Texels`.
     shifts : (N, 2) float32
-        Of the patterns, see `tile_shift`; for nets of one point.
+        Of the patterns, see `tile_shift`.
     """
 
     positions: Floats
@@ -90,8 +90,7 @@ def area_sides(light: Light) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def samples_of(light: Light, positions: Floats, shifts: Floats, pattern: Floats) -> LightSamples:
     """Choose points on a light for each point that is lit."""
-    at = pattern[None] + shifts[:, None] / np.float32(math.sqrt(len(pattern)))
-    at = at - np.floor(at)
+    at = shifted(pattern, shifts)
     if light.type == "directional":
         return _sun(light, at)
     if light.type == "area":

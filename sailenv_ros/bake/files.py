@@ -76,7 +76,7 @@ def load_baked(fingerprint: str) -> BakedLight | None:
     if not path.is_file():
         return None
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
             baked = _baked_of(arrays)
         if baked.fingerprint != fingerprint:
             raise ValueError("it was made for another scene")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.bake.direct import LIFT_M, Points
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
-from sailenv_ros.bake.sampling import hemisphere_rays
+from sailenv_ros.bake.sampling import hemisphere_rays, shifted
 from sailenv_ros.bake.sky import sky_at
 
 __all__ = ["BACK", "NOTHING", "Surroundings", "gathered", "seen_from", "window_light"]
@@ -78,8 +78,8 @@ def seen_from(
     """
     count, rays = len(points.positions), len(pattern)
     directions = np.empty((count, rays, 3), dtype=np.float32)
-    shifts = points.shifts / np.float32(np.sqrt(rays))
-    hemisphere_rays(points.normals, points.faces, pattern, shifts, directions)
+    squares = shifted(pattern, points.shifts)
+    hemisphere_rays(points.normals, points.faces, squares, directions)
     origins = np.repeat(points.positions + points.faces * np.float32(LIFT_M), rays, axis=0)
     flat = directions.reshape(-1, 3)
     hits = around.scene.hits(origins, flat)
@@ -123,9 +123,8 @@ def window_light(
     _sky_by_chance(
         points.positions, points.normals, directions, texels, around.sky, panes, shots, light
     )
-    shifts = points.shifts / np.float32(np.sqrt(shots))
     for pane in panes:
-        _look_through(around, points, pane, panes, shifts, window_pattern, texels.shape[1], light)
+        _look_through(around, points, pane, panes, window_pattern, texels.shape[1], light)
     return light
 
 
@@ -134,13 +133,11 @@ def _look_through(
     points: Points,
     pane: Floats,
     panes: Floats,
-    shifts: Floats,
     pattern: Floats,
     others: int,
     light: Floats,
 ) -> None:
-    at = pattern[None] + shifts[:, None]
-    at = 2.0 * (at - np.floor(at)) - 1.0
+    at = 2.0 * shifted(pattern, points.shifts) - 1.0
     spots = pane[0] + at[..., :1] * pane[1] + at[..., 1:] * pane[2]
     towards = (spots - points.positions[:, None]).astype(np.float32)
     towards /= np.maximum(np.linalg.norm(towards, axis=2, keepdims=True), 1e-9)

@@ -11,7 +11,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["fibonacci_sphere", "hemisphere_rays", "net", "tile_shift"]
+__all__ = ["fibonacci_sphere", "hemisphere_rays", "net", "shifted", "tile_shift"]
 
 Floats = NDArray[np.float32]
 
@@ -21,6 +21,8 @@ _ORDER = np.array([0, 2, 1, 3], dtype=np.float32)
 
 def net(count: int) -> Floats:
     """Give (count, 2) float32: points of the unit square, one in each of its even parts.
+
+    Of a square of a power of two there is one in each of as many square cells.
 
     The set of Hammersley (1960) in base 2, moved to the middles of its intervals.
     """
@@ -35,10 +37,21 @@ def net(count: int) -> Floats:
 
 
 def tile_shift(rows: NDArray[np.int32], columns: NDArray[np.int32]) -> Floats:
-    """Give (N, 2) float32: how far each texel moves a net, in mean distances of its points."""
+    """Give (N, 2) float32: how far each texel moves a net's points, in sizes of cells."""
     shift = np.stack([_ORDER[columns & 3], _ORDER[rows & 3]], axis=1)
-    moved: Floats = ((shift - 1.5) / 4.0).astype(np.float32)
-    return moved
+    return np.asarray(shift / 4.0, dtype=np.float32)
+
+
+def shifted(pattern: Floats, shifts: Floats) -> Floats:
+    """Give (N, M, 2) float32: each point of a net moved within its own cell of the square.
+
+    A net of M points has one in each of M square cells. Moved modulo the cell, the nets of a tile
+    fill all cells evenly; moved modulo 1 they would leave gaps.
+    """
+    cells = np.float32(np.sqrt(len(pattern)))
+    cell = np.floor(pattern * cells)
+    inside = (pattern * cells - cell)[None] + shifts[:, None]
+    return np.asarray((cell + inside - np.floor(inside)) / cells, dtype=np.float32)
 
 
 def fibonacci_sphere(count: int) -> Floats:
@@ -51,16 +64,15 @@ def fibonacci_sphere(count: int) -> Floats:
 
 
 @numba.njit(cache=True, nogil=True)
-def hemisphere_rays(normals, faces, pattern, shifts, directions):  # type: ignore[no-untyped-def]
+def hemisphere_rays(normals, faces, squares, directions):  # type: ignore[no-untyped-def]
     """Fill in directions whose density is the cosine to the normal, over pi.
 
     Parameters
     ----------
     normals, faces : (N, 3) float32
         Directions that would run into the face are mirrored at it.
-    pattern : (M, 2) float32
-    shifts : (N, 2) float32
-        Of the pattern, per point.
+    squares : (N, M, 2) float32
+        Points of the unit square that become the directions.
     directions : (N, M, 3) float32
         Filled in; unit length.
     """
@@ -70,11 +82,8 @@ def hemisphere_rays(normals, faces, pattern, shifts, directions):  # type: ignor
         sign = 1.0 if nz >= 0.0 else -1.0
         a = -1.0 / (sign + nz)
         b = nx * ny * a
-        for m in range(len(pattern)):
-            u = pattern[m, 0] + shifts[k, 0]
-            v = pattern[m, 1] + shifts[k, 1]
-            u -= np.floor(u)
-            v -= np.floor(v)
+        for m in range(squares.shape[1]):
+            u, v = squares[k, m]
             radius = np.sqrt(u)
             x, y = radius * np.cos(2.0 * np.pi * v), radius * np.sin(2.0 * np.pi * v)
             z = np.sqrt(max(1.0 - u, 0.0))

@@ -18,7 +18,7 @@ from sailenv_ros.bake.texels import Texels
 
 __all__ = ["turned_to_the_light"]
 
-RAYS = 32
+RAYS = 42
 FAR_M = 0.5
 """What is farther counts as open."""
 
@@ -26,6 +26,12 @@ CLEARLY = 1.5
 """How many times more open the back must be than the front."""
 
 LIFT_M = 1e-3
+
+SPOTS = np.array(
+    [[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [3, 3, 1], [1, 3, 3], [3, 1, 3]], np.float32
+)
+SPOTS /= SPOTS.sum(axis=1, keepdims=True)
+"""Points of a triangle, as weights of its corners."""
 
 
 def turned_to_the_light(scenery: Scenery, scene: RayScene, texels: Texels) -> Texels:
@@ -43,12 +49,15 @@ def turned_to_the_light(scenery: Scenery, scene: RayScene, texels: Texels) -> Te
 def _openness(
     scenery: Scenery, scene: RayScene, triangles: NDArray[np.intp], sign: float
 ) -> NDArray[np.float64]:
-    """Give (T,) float64: mean distance that one side's middle sees, each at most `FAR_M`."""
+    """Give (T,) float64: mean distance that one side of each triangle sees, at most `FAR_M`."""
     normals = scenery.faces[triangles] * np.float32(sign)
-    middles = scenery.corners[triangles].mean(axis=1) + normals * np.float32(LIFT_M)
     total = np.zeros(len(triangles))
-    for direction in fibonacci_sphere(RAYS):
+    for number, direction in enumerate(fibonacci_sphere(RAYS)):
+        # One point alone might lie inside of another thing.
+        spot = SPOTS[number % len(SPOTS)]
+        points = np.einsum("c,tcx->tx", spot, scenery.corners[triangles])
         side = np.where(normals @ direction < 0.0, np.float32(-1.0), np.float32(1.0))
-        towards = direction * side[:, None]
-        total += np.minimum(scene.hits(middles, towards).distance, FAR_M)
+        origins = points + normals * np.float32(LIFT_M)
+        hits = scene.hits(origins, direction * side[:, None])
+        total += np.minimum(hits.distance, FAR_M)
     return total / RAYS

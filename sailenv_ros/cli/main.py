@@ -21,10 +21,13 @@ COMMANDS = {
     "behaviours": "list how objects can move of themselves, with every parameter",
     "assets": "build the furniture, list and picture objects, add one's own",
     "bag": "say what a recording holds, restore a damaged one",
+    "bench": "measure flow's speed and accuracy, and frames per second",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
+    "eval": "show a detector the rooms' objects and score what it sees",
     "export": "write a recording as a data set: png, coco, kitti, flo, mp4",
     "play": "publish a recording on the topics it was recorded from",
     "record": "record what agents see in an MCAP bag",
+    "report": "write one page of all results of bench and eval",
     "run": "start the simulator, with or without ROS",
     "scene": "check, render, bake, list and begin scenes, export the schema of the format",
 }

@@ -15,6 +15,7 @@ import numpy as np
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.geometry import Pose, quat_xyzw_from_rpy_deg
 from sailenv_ros.lights import Light
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.scene.spec_cameras import AgentSpecModel
 from sailenv_ros.scene.spec_surroundings import (
@@ -126,6 +127,8 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
     defaults = AgentSpecModel.model_fields
     given = {key: value for key, value in values.items() if value != defaults[key].default}
     entry: dict[str, Any] = {"name": spec.name, **_plain(given)}
+    if spec.picture != PictureSettings():
+        entry["picture"] = _picture(spec.picture)
     if spec.mover:
         entry["mover"] = spec.mover
     return entry if pose is None else {**entry, **pose_entry(pose)}
@@ -144,6 +147,17 @@ def _values(light: Light) -> dict[str, Any]:
     }
     values["direction"] = tuple(rounded(light.direction, UNIT_DECIMALS))
     return values
+
+
+def _picture(settings: PictureSettings) -> dict[str, Any]:
+    """Give what differs from the defaults, by its keys in a file."""
+    usual = PictureSettings()
+    names = [f.name for f in fields(PictureSettings)]
+    return {
+        name.removesuffix("_m"): getattr(settings, name)
+        for name in names
+        if getattr(settings, name) != getattr(usual, name)
+    }
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
+from sailenv_ros.agents import AgentSpec
 from sailenv_ros.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.scene import SceneSpec
+from sailenv_ros.scene.describing import agent_entry
 
 
 def settings_of(**picture: Any) -> PictureSettings:
@@ -37,6 +39,10 @@ def test_every_setting_can_be_written() -> None:
     )
     written = {f.name.removesuffix("_m"): getattr(given, f.name) for f in fields(PictureSettings)}
     assert settings_of(**written) == given
+    # And what is written of an agent reads back as it was, without what is as everywhere.
+    entry = agent_entry(AgentSpec(name="eye", picture=given), None)
+    assert settings_of(**entry["picture"]) == given
+    assert "picture" not in agent_entry(AgentSpec(name="eye"), None)
 
 
 @pytest.mark.parametrize("name", LIMITS)

@@ -1,0 +1,206 @@
+"""Compare the renderer's pictures with those of a path tracer: same scene, same cameras.
+
+    python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
+        [--size W H] [--trace-only | --no-trace | --last] [--output FOLDER]
+
+Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
+(ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from PIL import Image
+
+from benchmarks.reference.curve import matched_stops, picture_of
+from benchmarks.reference.export import scene_of, sensor
+from benchmarks.reference.parts import Parts
+from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
+from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.geometry import look_at
+from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.snapshot import WorldSnapshot
+
+VIEWS = Path(__file__).with_name("views.yaml")
+
+Picture = NDArray[np.uint8]
+Row = dict[str, Any]
+
+
+def main() -> int:
+    """Trace, render, measure, show; 0 if every view was compared."""
+    arguments = _arguments()
+    cameras = _cameras(arguments.scenes, arguments.views, tuple(arguments.size))
+    try:
+        rows = [row for scene in cameras for row in _compared(scene, cameras[scene], arguments)]
+    except ToolMissing as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    if not arguments.trace_only:
+        _show(rows, arguments.output)
+    wanted = sum(len(views) for views in cameras.values())
+    return 0 if arguments.trace_only or len(rows) == wanted else 1
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--scenes", nargs="+", default=None, help="of views.yaml; all of them")
+    parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
+    parser.add_argument("--samples", type=int, default=64, help="per pixel of the reference")
+    parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
+    parser.add_argument("--output", type=Path, default=Path("build/reference"), metavar="FOLDER")
+    either = parser.add_mutually_exclusive_group()
+    either.add_argument("--trace-only", action="store_true", help="do not render ours")
+    either.add_argument("--no-trace", action="store_true", help="take what the cache has")
+    either.add_argument(
+        "--last", action="store_true", help="take the last traced, though the scene has changed"
+    )
+    return parser.parse_args()
+
+
+def _cameras(
+    scenes: list[str] | None, views: list[str] | None, size: tuple[int, int]
+) -> dict[str, dict[str, Camera]]:
+    known = yaml.safe_load(VIEWS.read_text(encoding="utf-8"))
+    return {
+        scene: {
+            name: _camera(view, size)
+            for name, view in known[scene].items()
+            if views is None or name in views
+        }
+        for scene in (known if scenes is None else scenes)
+    }
+
+
+def _camera(view: Mapping[str, Any], size: tuple[int, int]) -> Camera:
+    intrinsics = CameraIntrinsics(
+        width=size[0], height=size[1], vertical_fov_deg=float(view["fov"])
+    )
+    return Camera(intrinsics=intrinsics, pose=look_at(view["position"], view["look_at"]))
+
+
+def _compared(
+    scene: str, cameras: Mapping[str, Camera], arguments: argparse.Namespace
+) -> list[Row]:
+    counter = itertools.count(1)
+    world = SceneLibrary().build(scene, 0, 1, lambda: next(counter))
+    try:
+        snapshot = world.snapshot()
+    finally:
+        world.close()
+    references = traced_views(
+        scene,
+        scene_of(snapshot, Parts(HOME / "parts")),
+        {name: sensor(camera) for name, camera in cameras.items()},
+        arguments.samples,
+        may_trace=not (arguments.no_trace or arguments.last),
+        or_last=arguments.last,
+    )
+    for name in cameras.keys() - references.keys():
+        print(f"{scene}/{name}: no traced picture of this scene in the cache", file=sys.stderr)
+    if arguments.trace_only or not references:
+        return []
+    ours = _rendered(snapshot, {name: cameras[name] for name in references})
+    stops = snapshot.contents.environment.exposure
+    return _measured(scene, ours, references, stops, arguments.output)
+
+
+def _rendered(snapshot: WorldSnapshot, cameras: Mapping[str, Camera]) -> dict[str, Picture]:
+    renderer = Renderer()
+    try:
+        return {
+            name: renderer.render(snapshot, None, camera, ("rgb",)).views["rgb"].copy()
+            for name, camera in cameras.items()
+        }
+    finally:
+        renderer.close()
+
+
+def _measured(
+    scene: str,
+    ours: Mapping[str, Picture],
+    references: Mapping[str, Traced],
+    stops: float,
+    output: Path,
+) -> list[Row]:
+    """Measure every pair at the scene's exposure and at the one that fits best; save pictures."""
+    pairs: dict[str, Picture] = {}
+    tiles: dict[str, Picture] = {}
+    rows: list[Row] = []
+    for name, traced in references.items():
+        best = matched_stops(traced.radiance, ours[name])
+        matched = picture_of(traced.radiance, best)
+        for kind, picture in (("matched", matched), ("plain", picture_of(traced.radiance, stops))):
+            pairs[f"ours_{name}.{kind}"], pairs[f"reference_{name}.{kind}"] = ours[name], picture
+        rows.append({"scene": scene, "view": name, "stops": best - stops, "noise": traced.noise})
+        rows[-1]["noise_denoised"] = traced.noise_denoised
+        difference = np.abs(ours[name].astype(int) - matched.astype(int))
+        tiles[f"{name}: ours"] = ours[name]
+        tiles[f"{name}: reference {best - stops:+.1f} stops"] = matched
+        tiles[name] = np.minimum(2 * difference, 255).astype(np.uint8)
+        _save(output / f"{scene}_{name}_ours.png", ours[name])
+        _save(output / f"{scene}_{name}_reference.png", matched)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "pairs.npz"
+        np.savez(file, **pairs)  # type: ignore[arg-type]
+        figures = json.loads(run_tool("measure.py", file, capture=True))
+    for row in rows:
+        row.update(figures[f"{row['view']}.matched"])
+        plain = figures[f"{row['view']}.plain"]
+        row.update({f"{key}_unmatched": value for key, value in plain.items()})
+    save_contact_sheet(output / f"{scene}.png", _labelled(tiles, rows), columns=3)
+    return rows
+
+
+def _labelled(tiles: Mapping[str, Picture], rows: list[Row]) -> dict[str, Picture]:
+    """Put the figures on the tiles of the difference, which is shown twice as bright."""
+    text = {
+        row["view"]: f"SSIM {row['ssim']:.3f} PSNR {row['psnr_db']:.1f} FLIP {row['flip']:.2f}"
+        for row in rows
+    }
+    # Labels must differ: spaces at their ends do not show.
+    return {
+        text.get(label, label) + " " * number: tile
+        for number, (label, tile) in enumerate(tiles.items())
+    }
+
+
+def _save(file: Path, picture: Picture) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(picture).save(file)
+
+
+def _show(rows: list[Row], output: Path) -> None:
+    print(f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'noise':>8}   as it is: SSIM PSNR")
+    for row in rows:
+        print(
+            f"{row['scene'] + '/' + row['view']:22}{row['ssim']:8.3f}{row['psnr_db']:8.1f}"
+            f"{row['flip']:8.3f}{row['stops']:+8.2f}{row['noise_denoised']:8.1%}"
+            f"{row['ssim_unmatched']:18.3f}{row['psnr_db_unmatched']:5.1f}"
+        )
+    if rows:
+        mean = {key: float(np.mean([r[key] for r in rows])) for key in ("ssim", "psnr_db", "flip")}
+        lowest = min(row["ssim"] for row in rows)
+        print(f"{'mean':22}{mean['ssim']:8.3f}{mean['psnr_db']:8.1f}{mean['flip']:8.3f}")
+        print(f"{'lowest SSIM':22}{lowest:8.3f}")
+    output.mkdir(parents=True, exist_ok=True)
+    file = output / "comparison.json"
+    file.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    print(f"written to {output}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,103 @@
+"""Materials as Mitsuba describes them; metallic-roughness is a BSDF of our own (lit_surface.py).
+
+A `Material` in, a dict for Mitsuba out; its textures go to `Parts`. Texture rows stay as they
+are: Mitsuba reads row 0 at v = 0, for which `export` turns v around.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.reference.parts import Parts
+from sailenv_ros.model import Material
+
+__all__ = ["bsdf", "emitter"]
+
+LEAST_ROUGHNESS = 0.045
+"""The renderer's own limit (textures.glsl)."""
+
+Dict = dict[str, Any]
+
+
+def bsdf(material: Material, parts: Parts) -> Dict:
+    """Describe how a material reflects; seen from behind it looks alike.
+
+    What is see-through (``blend``) is clear glass: each of its faces is a thin pane.
+    """
+    if material.alpha == "blend":
+        return {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0}
+    inner: Dict = {
+        "type": "sailenv_surface",
+        "base_color": _base_colour(material, parts),
+        "metallic": _finish(material, 2, material.metallic, 0.0, parts),
+        "roughness": _finish(material, 1, material.roughness, LEAST_ROUGHNESS, parts),
+    }
+    if material.normal_texture is not None:
+        bumps = _bitmap(_rgb(material.normal_texture), parts, raw=True)
+        inner = {"type": "normalmap", "normalmap": bumps, "bsdf": inner}
+    if material.alpha == "mask" and material.base_colour_texture is not None:
+        return {"type": "mask", "opacity": _opacity(material, parts), "bsdf": inner}
+    return inner
+
+
+def emitter(material: Material, parts: Parts) -> Dict | None:
+    """Describe what a material emits, None if nothing; its texture has the glow's pattern."""
+    glow = np.asarray(material.emission, dtype=np.float64)
+    if glow.max() <= 0.0:
+        return None
+    if material.base_colour_texture is None:
+        return {"type": "area", "radiance": _rgb_value(glow)}
+    pattern = _linear(material.base_colour_texture[..., :3]) * glow
+    return {"type": "area", "radiance": _bitmap(pattern.astype(np.float32), parts, raw=True)}
+
+
+def _base_colour(material: Material, parts: Parts) -> Dict:
+    factor = np.clip(np.asarray(material.base_colour[:3], dtype=np.float64), 0.0, 1.0)
+    texture = material.base_colour_texture
+    if texture is None:
+        return _rgb_value(factor)
+    if (factor > 0.999).all():
+        return _bitmap(_rgb(texture), parts, raw=False)
+    shaded = _encoded(_linear(texture[..., :3]) * factor)
+    return _bitmap(np.rint(255.0 * shaded).astype(np.uint8), parts, raw=False)
+
+
+def _finish(material: Material, channel: int, factor: float, least: float, parts: Parts) -> Dict:
+    """Give metal or roughness: a number, or the texture's channel times its factor."""
+    texture = material.metallic_roughness_texture
+    if texture is None:
+        return _rgb_value(np.full(3, np.clip(factor, least, 1.0)))
+    scaled = np.clip(texture[..., channel].astype(np.float64) * factor, 255.0 * least, 255.0)
+    return _bitmap(np.rint(scaled).astype(np.uint8)[..., None], parts, raw=True)
+
+
+def _opacity(material: Material, parts: Parts) -> Dict:
+    texture = material.base_colour_texture
+    assert texture is not None
+    shown = texture[..., 3] / 255.0 * material.base_colour[3] >= material.alpha_cutoff
+    return _bitmap((255 * shown).astype(np.uint8)[..., None], parts, raw=True)
+
+
+def _bitmap(pixels: NDArray[Any], parts: Parts, *, raw: bool) -> Dict:
+    return {"type": "bitmap", "array": parts.array(np.ascontiguousarray(pixels)), "raw": raw}
+
+
+def _rgb(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return texture[..., :3]
+
+
+def _rgb_value(colour: NDArray[np.float64]) -> Dict:
+    return {"type": "rgb", "value": [float(channel) for channel in colour]}
+
+
+def _linear(srgb8: NDArray[np.uint8]) -> NDArray[np.float64]:
+    c = srgb8.astype(np.float64) / 255.0
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+
+
+def _encoded(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    curved = 1.055 * np.maximum(linear, 0.0031308) ** (1.0 / 2.4) - 0.055
+    return np.where(linear <= 0.0031308, 12.92 * linear, curved)

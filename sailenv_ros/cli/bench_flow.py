@@ -1,0 +1,153 @@
+"""`sailenv bench flow-speed` and `flow-accuracy`: options in, result files and tables out."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+from functools import partial
+from typing import Any
+
+from sailenv_ros.cli.experiment import (
+    checked_sizes,
+    command_line,
+    finish,
+    progress_bar,
+)
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.experiments.extras import need
+from sailenv_ros.experiments.flow_accuracy import OURS, judge_scenario, laboratory
+from sailenv_ros.experiments.flow_methods import FlowMethod, opencv_methods
+from sailenv_ros.experiments.flow_network import flow_network
+from sailenv_ros.experiments.flow_scenes import SCENARIOS
+from sailenv_ros.experiments.flow_speed import PICTURE, SIZES, WARM_UP, time_flow
+from sailenv_ros.experiments.frame_sources import agent_source, in_process_source
+from sailenv_ros.experiments.machine import provenance
+
+__all__ = ["flow_accuracy", "flow_speed"]
+
+OUR_LABEL = "sailenv_ros"
+
+EXACT_PX = 0.01
+"""Mean error of what moves, below which our flow counts as exact [px per frame]."""
+
+
+def flow_speed(args: argparse.Namespace) -> int:
+    """Time flow at each size."""
+    _check(args, "frames", args.frames)
+    sizes = checked_sizes(args.size or ()) or list(SIZES)
+    frames = args.frames
+    if args.quick:
+        sizes, frames = sizes[:2], min(frames, 5)
+    methods = _methods(args)
+    in_process = args.in_process or importlib.util.find_spec("rclpy") is None
+    source_of = in_process_source if in_process else agent_source
+    told = provenance(command_line())
+    measured, renderer = [], ""
+    with progress_bar(len(sizes) * (WARM_UP + frames)) as tell:
+        for width, height in sizes:
+            label = f"{width}×{height}"
+            with source_of(args.scene, width, height) as source:
+                times = time_flow(source, methods, frames=frames, on_frame=partial(tell, label))
+                renderer = source.renderer
+            measured.append({"width": width, "height": height, "times": times})
+    entries = [
+        {"name": OURS, "label": f"{OUR_LABEL}: picture and flow", "kind": "ours"},
+        {"name": PICTURE, "label": f"{OUR_LABEL}: picture alone", "kind": "picture"},
+        *({"name": m.name, "label": f"picture + {m.label}", "kind": "estimate"} for m in methods),
+    ]
+    data = {
+        "scene": args.scene,
+        "transport": "in process" if in_process else "Agent.get_frame() over DDS",
+        "frames": frames,
+        "renderer": renderer,
+        "methods": entries,
+        "sizes": measured,
+    }
+    finish(args, "flow_speed", told, data)
+    return 0
+
+
+def flow_accuracy(args: argparse.Namespace) -> int:
+    """Compare flow with arithmetic in each scenario; 1 if ours is not exact."""
+    _check(args, "pairs", args.pairs)
+    for name in args.scenario or ():
+        if name not in SCENARIOS:
+            raise UnknownName("scenario", name, SCENARIOS)
+    ((width, height),) = checked_sizes([args.size])
+    pairs = args.pairs
+    if args.quick:
+        width, height, pairs = min(width, 160), min(height, 120), min(pairs, 2)
+    names = args.scenario or list(SCENARIOS)
+    methods = _methods(args)
+    told = provenance(command_line())
+    judged, sheets = [], {}
+    with (
+        progress_bar(len(names) * pairs) as tell,
+        laboratory(width, height) as simulation,
+    ):
+        for name in names:
+            scenario = SCENARIOS[name]
+            found = judge_scenario(
+                simulation, scenario, methods, pairs=pairs,
+                on_pair=partial(tell, scenario.label),
+            )  # fmt: skip
+            judged.append(
+                {
+                    "name": name,
+                    "label": scenario.label,
+                    "compared": found.compared,
+                    "mean_motion_px": found.mean_motion_px,
+                    "errors": found.errors,
+                }
+            )
+            sheets[name] = found.pictures
+        renderer = simulation.info.renderer
+    pictures = _save_pictures(args, sheets)
+    data = {
+        "width": width,
+        "height": height,
+        "pairs": pairs,
+        "renderer": renderer,
+        "methods": [
+            {"name": OURS, "label": OUR_LABEL},
+            *({"name": method.name, "label": method.label} for method in methods),
+        ],
+        "scenarios": judged,
+        "pictures": pictures,
+    }
+    finish(args, "flow_accuracy", told, data)
+    worst = max(entry["errors"][OURS]["mean_moving"] for entry in judged)
+    return 0 if worst < EXACT_PX else 1
+
+
+def _check(args: argparse.Namespace, what: str, count: int) -> None:
+    if count < 1:
+        raise InvalidRequest(f"--{what}", count, "at least 1")
+    if not args.no_plots:
+        # Now, and not after an hour of measuring.
+        need("matplotlib", "a plot (or --no-plots)")
+
+
+def _methods(args: argparse.Namespace) -> list[FlowMethod]:
+    networks = [flow_network(path, value_range=args.network_white) for path in args.network]
+    return [*opencv_methods(), *networks]
+
+
+def _save_pictures(args: argparse.Namespace, sheets: dict[str, dict[str, Any]]) -> list[str]:
+    """Write one sheet for each scenario, and the four of the paper's question on one."""
+    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+
+    args.output.mkdir(parents=True, exist_ok=True)
+    for name, pictures in sheets.items():
+        save_contact_sheet(args.output / f"flow_{name}.png", pictures, columns=4)
+    chosen: list[str] = [
+        name for name in ("uniform", "textured", "camera", "both") if name in sheets
+    ]
+    chosen = chosen or list(sheets)[:4]
+    together = {
+        f"{name}: {label}": picture for name in chosen for label, picture in sheets[name].items()
+    }
+    columns = len(sheets[chosen[0]])
+    path = args.output / "flow_pictures.jpg"
+    save_contact_sheet(path, together, columns=columns, tile_width=240)
+    return [path.name, *(f"flow_{name}.png" for name in sheets)]

@@ -1,0 +1,27 @@
+"""Which tables a result has: the one place that knows every experiment by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from sailenv_ros.experiments.detection_tables import detection_tables
+from sailenv_ros.experiments.tables import Table, accuracy_tables, speed_tables
+from sailenv_ros.experiments.throughput_tables import throughput_tables
+
+__all__ = ["tables_of"]
+
+_TABLES: Mapping[str, Callable[[Mapping[str, Any]], list[Table]]] = MappingProxyType(
+    {
+        "flow_speed": speed_tables,
+        "flow_accuracy": accuracy_tables,
+        "detection": detection_tables,
+        "throughput": throughput_tables,
+    }
+)
+
+
+def tables_of(result: Mapping[str, Any]) -> list[Table]:
+    """Give the tables of a result as `results.load_result` reads it."""
+    return _TABLES[result["experiment"]](result["data"])

@@ -1,0 +1,151 @@
+"""What bounces and what comes from the surroundings, against closed formulas."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sailenv_ros.bake.bake import bake
+from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Environment, Light, SkyMap
+from tests.support.bake_scenes import COARSE, DARK, ground, hollow, read, still
+from tests.support.tiny_scenes import Thing, box_mesh, mesh_of, model_of, wall_mesh
+
+
+def grey(share: float) -> tuple[float, float, float, float]:
+    """A base colour."""
+    return (share, share, share, 1.0)
+
+
+@pytest.mark.parametrize("albedo", [0.0, 0.5, 0.8])
+def test_a_furnace_glows_alike_everywhere(albedo: float) -> None:
+    """In a closed box that glows with e, radiance is e / (1 - albedo), also at the probes."""
+    box = Thing(hollow((2.0, 3.0, 2.5), base_colour=grey(albedo), emission=(1.0, 0.5, 0.0)))
+    snapshot = still([box], lights=())
+    baked = bake(snapshot, settings=COARSE)
+    expected = np.array([1.0, 0.5, 0.0]) / (1.0 - albedo)
+    _, bounced = read(baked, 1, snapshot, baked.layers[0].bounced)
+    np.testing.assert_allclose(bounced, np.broadcast_to(expected, bounced.shape), rtol=0.08)
+    np.testing.assert_allclose(bounced.mean(axis=0), expected, rtol=0.03)
+    probes = baked.layers[0].probe_bounced.astype(float)[1:-1, 1:-1, 1:-1]
+    np.testing.assert_allclose(probes[..., 0, :].mean(axis=(0, 1, 2)), expected, rtol=0.03)
+    assert np.abs(probes[..., 1:, :]).max() < 0.05 * expected.max()
+
+
+def test_no_energy_is_won_or_lost() -> None:
+    """In a closed box the walls swallow what the lamp sends out: 4 pi I."""
+    albedo, size = 0.6, np.array([2.0, 3.0, 2.5])
+    lamp = Light(name="lamp", type="point", position_m=(0.1, -0.2, 0.3), range_m=1000.0)
+    snapshot = still([Thing(hollow(size, base_colour=grey(albedo)))], lights=(lamp,))
+    baked = bake(snapshot, settings=COARSE)
+    points, direct = read(baked, 1, snapshot, baked.layers[1].direct, steps=30)
+    _, bounced = read(baked, 1, snapshot, baked.layers[1].bounced, steps=30)
+    arriving = math.pi * (direct + bounced[:, 0])
+    face = np.argmax(np.abs(points) / (size / 2), axis=1)
+    areas = [2 * size[1] * size[2], 2 * size[0] * size[2], 2 * size[0] * size[1]]
+    absorbed = sum(areas[axis] * arriving[face == axis].mean() for axis in range(3))
+    assert (1 - albedo) * absorbed == pytest.approx(4 * math.pi, rel=0.04)
+
+
+def test_light_takes_the_colour_of_what_it_bounced_from() -> None:
+    """Before a red wall the floor gets red light, and its own colour plays no part in it."""
+    floor = Thing(ground(4.0, base_colour=grey(0.0)))
+    wall = Thing(model_of(wall_mesh(4.0, 4.0), base_colour=(0.9, 0.1, 0.0, 1.0)), Pose((1.0, 0, 0)))
+    sun = Light(name="sun", type="directional", direction=(1.0, 0.0, -0.2))
+    snapshot = still([floor, wall], lights=(sun,))
+    baked = bake(snapshot, settings=COARSE)
+    points, bounced = read(baked, 1, snapshot, baked.layers[1].bounced)
+    near = (points[:, 0] < 0.8) & (points[:, 0] > 0.0)
+    red, green, blue = bounced[near].mean(axis=0)
+    assert red > 0.02
+    assert green == pytest.approx(red / 9, rel=0.01)
+    assert blue == 0.0
+
+
+def test_a_plane_under_an_even_sky_gets_its_radiance() -> None:
+    """Irradiance / pi is the radiance; probes have it as c0 and no direction."""
+    sky = Environment(background="colour", background_colour=(0.2, 0.4, 0.8))
+    snapshot = still([Thing(ground(1.0, base_colour=grey(0.0)))], lights=(), environment=sky)
+    baked = bake(snapshot, settings=COARSE)
+    _, bounced = read(baked, 1, snapshot, baked.layers[0].bounced)
+    np.testing.assert_allclose(bounced, np.broadcast_to((0.2, 0.4, 0.8), bounced.shape), rtol=2e-3)
+
+
+def test_probes_in_even_light_have_no_direction() -> None:
+    """c0 is the radiance, c1 is 0."""
+    sky = Environment(background="colour", background_colour=(0.2, 0.4, 0.8))
+    speck = Thing(model_of(box_mesh(0.001)), Pose((0.5, 0.5, 0.5)))
+    other = Thing(model_of(box_mesh(0.001)), Pose((-0.5, -0.5, -0.5)))
+    baked = bake(still([speck, other], lights=(), environment=sky), settings=COARSE)
+    probes = baked.layers[0].probe_bounced.astype(float)
+    middle = probes.reshape(-1, 4, 3)
+    np.testing.assert_allclose(
+        middle[:, 0], np.broadcast_to((0.2, 0.4, 0.8), middle[:, 0].shape), rtol=0.01
+    )
+    assert np.abs(middle[:, 1:]).max() < 0.01
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 90.0, -135.0])
+def test_a_sky_picture_lights_from_where_it_is_bright(azimuth: float) -> None:
+    """Middle column towards +x, clockwise as seen from above; row 0 is the zenith."""
+    rows = 64
+    radiance = np.zeros((rows, 2 * rows, 3), dtype=np.float16)
+    column = round((0.5 - azimuth / 360.0) * 2 * rows) % (2 * rows)
+    radiance[rows // 2 - 8 : rows // 2, np.arange(column - 4, column + 4) % (2 * rows)] = 30.0
+    sky = SkyMap(radiance=radiance, zenith=(0, 0, 0), horizon=(0, 0, 0), ground=(0, 0, 0))
+    far = [Thing(model_of(box_mesh(0.001)), Pose((s, s, s))) for s in (0.5, -0.5)]
+    baked = bake(still(far, lights=(), environment=Environment(sky=sky)), settings=COARSE)
+    light = baked.layers[0].probe_bounced.astype(float).reshape(-1, 4, 3).mean(axis=0)[1:, 0]
+    assert math.degrees(math.atan2(light[1], light[0])) == pytest.approx(azimuth, abs=2.0)
+    assert light[2] > 0.0
+
+
+def test_a_window_gives_its_form_factor() -> None:
+    """Far from and near to a pane in a black box, the sky's share is that of the opening."""
+    size = 2.0
+    h, w = size / 2, 0.4
+    # The wall at x = h has a square hole, which glass fills.
+    bars = [(-h, -h, h, -w), (-h, w, h, h), (-h, -w, -w, w), (w, -w, h, w)]
+    corners = [[(h, a, b), (h, a, d), (h, c, d), (h, c, b)] for a, b, c, d in bars]
+    wall = mesh_of(
+        np.array(corners).reshape(-1, 3), [(-1, 0, 0)] * 16, np.zeros((16, 2)),
+        [4 * k + np.array(t) for k in range(4) for t in ((0, 1, 2), (0, 2, 3))],
+    )  # fmt: skip
+    box = hollow(size, base_colour=grey(0.0))
+    mesh = box.parts[0].mesh
+    open_box = mesh_of(
+        mesh.positions, mesh.normals, mesh.uvs,
+        [t for t in mesh.triangles if not (mesh.positions[t][:, 0] > h - 1e-6).all()],
+    )  # fmt: skip
+    black = {"base_colour": grey(0.0)}
+    pane = model_of(box_mesh((0.01, 2 * w, 2 * w)), alpha="blend", double_sided=True)
+    things = [
+        Thing(model_of(open_box, **black)),
+        Thing(model_of(wall, **black)),
+        Thing(pane, Pose((h, 0.0, 0.0))),
+    ]
+    sky = Environment(background="colour", background_colour=(1.0, 1.0, 1.0))
+    snapshot = still(things, lights=(), environment=sky)
+    baked = bake(snapshot, settings=replace(COARSE, texel_m=0.04))
+    points, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=5)
+    floor = points[:, 2] < -h + 1e-6
+    grid = (np.arange(60) + 0.5) / 60 * 2 * w - w
+    spots = np.stack(np.meshgrid([h], grid, grid), axis=-1).reshape(-1, 3)
+    offset = spots[None] - points[floor][:, None]
+    d2 = (offset**2).sum(axis=2)
+    expected = (offset[..., 2] * offset[..., 0] / d2**2).mean(axis=1) * (2 * w) ** 2 / math.pi
+    np.testing.assert_allclose(bounced[floor][:, 0], expected, rtol=0.06, atol=1e-3)
+
+
+def test_the_backs_of_walls_are_black() -> None:
+    """Light does not come through a wall, neither straight nor bounced."""
+    sun = Light(name="sun", type="directional", direction=(0.3, 0.2, -1.0))
+    sky = Environment(background="colour", background_colour=(1.0, 1.0, 1.0))
+    snapshot = still([Thing(hollow(2.0))], lights=(sun,), environment=sky)
+    baked = bake(snapshot, settings=COARSE)
+    for layer in baked.layers:
+        assert not read(baked, 1, snapshot, layer.bounced)[1].any()
+    assert not DARK.background_colour[0]

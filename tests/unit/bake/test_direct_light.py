@@ -1,0 +1,132 @@
+"""What arrives straight from lights, against closed formulas."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sailenv_ros.bake.bake import bake
+from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Light
+from tests.support.bake_scenes import COARSE, ground, read, still
+from tests.support.tiny_scenes import Thing, box_mesh, model_of, wall_mesh
+
+FLOOR = Thing(ground(4.0))
+
+
+def direct_on_floor(
+    *lights: Light, things: tuple[Thing, ...] = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points of the floor and what arrives there straight from the last light."""
+    snapshot = still([FLOOR, *things], lights=lights)
+    baked = bake(snapshot, settings=COARSE)
+    return read(baked, 1, snapshot, baked.layers[-1].direct)
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, -1.0), (0.6, 0.0, -0.8), (0.3, -0.9, -0.4)])
+def test_the_sun_gives_its_cosine(direction: tuple[float, float, float]) -> None:
+    """Irradiance / pi of a directional light of intensity 1 is cosine / pi."""
+    sun = Light(name="sun", type="directional", direction=direction)
+    _, direct = direct_on_floor(sun)
+    np.testing.assert_allclose(direct, -sun.direction[2] / math.pi, rtol=2e-3)
+
+
+def test_colour_and_intensity_are_not_baked() -> None:
+    """A layer is for white light of intensity 1, whatever the light's are."""
+    sun = Light(name="sun", type="directional", intensity=7.0, colour=(1.0, 0.5, 0.0))
+    _, direct = direct_on_floor(sun)
+    np.testing.assert_allclose(direct, 1.0 / math.pi, rtol=2e-3)
+
+
+def test_a_lamp_falls_off_with_the_square_of_the_distance() -> None:
+    """Irradiance is cosine / d² times the window that ends it at its range."""
+    lamp = Light(name="lamp", type="point", position_m=(0.3, -0.2, 1.5), range_m=8.0)
+    points, direct = direct_on_floor(lamp)
+    offset = np.array(lamp.position_m) - points
+    d2 = (offset**2).sum(axis=1)
+    window = np.clip(1.0 - (d2 / 64.0) ** 2, 0.0, 1.0) ** 2
+    expected = window * offset[:, 2] / d2**1.5 / math.pi
+    np.testing.assert_allclose(direct, expected, rtol=0.02)
+
+
+def test_a_spot_light_ends_at_its_cone() -> None:
+    """All of it within the inner cone, nothing beyond the outer."""
+    spot = Light(
+        name="spot", type="spot", position_m=(0.0, 0.0, 2.0), inner_cone_deg=20, outer_cone_deg=30
+    )
+    points, direct = direct_on_floor(spot)
+    radius = np.hypot(points[:, 0], points[:, 1])
+    angle = np.degrees(np.arctan(radius / 2.0))
+    assert (direct[angle > 34] == 0).all()
+    full = angle < 17
+    expected = 2.0 / (radius[full] ** 2 + 4.0) ** 1.5 / math.pi
+    np.testing.assert_allclose(direct[full], expected, rtol=0.02)
+
+
+def test_an_area_light_gives_its_form_factor() -> None:
+    """Irradiance / pi of radiance 1 is the form factor of the rectangle (parallel plates)."""
+    width, height, above = 1.2, 0.8, 1.0
+    panel = Light(
+        name="panel", type="area", position_m=(0, 0, above), width_m=width, height_m=height
+    )
+    points, direct = direct_on_floor(panel)
+
+    def corner(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        a, b = np.sqrt(1 + x * x), np.sqrt(1 + y * y)
+        return (x / a * np.arctan(y / a) + y / b * np.arctan(x / b)) / (2 * math.pi)
+
+    # The width of a light that shines straight down lies along y.
+    x0, x1 = (-height / 2 - points[:, 0]) / above, (height / 2 - points[:, 0]) / above
+    y0, y1 = (-width / 2 - points[:, 1]) / above, (width / 2 - points[:, 1]) / above
+    expected = corner(x1, y1) - corner(x0, y1) - corner(x1, y0) + corner(x0, y0)
+    np.testing.assert_allclose(direct, expected, rtol=0.03, atol=1e-3)
+
+
+def test_an_area_light_shines_to_its_front_alone() -> None:
+    """Nothing arrives behind it."""
+    panel = Light(name="panel", type="area", position_m=(0, 0, 1), direction=(0, 0, 1))
+    _, direct = direct_on_floor(panel)
+    assert (direct == 0).all()
+
+
+def test_what_stands_in_the_way_casts_a_shadow() -> None:
+    """No sun under a board, all of it beside the board; the visibility map tells the same."""
+    sun = Light(name="sun", type="directional")
+    board = Thing(model_of(box_mesh((1.0, 1.0, 0.1))), Pose((0.0, 0.0, 0.5)))
+    snapshot = still([FLOOR, board], lights=(sun,))
+    baked = bake(snapshot, settings=COARSE)
+    points, direct = read(baked, 1, snapshot, baked.layers[1].direct)
+    visibility = baked.layers[1].visibility
+    assert visibility is not None
+    _, seen = read(baked, 1, snapshot, visibility)
+    far = np.abs(points[:, :2]).max(axis=1)
+    assert (direct[far < 0.35] == 0).all()
+    assert (seen[far < 0.35] == 0).all()
+    np.testing.assert_allclose(direct[far > 0.65], 1 / math.pi, rtol=2e-3)
+    assert (seen[far > 0.65] == 255).all()
+
+
+@pytest.mark.parametrize(("alpha", "share"), [("blend", 1.0), ("opaque", 0.0)])
+def test_glass_lets_light_pass(alpha: str, share: float) -> None:
+    """The sun shines through a pane, not through a board of the same shape."""
+    pane = Thing(model_of(wall_mesh(9.0, 9.0), alpha=alpha, double_sided=True), Pose((2.5, 0, 0)))
+    sun = Light(name="sun", type="directional", direction=(-1.0, 0.0, -1.0))
+    points, direct = direct_on_floor(sun, things=(pane,))
+    behind = points[:, 0] < 1.9
+    cosine = math.sqrt(0.5)
+    np.testing.assert_allclose(direct[behind], share * cosine / math.pi, atol=2e-3)
+
+
+def test_layers_come_in_the_order_of_the_lights() -> None:
+    """The surroundings first; only directional lights have a visibility map."""
+    lights = (
+        Light(name="lamp", type="point"),
+        Light(name="sun", type="directional"),
+        Light(name="panel", type="area"),
+    )
+    baked = bake(still([FLOOR], lights=lights), settings=COARSE)
+    assert [layer.light for layer in baked.layers] == [None, *lights]
+    assert [layer.visibility is not None for layer in baked.layers] == [False, False, True, False]
+    assert not baked.layers[0].direct.any()

@@ -1,0 +1,121 @@
+"""Baked light in the user's cache: what was stored comes back, what is broken does not."""
+
+from __future__ import annotations
+
+import logging
+import os
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_ros.bake import files
+from sailenv_ros.bake.bake import bake
+from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.lights import Light
+from tests.support.bake_scenes import COARSE, ground, still
+from tests.support.tiny_scenes import Thing
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache of the test's own."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    return tmp_path / "light"
+
+
+@pytest.fixture(scope="module")
+def baked() -> BakedLight:
+    """Something to store."""
+    lights = (Light(name="sun", type="directional"), Light(name="lamp", type="point"))
+    model = ground(1.0)
+    return bake(still([Thing(model), Thing(model)], lights=lights), settings=COARSE)
+
+
+def test_what_is_stored_comes_back(baked: BakedLight) -> None:
+    """Every number, read-only, and one unwrapping for all instances of a model."""
+    files.store_baked(baked)
+    loaded = files.load_baked(baked.fingerprint)
+    assert loaded is not None
+    assert loaded.fingerprint == baked.fingerprint
+    assert asdict(loaded.probes) == asdict(baked.probes)
+    assert list(loaded.charts) == list(baked.charts)
+    assert loaded.charts[1].unwrapping is loaded.charts[2].unwrapping
+    for number, chart in baked.charts.items():
+        same = loaded.charts[number]
+        assert (same.offset, same.scale) == (chart.offset, chart.scale)
+        np.testing.assert_array_equal(same.world_from_body, chart.world_from_body)
+        for name in ("vertices", "triangles", "uvs"):
+            for one, other in zip(
+                getattr(same.unwrapping, name), getattr(chart.unwrapping, name), strict=True
+            ):
+                np.testing.assert_array_equal(one, other)
+    for layer, same_layer in zip(baked.layers, loaded.layers, strict=True):
+        assert same_layer.light == layer.light
+        for name in ("direct", "bounced", "probe_direct", "probe_bounced", "visibility"):
+            np.testing.assert_array_equal(getattr(same_layer, name), getattr(layer, name))
+        assert not same_layer.bounced.flags.writeable
+
+
+def test_nothing_there_is_none_without_a_word(caplog: pytest.LogCaptureFixture) -> None:
+    """A scene that was never baked is no fault."""
+    assert files.load_baked("0" * 32) is None
+    assert not caplog.records
+
+
+@pytest.mark.parametrize("damage", ["empty", "cut", "text", "other"])
+def test_a_broken_file_is_as_good_as_none(
+    baked: BakedLight, damage: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    """One warning, and it can be stored again."""
+    path = files.store_baked(baked)
+    whole = path.read_bytes()
+    name = baked.fingerprint
+    if damage == "other":
+        name = "1" * 32
+        files.baked_file(name).write_bytes(whole)
+    else:
+        path.write_bytes({"empty": b"", "cut": whole[: len(whole) // 2], "text": b"light"}[damage])
+    with caplog.at_level(logging.WARNING):
+        assert files.load_baked(name) is None
+    assert [record.levelname for record in caplog.records] == ["WARNING"]
+    files.store_baked(baked)
+    assert files.load_baked(baked.fingerprint) is not None
+
+
+def test_a_failed_write_leaves_nothing(
+    baked: BakedLight, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither half a file nor a temporary one."""
+
+    def full(*args: object, **kwargs: object) -> None:
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(np, "savez", full)
+    with pytest.raises(OSError, match="full"):
+        files.store_baked(baked)
+    assert list(cache.iterdir()) == []
+
+
+def test_old_files_are_thrown_away(tmp_path: Path) -> None:
+    """Those that were not used for longest."""
+    for age in range(6):
+        path = tmp_path / f"{age}.npz"
+        path.write_bytes(b"")
+        os.utime(path, ns=(10**9 * (100 - age), 10**9 * (100 - age)))
+    files.forget_oldest(tmp_path, most=2)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["0.npz", "1.npz"]
+
+
+def test_a_scene_is_known_while_its_light_is_there(baked: BakedLight) -> None:
+    """A note without its file, or with nonsense in it, is none."""
+    stamp = "a" * 32
+    assert not files.is_baked(stamp)
+    path = files.store_baked(baked)
+    files.remember(stamp, baked.fingerprint)
+    assert files.is_baked(stamp)
+    path.unlink()
+    assert not files.is_baked(stamp)
+    path.with_name(f"{stamp}.known").write_text("../../etc/passwd")
+    assert not files.is_baked(stamp)

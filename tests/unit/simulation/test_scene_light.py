@@ -1,0 +1,125 @@
+"""Baked light finds its scene; where there is none the log says what to do, once."""
+
+from __future__ import annotations
+
+import itertools
+import logging
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from sailenv_ros.bake.bake import bake
+from sailenv_ros.bake.files import store_baked
+from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.cli import scene_bake
+from sailenv_ros.cli.main import main
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.snapshot import SceneContents
+from tests.support.bake_scenes import COARSE
+
+ROOM = """
+version: 1
+title: Cell
+lights:
+  - {name: lamp, type: point, position: [0, 0, 1.5]}
+room: {size: [2, 2, 2]}
+objects:
+  - {name: ball, asset: sphere, position: [0, 0, 1]}
+"""
+
+
+@pytest.fixture
+def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A room's file, and a cache of the test's own."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
+    file = tmp_path / "cell.yaml"
+    file.write_text(ROOM)
+    return file
+
+
+def contents(library: SceneLibrary, scene: str | Path) -> SceneContents:
+    """What is in a scene's world just after it was built."""
+    world = library.build(scene, seed=0, epoch=1, next_revision=itertools.count().__next__)
+    try:
+        return world.snapshot().contents
+    finally:
+        world.close()
+
+
+def quick_bake(library: SceneLibrary, scene: str | Path) -> BakedLight:
+    """Bake coarsely what is then kept as if it were fine."""
+    world = library.build(scene, seed=0, epoch=1, next_revision=itertools.count().__next__)
+    try:
+        snapshot = world.snapshot()
+    finally:
+        world.close()
+    settings = replace(COARSE, texel_m=0.3, rays=4, fine_rays=4, coarse_rays=4)
+    return replace(bake(snapshot, settings=settings), fingerprint=fingerprint(snapshot))
+
+
+def test_a_room_gets_its_light_from_the_cache(cell: Path) -> None:
+    """Also in the next epoch, from the same object: a reset loads nothing."""
+    library = SceneLibrary()
+    store_baked(quick_bake(library, cell))
+    first, second = contents(library, cell).baked, contents(library, cell).baked
+    assert first is not None
+    assert second is not None
+    assert first.layers[1].bounced is second.layers[1].bounced
+    assert set(first.charts) == {
+        drawn.instance.id for drawn in contents(library, cell).instances if drawn.instance.static
+    }
+
+
+def test_a_room_without_light_is_told_how_to_get_it(
+    cell: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """One sentence with the command; a scene without a room is not spoken of."""
+    caplog.set_level(logging.INFO, "sailenv_ros.simulation.scene_light")
+    assert contents(SceneLibrary(), cell).baked is None
+    assert [r.getMessage().endswith(f"sailenv scene bake {cell}") for r in caplog.records] == [True]
+    caplog.clear()
+    assert contents(SceneLibrary(), "optical").baked is None
+    assert not caplog.records
+
+
+def test_a_stamp_changes_with_the_file(cell: Path) -> None:
+    """What was known of a scene is not believed of another one in its place."""
+    before = SceneLibrary().stamp(cell)
+    assert SceneLibrary().stamp(cell) == before
+    cell.write_text(ROOM.replace("1.5", "1.4"))
+    assert SceneLibrary().stamp(cell) != before
+
+
+def test_the_command_bakes_once(
+    cell: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second time it says that the light is there; `run` then bakes nothing either."""
+    times: list[str] = []
+
+    def fake(library: object, scene: str) -> BakedLight:
+        times.append(scene)
+        return quick_bake(SceneLibrary(), cell)
+
+    monkeypatch.setattr(scene_bake, "_with_a_bar", fake)
+    scene_bake.bake_before_running(str(cell), [])
+    assert main(["scene", "bake", str(cell)]) == 0
+    assert "baked already" in capsys.readouterr().out
+    scene_bake.bake_before_running(str(cell), [])
+    assert len(times) == 1
+    assert main(["scene", "bake", "--force", str(cell)]) == 0
+    assert "MB" in capsys.readouterr().out
+    assert len(times) == 2
+
+
+def test_a_scene_without_a_room_is_not_baked(capsys: pytest.CaptureFixture[str]) -> None:
+    """The command says so, and nothing is wrong."""
+    assert main(["scene", "bake", "optical"]) == 0
+    assert "it has no room" in capsys.readouterr().out
+
+
+def test_baking_nothing_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """Neither names nor --all."""
+    assert main(["scene", "bake"]) == 2
+    assert "or --all" in capsys.readouterr().err
