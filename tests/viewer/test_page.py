@@ -82,6 +82,7 @@ def test_tab_hands_the_mover_over_and_back(opened: OpenPage, simulation: Simulat
     for wanted in (drivers[1 - at], drivers[at]):
         opened.page.keyboard.press("Tab")
         until(lambda wanted=wanted: controller(simulation) == wanted, "Tab to hand over")
+        opened.until(lambda wanted=wanted: opened.data("controller") == wanted, "it to be shown")
 
 
 def test_keys_walk_the_mover(opened: OpenPage, simulation: Simulation) -> None:
