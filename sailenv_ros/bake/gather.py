@@ -55,6 +55,14 @@ class Surroundings:
     sky: Floats
     panes: Floats
 
+    def clearness(self, texels: NDArray[np.int32], origins: Floats, directions: Floats) -> Floats:
+        """Give (R,) float32: how much glass lets through of rays that met nothing, else 1."""
+        clear = np.ones(len(texels), dtype=np.float32)
+        out = np.flatnonzero(texels == NOTHING)
+        never = np.full(len(out), NEVER, np.float32)
+        clear[out] = self.scene.clearness(origins[out], directions[out], never)
+        return clear
+
     def texels_hit(self, hits: Hits, directions: Floats) -> NDArray[np.int32]:
         """Give (R,) int32: the texel that each ray met, `NOTHING` or `BACK`."""
         found = np.empty(len(directions), dtype=np.int32)
@@ -120,9 +128,13 @@ def window_light(
     light = np.zeros((len(texels), 3), dtype=np.float32)
     panes = around.panes if len(window_pattern) else around.panes[:0]
     shots = max(len(window_pattern), 1)
+    rays = texels.shape[1]
+    origins = np.repeat(points.positions, rays, axis=0)
+    clear = around.clearness(texels.reshape(-1), origins, directions.reshape(-1, 3))
     _sky_by_chance(
-        points.positions, points.normals, directions, texels, around.sky, panes, shots, light
-    )
+        points.positions, points.normals, directions, texels, clear.reshape(-1, rays),
+        around.sky, panes, shots, light,
+    )  # fmt: skip
     for pane in panes:
         _look_through(around, points, pane, panes, window_pattern, texels.shape[1], light)
     return light
@@ -147,9 +159,11 @@ def _look_through(
     point, _ = np.nonzero(wanted)
     chosen = towards[wanted]
     origins = points.positions[point] + points.faces[point] * np.float32(LIFT_M)
-    free = around.scene.is_free(origins, chosen, np.full(len(chosen), NEVER, np.float32))
+    never = np.full(len(chosen), NEVER, np.float32)
+    share = around.scene.share_that_passes(origins, chosen, never)
+    free = share > 0.0
     _sky_by_choice(
-        points.positions, points.normals, point[free], chosen[free],
+        points.positions, points.normals, point[free], chosen[free], share[free],
         around.sky, panes, len(pattern), others, light,
     )  # fmt: skip
 
@@ -228,7 +242,7 @@ def _density(panes, position, dx, dy, dz):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True, nogil=True)
 def _sky_by_chance(  # type: ignore[no-untyped-def]
-    positions, normals, directions, texels, sky, panes, shots, light
+    positions, normals, directions, texels, clear, sky, panes, shots, light
 ):
     count, rays = texels.shape
     for k in range(count):
@@ -240,18 +254,20 @@ def _sky_by_chance(  # type: ignore[no-untyped-def]
             cosine = max(dx * normals[k, 0] + dy * normals[k, 1] + dz * normals[k, 2], 1e-3)
             own = cosine / np.pi
             weight = own / (rays * own + shots * _density(panes, positions[k], dx, dy, dz))
+            weight *= clear[k, m]
             for c in range(3):
                 light[k, c] += weight * sky_at(sky, dx, dy, dz, c)
 
 
 @numba.njit(cache=True, nogil=True)
 def _sky_by_choice(  # type: ignore[no-untyped-def]
-    positions, normals, point, directions, sky, panes, shots, others, light
+    positions, normals, point, directions, share, sky, panes, shots, others, light
 ):
     for ray in range(len(point)):
         k = point[ray]
         dx, dy, dz = directions[ray]
         own = (dx * normals[k, 0] + dy * normals[k, 1] + dz * normals[k, 2]) / np.pi
         weight = own / (others * own + shots * _density(panes, positions[k], dx, dy, dz))
+        weight *= share[ray]
         for c in range(3):
             light[k, c] += weight * sky_at(sky, dx, dy, dz, c)
