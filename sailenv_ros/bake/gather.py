@@ -17,6 +17,7 @@ from sailenv_ros.bake.direct import LIFT_M, Points
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
 from sailenv_ros.bake.sampling import hemisphere_rays, shifted
 from sailenv_ros.bake.sky import sky_at
+from sailenv_ros.bake.twins import Twins
 
 __all__ = ["BACK", "NOTHING", "Surroundings", "gathered", "seen_from", "window_light"]
 
@@ -39,6 +40,7 @@ class Surroundings:
     faces : (T, 3) float32
         Normals of the triangles.
     two_sided : (T,) bool
+    twins : Twins
     places : (T, 3, 2) float32
         Of the triangles' corners in the map.
     index : (H, W) int32
@@ -50,6 +52,7 @@ class Surroundings:
     scene: RayScene
     faces: Floats
     two_sided: NDArray[np.bool_]
+    twins: Twins
     places: Floats
     index: NDArray[np.int32]
     sky: Floats
@@ -68,7 +71,8 @@ class Surroundings:
         found = np.empty(len(directions), dtype=np.int32)
         _texels_hit(
             hits.triangle, hits.second, hits.third, directions,
-            self.faces, self.two_sided, self.places, self.index, found,
+            self.faces, self.two_sided, self.twins.other, self.twins.corner,
+            self.places, self.index, found,
         )  # fmt: skip
         return found
 
@@ -170,9 +174,10 @@ def _look_through(
 
 @numba.njit(cache=True, nogil=True)
 def _texels_hit(  # type: ignore[no-untyped-def]
-    triangle, second, third, directions, faces, two_sided, places, index, found
+    triangle, second, third, directions, faces, two_sided, twin, corner, places, index, found
 ):
     height, width = index.shape
+    weights = np.empty(3, np.float32)
     for ray in range(len(triangle)):
         t = triangle[ray]
         if t < 0:
@@ -183,13 +188,18 @@ def _texels_hit(  # type: ignore[no-untyped-def]
             + directions[ray, 1] * faces[t, 1]
             + directions[ray, 2] * faces[t, 2]
         )
-        if facing > 0.0 and not two_sided[t]:
-            found[ray] = BACK
-            continue
         b, c = second[ray], third[ray]
-        a = 1.0 - b - c
-        x = a * places[t, 0, 0] + b * places[t, 1, 0] + c * places[t, 2, 0]
-        y = a * places[t, 0, 1] + b * places[t, 1, 1] + c * places[t, 2, 1]
+        weights[0], weights[1], weights[2] = 1.0 - b - c, b, c
+        if facing > 0.0 and not two_sided[t]:
+            if twin[t] < 0:
+                found[ray] = BACK
+                continue
+            weights[corner[t, 0]], weights[corner[t, 1]], weights[corner[t, 2]] = 1.0 - b - c, b, c
+            t = twin[t]
+        x = y = 0.0
+        for k in range(3):
+            x += weights[k] * places[t, k, 0]
+            y += weights[k] * places[t, k, 1]
         column = min(max(int(x), 0), width - 1)
         row = min(max(int(y), 0), height - 1)
         found[ray] = index[row, column] if index[row, column] >= 0 else BACK
