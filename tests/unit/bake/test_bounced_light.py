@@ -139,7 +139,8 @@ def test_a_window_gives_its_form_factor() -> None:
         [t for t in mesh.triangles if not (mesh.positions[t][:, 0] > h - 1e-6).all()],
     )  # fmt: skip
     black = sending(grey(0.0))
-    pane = model_of(box_mesh((0.01, 2 * w, 2 * w)), alpha="blend", double_sided=True)
+    glass = {"alpha": "blend", "double_sided": True, "base_colour": (1.0, 1.0, 1.0, 0.1)}
+    pane = model_of(box_mesh((0.01, 2 * w, 2 * w)), **glass)
     things = [
         Thing(model_of(open_box, **black)),
         Thing(model_of(wall, **black)),
@@ -154,7 +155,8 @@ def test_a_window_gives_its_form_factor() -> None:
     spots = np.stack(np.meshgrid([h], grid, grid), axis=-1).reshape(-1, 3)
     offset = spots[None] - points[floor][:, None]
     d2 = (offset**2).sum(axis=2)
-    expected = (offset[..., 2] * offset[..., 0] / d2**2).mean(axis=1) * (2 * w) ** 2 / math.pi
+    factors = (offset[..., 2] * offset[..., 0] / d2**2).mean(axis=1) * (2 * w) ** 2 / math.pi
+    expected = 0.9 * factors
     np.testing.assert_allclose(bounced[floor][:, 0], expected, rtol=0.06, atol=1e-3)
 
 
