@@ -34,6 +34,7 @@ from sailenv_ros.bake.sky import panes, sky_picture
 from sailenv_ros.bake.smooth import filled, smoothed
 from sailenv_ros.bake.surfaces import albedo_of, emission_of
 from sailenv_ros.bake.texels import rasterised
+from sailenv_ros.bake.twins import twins_of
 from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
 from sailenv_ros.lights import Light
 from sailenv_ros.snapshot import WorldSnapshot
@@ -110,6 +111,7 @@ class _Bake:
             scene=scene,
             faces=scenery.faces,
             two_sided=scenery.two_sided,
+            twins=twins_of(scenery),
             places=layout.places,
             index=texels.index,
             sky=sky_picture(contents.environment),

@@ -110,7 +110,9 @@ def arriving(
     point, _ = np.nonzero(wanted)
     origins = points.positions[point] + points.faces[point] * np.float32(LIFT_M)
     free = np.zeros(wanted.shape, dtype=np.float32)
-    free[wanted] = scene.is_free(origins, samples.towards[wanted], samples.lengths[wanted])
+    free[wanted] = scene.share_that_passes(
+        origins, samples.towards[wanted], samples.lengths[wanted]
+    )
     light_on = samples.irradiance * np.maximum(cosine, 0.0) * free
     arrives = light_on.mean(axis=1, dtype=np.float64) / math.pi
     return arrives.astype(np.float32), free.mean(axis=1, dtype=np.float64).astype(np.float32)

@@ -17,6 +17,7 @@ from sailenv_ros.bake.direct import LIFT_M, Points
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
 from sailenv_ros.bake.sampling import hemisphere_rays, shifted
 from sailenv_ros.bake.sky import sky_at
+from sailenv_ros.bake.twins import Twins
 
 __all__ = ["BACK", "NOTHING", "Surroundings", "gathered", "seen_from", "window_light"]
 
@@ -39,6 +40,7 @@ class Surroundings:
     faces : (T, 3) float32
         Normals of the triangles.
     two_sided : (T,) bool
+    twins : Twins
     places : (T, 3, 2) float32
         Of the triangles' corners in the map.
     index : (H, W) int32
@@ -50,17 +52,27 @@ class Surroundings:
     scene: RayScene
     faces: Floats
     two_sided: NDArray[np.bool_]
+    twins: Twins
     places: Floats
     index: NDArray[np.int32]
     sky: Floats
     panes: Floats
+
+    def clearness(self, texels: NDArray[np.int32], origins: Floats, directions: Floats) -> Floats:
+        """Give (R,) float32: how much glass lets through of rays that met nothing, else 1."""
+        clear = np.ones(len(texels), dtype=np.float32)
+        out = np.flatnonzero(texels == NOTHING)
+        never = np.full(len(out), NEVER, np.float32)
+        clear[out] = self.scene.clearness(origins[out], directions[out], never)
+        return clear
 
     def texels_hit(self, hits: Hits, directions: Floats) -> NDArray[np.int32]:
         """Give (R,) int32: the texel that each ray met, `NOTHING` or `BACK`."""
         found = np.empty(len(directions), dtype=np.int32)
         _texels_hit(
             hits.triangle, hits.second, hits.third, directions,
-            self.faces, self.two_sided, self.places, self.index, found,
+            self.faces, self.two_sided, self.twins.other, self.twins.corner,
+            self.places, self.index, found,
         )  # fmt: skip
         return found
 
@@ -120,9 +132,13 @@ def window_light(
     light = np.zeros((len(texels), 3), dtype=np.float32)
     panes = around.panes if len(window_pattern) else around.panes[:0]
     shots = max(len(window_pattern), 1)
+    rays = texels.shape[1]
+    origins = np.repeat(points.positions, rays, axis=0)
+    clear = around.clearness(texels.reshape(-1), origins, directions.reshape(-1, 3))
     _sky_by_chance(
-        points.positions, points.normals, directions, texels, around.sky, panes, shots, light
-    )
+        points.positions, points.normals, directions, texels, clear.reshape(-1, rays),
+        around.sky, panes, shots, light,
+    )  # fmt: skip
     for pane in panes:
         _look_through(around, points, pane, panes, window_pattern, texels.shape[1], light)
     return light
@@ -147,18 +163,21 @@ def _look_through(
     point, _ = np.nonzero(wanted)
     chosen = towards[wanted]
     origins = points.positions[point] + points.faces[point] * np.float32(LIFT_M)
-    free = around.scene.is_free(origins, chosen, np.full(len(chosen), NEVER, np.float32))
+    never = np.full(len(chosen), NEVER, np.float32)
+    share = around.scene.share_that_passes(origins, chosen, never)
+    free = share > 0.0
     _sky_by_choice(
-        points.positions, points.normals, point[free], chosen[free],
+        points.positions, points.normals, point[free], chosen[free], share[free],
         around.sky, panes, len(pattern), others, light,
     )  # fmt: skip
 
 
 @numba.njit(cache=True, nogil=True)
 def _texels_hit(  # type: ignore[no-untyped-def]
-    triangle, second, third, directions, faces, two_sided, places, index, found
+    triangle, second, third, directions, faces, two_sided, twin, corner, places, index, found
 ):
     height, width = index.shape
+    weights = np.empty(3, np.float32)
     for ray in range(len(triangle)):
         t = triangle[ray]
         if t < 0:
@@ -169,13 +188,18 @@ def _texels_hit(  # type: ignore[no-untyped-def]
             + directions[ray, 1] * faces[t, 1]
             + directions[ray, 2] * faces[t, 2]
         )
-        if facing > 0.0 and not two_sided[t]:
-            found[ray] = BACK
-            continue
         b, c = second[ray], third[ray]
-        a = 1.0 - b - c
-        x = a * places[t, 0, 0] + b * places[t, 1, 0] + c * places[t, 2, 0]
-        y = a * places[t, 0, 1] + b * places[t, 1, 1] + c * places[t, 2, 1]
+        weights[0], weights[1], weights[2] = 1.0 - b - c, b, c
+        if facing > 0.0 and not two_sided[t]:
+            if twin[t] < 0:
+                found[ray] = BACK
+                continue
+            weights[corner[t, 0]], weights[corner[t, 1]], weights[corner[t, 2]] = 1.0 - b - c, b, c
+            t = twin[t]
+        x = y = 0.0
+        for k in range(3):
+            x += weights[k] * places[t, k, 0]
+            y += weights[k] * places[t, k, 1]
         column = min(max(int(x), 0), width - 1)
         row = min(max(int(y), 0), height - 1)
         found[ray] = index[row, column] if index[row, column] >= 0 else BACK
@@ -228,7 +252,7 @@ def _density(panes, position, dx, dy, dz):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True, nogil=True)
 def _sky_by_chance(  # type: ignore[no-untyped-def]
-    positions, normals, directions, texels, sky, panes, shots, light
+    positions, normals, directions, texels, clear, sky, panes, shots, light
 ):
     count, rays = texels.shape
     for k in range(count):
@@ -240,18 +264,20 @@ def _sky_by_chance(  # type: ignore[no-untyped-def]
             cosine = max(dx * normals[k, 0] + dy * normals[k, 1] + dz * normals[k, 2], 1e-3)
             own = cosine / np.pi
             weight = own / (rays * own + shots * _density(panes, positions[k], dx, dy, dz))
+            weight *= clear[k, m]
             for c in range(3):
                 light[k, c] += weight * sky_at(sky, dx, dy, dz, c)
 
 
 @numba.njit(cache=True, nogil=True)
 def _sky_by_choice(  # type: ignore[no-untyped-def]
-    positions, normals, point, directions, sky, panes, shots, others, light
+    positions, normals, point, directions, share, sky, panes, shots, others, light
 ):
     for ray in range(len(point)):
         k = point[ray]
         dx, dy, dz = directions[ray]
         own = (dx * normals[k, 0] + dy * normals[k, 1] + dz * normals[k, 2]) / np.pi
         weight = own / (others * own + shots * _density(panes, positions[k], dx, dy, dz))
+        weight *= share[ray]
         for c in range(3):
             light[k, c] += weight * sky_at(sky, dx, dy, dz, c)

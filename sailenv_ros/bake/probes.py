@@ -55,7 +55,8 @@ def probe_light(around: Surroundings, positions: Floats, radiance: Floats, rays:
     for k, position in enumerate(positions):
         hits = around.scene.hits(np.tile(position, (rays, 1)), directions)
         texels = around.texels_hit(hits, directions)
-        _collect(texels, directions, radiance, around.sky, light[k])
+        clear = around.clearness(texels, np.tile(position, (rays, 1)), directions)
+        _collect(texels, directions, clear, radiance, around.sky, light[k])
     return light
 
 
@@ -64,7 +65,7 @@ def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Fl
     shifts = np.zeros((len(positions), 2), dtype=np.float32)
     samples = samples_of(light, positions, shifts, pattern)
     count = len(pattern)
-    free = scene.is_free(
+    free = scene.share_that_passes(
         np.repeat(positions, count, axis=0),
         samples.towards.reshape(-1, 3),
         samples.lengths.reshape(-1),
@@ -108,7 +109,7 @@ def filled_in(values: Floats, unknown: NDArray[np.bool_], grid: ProbeGrid) -> Fl
 
 
 @numba.njit(cache=True, nogil=True)
-def _collect(texels, directions, radiance, sky, light):  # type: ignore[no-untyped-def]
+def _collect(texels, directions, clear, radiance, sky, light):  # type: ignore[no-untyped-def]
     channels = radiance.shape[1]
     rays = len(texels)
     for m in range(rays):
@@ -119,7 +120,9 @@ def _collect(texels, directions, radiance, sky, light):  # type: ignore[no-untyp
             if texel >= 0:
                 value = radiance[texel, c]
             elif c < 3:
-                value = sky_at(sky, directions[m, 0], directions[m, 1], directions[m, 2], c)
+                value = clear[m] * sky_at(
+                    sky, directions[m, 0], directions[m, 1], directions[m, 2], c
+                )
             else:
                 break
             light[0, c] += value / rays

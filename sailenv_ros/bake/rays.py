@@ -42,22 +42,17 @@ class Hits:
 
 
 class RayScene:
-    """The solid triangles of a scenery, ready to be met by rays from any thread."""
+    """The triangles of a scenery, ready to be met by rays from any thread."""
 
     def __init__(self, scenery: Scenery) -> None:
         self._triangles = np.flatnonzero(scenery.solid).astype(np.int32)
-        self._scene = EmbreeScene()
-        self.rays = 0
-        """How many rays were cast."""
-        if len(self._triangles):
-            self._mesh = TriangleMesh(self._scene, scenery.corners[self._triangles])
-            # The first query builds the tree; threads shall find it built.
-            nowhere = np.zeros((1, 3), np.float32)
-            self._scene.run(nowhere, nowhere + 1)
+        self._scene, self._mesh = _tree(scenery.corners[self._triangles])
+        glass = np.flatnonzero(~scenery.solid & (scenery.passes < 1.0))
+        self._glass, self._glass_mesh = _tree(scenery.corners[glass])
+        self._passes = scenery.passes[glass]
 
     def hits(self, origins: Floats, directions: Floats) -> Hits:
-        """Find what rays meet first."""
-        self.rays += len(origins)
+        """Find what solid triangles rays meet first."""
         if not len(self._triangles):
             none = np.zeros(len(origins), np.float32)
             never = np.full(len(origins), NEVER, np.float32)
@@ -72,14 +67,38 @@ class RayScene:
             third=answer["v"],
         )
 
-    def is_free(self, origins: Floats, directions: Floats, lengths: Floats) -> NDArray[np.bool_]:
-        """Tell of each ray whether nothing lies within its length, in lengths of the direction."""
-        self.rays += len(origins)
-        if not len(self._triangles) or not len(origins):
-            return np.ones(len(origins), dtype=bool)
-        answer = self._scene.run(origins, directions, lengths, query="OCCLUDED")
-        free: NDArray[np.bool_] = answer < 0
-        return free
+    def share_that_passes(self, origins: Floats, directions: Floats, lengths: Floats) -> Floats:
+        """Give (R,) float32: how much of the light on each ray's length is let through, 0 to 1.
+
+        Lengths are in lengths of the direction. Glass counts once, however many faces it has.
+        """
+        share = np.ones(len(origins), dtype=np.float32)
+        if len(self._triangles) and len(origins):
+            share[self._scene.run(origins, directions, lengths, query="OCCLUDED") >= 0] = 0.0
+        if len(self._passes):
+            free = np.flatnonzero(share)
+            share[free] = self.clearness(origins[free], directions[free], lengths[free])
+        return share
+
+    def clearness(self, origins: Floats, directions: Floats, lengths: Floats) -> Floats:
+        """Give (R,) float32: the same, if nothing solid is in the way."""
+        share = np.ones(len(origins), dtype=np.float32)
+        if len(self._passes) and len(origins):
+            answer = self._glass.run(origins, directions, output=1)
+            met = (answer["primID"] >= 0) & (answer["tfar"] < lengths)
+            share[met] = self._passes[answer["primID"][met]]
+        return share
+
+
+def _tree(corners: Floats) -> tuple[EmbreeScene, TriangleMesh | None]:
+    """Build embree's tree over (T, 3, 3) float32 corners; the mesh is to be kept with it."""
+    scene, mesh = EmbreeScene(), None
+    if len(corners):
+        mesh = TriangleMesh(scene, corners)
+        # The first query builds the tree; threads shall find it built.
+        nowhere = np.zeros((1, 3), np.float32)
+        scene.run(nowhere, nowhere + 1)
+    return scene, mesh
 
 
 def in_chunks(

@@ -59,6 +59,8 @@ class Scenery:
         Place in `materials` of each triangle.
     solid : (T,) bool
         False for what light passes: glass, and what a mask leaves mostly open.
+    passes : (T,) float32
+        Share of the light that is let through: 1 - alpha for glass.
     """
 
     instances: tuple[StaticInstance, ...]
@@ -70,6 +72,7 @@ class Scenery:
     owner: NDArray[np.int32]
     material: NDArray[np.int32]
     solid: NDArray[np.bool_]
+    passes: NDArray[np.float32]
 
     @property
     def two_sided(self) -> NDArray[np.bool_]:
@@ -142,13 +145,13 @@ def _joined(
     faces /= np.maximum(np.linalg.norm(faces, axis=1, keepdims=True), 1e-20)
     material = np.repeat([piece.material for piece in pieces], counts).astype(np.int32)
     uvs = join("uvs", (3, 2))
-    solid = np.ones(len(corners), dtype=bool)
+    passes = np.zeros(len(corners), dtype=np.float32)
     for place, look in enumerate(materials):
         if look.alpha == "blend":
-            solid[material == place] = False
+            passes[material == place] = 1.0 - look.base_colour[3]
         elif look.alpha == "mask":
             chosen = material == place
-            solid[chosen] = is_mostly_there(look, uvs[chosen])
+            passes[chosen] = ~is_mostly_there(look, uvs[chosen])
     return Scenery(
         instances=instances,
         materials=materials,
@@ -158,5 +161,6 @@ def _joined(
         faces=faces.astype(np.float32),
         owner=np.repeat([piece.owner for piece in pieces], counts).astype(np.int32),
         material=material,
-        solid=solid,
+        solid=passes == 0.0,
+        passes=passes,
     )

@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from sailenv_ros.bake.rays import RayScene
 from sailenv_ros.bake.sampling import fibonacci_sphere
 from sailenv_ros.bake.scenery import Scenery
+from sailenv_ros.bake.twins import twins_of
 
 __all__ = ["Air", "in_sight", "look_from"]
 
@@ -54,7 +55,7 @@ def look_from(scenery: Scenery, scene: RayScene, positions: NDArray[np.float32],
         From each.
     """
     directions = fibonacci_sphere(rays)
-    two_sided = scenery.two_sided
+    two_sided = scenery.two_sided | (twins_of(scenery).other >= 0)
     inside, sky = np.zeros(len(positions), bool), np.zeros(len(positions))
     met = np.full((len(positions), rays), -1, dtype=np.int32)
     for k, position in enumerate(positions):

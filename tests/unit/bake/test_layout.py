@@ -10,10 +10,11 @@ from sailenv_ros.bake.layout import laid_out
 from sailenv_ros.bake.packing import packed
 from sailenv_ros.bake.scenery import static_scenery
 from sailenv_ros.bake.texels import rasterised
+from sailenv_ros.bake.twins import twins_of
 from sailenv_ros.bake.unwrap import unwrapped
 from sailenv_ros.geometry import Pose
 from tests.support.bake_scenes import COARSE, ground, still
-from tests.support.tiny_scenes import Thing, box_mesh, model_of
+from tests.support.tiny_scenes import Thing, box_mesh, mesh_of, model_of, wall_mesh
 
 sizes = st.lists(st.tuples(st.integers(1, 90), st.integers(1, 90)), max_size=25)
 
@@ -92,3 +93,16 @@ def test_texels_grow_until_all_fit() -> None:
     everything = np.ones(scenery.triangle_count, dtype=bool)
     layout = laid_out(scenery, replace(COARSE, max_map=128), everything)
     assert layout.side <= 128
+
+
+def test_layers_of_a_sheet_are_twins() -> None:
+    """Each triangle of a sheet of two layers names the one behind it, corner by corner."""
+    front = wall_mesh(2.0, 1.0)
+    back = mesh_of(front.positions, -front.normals, front.uvs, front.triangles[:, [1, 0, 2]])
+    sheets = [Thing(model_of(mesh), Pose((1.0, 2.0, 3.0))) for mesh in (front, back)]
+    scenery = static_scenery(still([*sheets, Thing(ground(2.0))]))
+    twins = twins_of(scenery)
+    np.testing.assert_array_equal(twins.other, [2, 3, 0, 1, -1, -1])
+    for triangle in range(4):
+        there = scenery.corners[twins.other[triangle]][twins.corner[triangle]]
+        np.testing.assert_array_equal(there, scenery.corners[triangle])
