@@ -5,7 +5,10 @@ Knows neither where instances stand nor what lights them.
 
 from __future__ import annotations
 
+import time
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -22,6 +25,11 @@ UNSEEN = 0.2
 
 _Flat: TypeAlias = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]
 """Copied vertices, triangles and places, as xatlas gives them."""
+
+
+_TASKS = Path("/proc/self/task")
+
+LONGEST_WAIT_S = 2.0
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -60,6 +68,7 @@ def unwrapped(
         Triangles that are seen at all, part after part; the others' texels are larger.
     """
     seen = np.ones(model.triangle_count, bool) if in_sight is None else in_sight
+    before = _threads()
     atlas = xatlas.Atlas()
     first = 0
     pieces: list[list[NDArray[np.intp]]] = []
@@ -83,6 +92,7 @@ def unwrapped(
         _joined(part.mesh, [(chosen, atlas.get_mesh(next(number))) for chosen in chosens])
         for part, chosens in zip(model.parts, pieces, strict=True)
     ]
+    _wait_for_rest(before)
     return Chart(
         unwrapping=Unwrapping(
             vertices=tuple(part[0] for part in parts),
@@ -110,3 +120,28 @@ def _joined(
     for array in joined:
         array.flags.writeable = False
     return joined
+
+
+def _threads() -> frozenset[str]:
+    """Give the system's numbers of this process's threads."""
+    return frozenset(task.name for task in _TASKS.iterdir()) if _TASKS.is_dir() else frozenset()
+
+
+def _wait_for_rest(before: frozenset[str]) -> None:
+    """Wait until the threads that have come since sleep.
+
+    An atlas that goes while one of its threads is just falling asleep is never told that the
+    thread has ended (xatlas notifies without holding the lock), and waits for ever. A thread that
+    the system calls sleeping is past that moment.
+    """
+    late = time.monotonic() + LONGEST_WAIT_S
+    while time.monotonic() < late and any(map(_is_awake, _threads() - before)):
+        time.sleep(0.001)
+
+
+def _is_awake(thread: str) -> bool:
+    with suppress(OSError):
+        # After the name in brackets, which may hold anything, comes the state.
+        state = (_TASKS / thread / "stat").read_text().rpartition(")")[2].split()[0]
+        return state in "RD"
+    return False
