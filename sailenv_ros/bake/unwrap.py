@@ -5,6 +5,8 @@ Knows neither where instances stand nor what lights them.
 
 from __future__ import annotations
 
+import time
+from collections import deque
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -19,6 +21,12 @@ __all__ = ["Chart", "unwrapped"]
 
 UNSEEN = 0.2
 """Share of the usual fineness that surfaces have which nobody sees."""
+
+KEPT = 4
+"""Atlases that are kept after use."""
+
+REST_S = 0.05
+"""Time for an atlas's threads to fall asleep [s]."""
 
 _Flat: TypeAlias = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]
 """Copied vertices, triangles and places, as xatlas gives them."""
@@ -78,6 +86,7 @@ def unwrapped(
     packing.padding = 1
     packing.bilinear = True
     atlas.generate(xatlas.ChartOptions(), packing)
+    _retire(atlas)
     number = iter(range(atlas.mesh_count))
     parts = [
         _joined(part.mesh, [(chosen, atlas.get_mesh(next(number))) for chosen in chosens])
@@ -92,6 +101,21 @@ def unwrapped(
         width=atlas.width,
         height=atlas.height,
     )
+
+
+_retired: deque[tuple[float, xatlas.Atlas]] = deque()
+
+
+def _retire(atlas: xatlas.Atlas) -> None:
+    """Keep an atlas for a little longer than it is needed.
+
+    Its destructor wakes its threads without their lock: one that was just about to sleep is never
+    woken, and joining it takes for ever. After `REST_S` they all sleep.
+    """
+    _retired.append((time.monotonic(), atlas))
+    if len(_retired) > KEPT:
+        time.sleep(max(_retired[0][0] + REST_S - time.monotonic(), 0.0))
+        _retired.popleft()
 
 
 def _joined(
