@@ -48,7 +48,7 @@ class BakeSettings:
     coarse_rays: int = 16
     light_rays: int = 16
     window_rays: int = 16
-    bounces: int = 6
+    bounces: int = 12
     probe_spacing_m: float = 0.4
     max_probes: int = 8000
     probe_rays: int = 1024

@@ -6,8 +6,9 @@ Knows neither where instances stand nor what lights them.
 from __future__ import annotations
 
 import time
-from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -22,14 +23,13 @@ __all__ = ["Chart", "unwrapped"]
 UNSEEN = 0.2
 """Share of the usual fineness that surfaces have which nobody sees."""
 
-KEPT = 4
-"""Atlases that are kept after use."""
-
-REST_S = 0.05
-"""Time for an atlas's threads to fall asleep [s]."""
-
 _Flat: TypeAlias = tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]
 """Copied vertices, triangles and places, as xatlas gives them."""
+
+
+_TASKS = Path("/proc/self/task")
+
+LONGEST_WAIT_S = 2.0
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -68,6 +68,7 @@ def unwrapped(
         Triangles that are seen at all, part after part; the others' texels are larger.
     """
     seen = np.ones(model.triangle_count, bool) if in_sight is None else in_sight
+    before = _threads()
     atlas = xatlas.Atlas()
     first = 0
     pieces: list[list[NDArray[np.intp]]] = []
@@ -86,12 +87,12 @@ def unwrapped(
     packing.padding = 1
     packing.bilinear = True
     atlas.generate(xatlas.ChartOptions(), packing)
-    _retire(atlas)
     number = iter(range(atlas.mesh_count))
     parts = [
         _joined(part.mesh, [(chosen, atlas.get_mesh(next(number))) for chosen in chosens])
         for part, chosens in zip(model.parts, pieces, strict=True)
     ]
+    _wait_for_rest(before)
     return Chart(
         unwrapping=Unwrapping(
             vertices=tuple(part[0] for part in parts),
@@ -101,21 +102,6 @@ def unwrapped(
         width=atlas.width,
         height=atlas.height,
     )
-
-
-_retired: deque[tuple[float, xatlas.Atlas]] = deque()
-
-
-def _retire(atlas: xatlas.Atlas) -> None:
-    """Keep an atlas for a little longer than it is needed.
-
-    Its destructor wakes its threads without their lock: one that was just about to sleep is never
-    woken, and joining it takes for ever. After `REST_S` they all sleep.
-    """
-    _retired.append((time.monotonic(), atlas))
-    if len(_retired) > KEPT:
-        time.sleep(max(_retired[0][0] + REST_S - time.monotonic(), 0.0))
-        _retired.popleft()
 
 
 def _joined(
@@ -134,3 +120,28 @@ def _joined(
     for array in joined:
         array.flags.writeable = False
     return joined
+
+
+def _threads() -> frozenset[str]:
+    """Give the system's numbers of this process's threads."""
+    return frozenset(task.name for task in _TASKS.iterdir()) if _TASKS.is_dir() else frozenset()
+
+
+def _wait_for_rest(before: frozenset[str]) -> None:
+    """Wait until the threads that have come since sleep.
+
+    An atlas that goes while one of its threads is just falling asleep is never told that the
+    thread has ended (xatlas notifies without holding the lock), and waits for ever. A thread that
+    the system calls sleeping is past that moment.
+    """
+    late = time.monotonic() + LONGEST_WAIT_S
+    while time.monotonic() < late and any(map(_is_awake, _threads() - before)):
+        time.sleep(0.001)
+
+
+def _is_awake(thread: str) -> bool:
+    with suppress(OSError):
+        # After the name in brackets, which may hold anything, comes the state.
+        state = (_TASKS / thread / "stat").read_text().rpartition(")")[2].split()[0]
+        return state in "RD"
+    return False

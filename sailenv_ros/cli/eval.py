@@ -57,6 +57,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate; 0 if all is well."""
+    import numpy as np
+
     from sailenv_ros.errors import UnknownName
     from sailenv_ros.experiments.coco import PAPER_CLASSES
     from sailenv_ros.experiments.detector import Detector
@@ -86,6 +88,8 @@ def run(args: argparse.Namespace) -> int:
         for name in classes:
             views = stage.views(name, rule, partial(tell, name))
             measured.append(_evaluated(name, views, stage.instances(name), detector, args, sheet))
+            for number in range(len(views) + 1, rule.views + 1):
+                sheet[f"{name} {number}: no view"] = np.zeros((height, width, 3), np.uint8)
         renderer, baked = stage.description, stage.baked
     data = {
         "model": args.model.name,

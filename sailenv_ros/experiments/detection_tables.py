@@ -70,7 +70,7 @@ def _notes(data: Data) -> tuple[str, ...]:
         if entry["views"] < rule["views"]:
             notes.append(
                 f"{entry['name']}: {entry['views']} of {rule['views']} views meet the rule in the "
-                f"rooms ({entry['instances']} objects)."
+                f"rooms (objects of the class: {entry['instances']})."
             )
     return (*notes, DETECTION_SOURCE)
 

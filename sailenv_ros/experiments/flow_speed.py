@@ -51,8 +51,8 @@ def time_flow(
     -------
     times : dict of str to dict
         By method, `OURS` and `PICTURE` first: ``total``, the frame with its flow, and ``flow``, the
-        part that an estimate takes; ours has no such part of its own, see ``total`` above that of
-        `PICTURE`.
+        part that an estimate takes. Ours has no such part of its own: its ``flow`` is what its
+        frames took beyond those of `PICTURE` in the same round.
     """
     runs: dict[str, Callable[[], float]] = {
         OURS: lambda: _drop(source.get_frame(True)),
@@ -73,6 +73,8 @@ def time_flow(
             totals[name].append(time.perf_counter() - began)
             parts[name].append(part)
         on_frame()
+    pairs = zip(totals[OURS], totals[PICTURE], strict=True)
+    parts[OURS] = [with_flow - without for with_flow, without in pairs]
     return {
         name: {
             "total": summary_ms(totals[name][WARM_UP:]),

@@ -54,7 +54,7 @@ class Rule:
     visible: float = 0.7
     apart_deg: float = 20.0
     elevation_deg: tuple[float, float] = (5.0, 60.0)
-    attempts: int = 60
+    attempts: int = 200
     seed: int = 0
 
 

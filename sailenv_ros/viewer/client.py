@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import logging
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
@@ -26,6 +25,7 @@ from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.encoding import packed, picture_png, view_png
 from sailenv_ros.viewer.limits import ViewerLimits
+from sailenv_ros.viewer.outbox import Outbox
 from sailenv_ros.viewer.told import told_scene
 from sailenv_ros.viewer.watch import Watch
 
@@ -43,6 +43,8 @@ class Client:
     ----------
     socket : web.WebSocketResponse
         Prepared already.
+    drop : callable
+        Ends the connection without a goodbye.
     simulation : Simulation
     debug_agent : DebugAgent
     may_change : bool
@@ -60,6 +62,7 @@ class Client:
         self,
         socket: web.WebSocketResponse,
         *,
+        drop: Callable[[], None],
         simulation: Simulation,
         debug_agent: DebugAgent,
         may_change: bool,
@@ -78,12 +81,11 @@ class Client:
         self._loop = asyncio.get_running_loop()
         self._watch: Watch | None = None
         self._selected = 0
-        self._sending = asyncio.Lock()
+        self._outbox = Outbox(socket, drop=drop, send_s=limits.send_s)
         self._news = asyncio.Event()
         self._told_revision = (-1, -1)
         self._stats: dict[str, Any] | None = None
         self._running: set[asyncio.Task[None]] = set()
-        self._sends: set[asyncio.Task[None]] = set()
         self._second, self._messages = 0.0, 0
 
     # -- of the desk, for commands ---------------------------------------------------------
@@ -124,14 +126,14 @@ class Client:
 
     async def serve(self) -> None:
         """Answer until the client goes."""
-        await self._send_json({**self._greeting, "control": self._may_change})
+        await self._outbox.send_json({**self._greeting, "control": self._may_change})
         telling = asyncio.create_task(self._tell())
         self._news.set()
         try:
             await self._listen()
         finally:
             self._end_watch()
-            ending = [telling, *self._running, *self._sends]
+            ending = [telling, *self._running, *self._outbox.tasks]
             for task in ending:
                 task.cancel()
             await asyncio.wait(ending, timeout=1.0)
@@ -216,9 +218,9 @@ class Client:
         else:
             if isinstance(result, _File):
                 head = {"type": "file", "id": number, "name": result.name, "mime": result.mime}
-                await self._send(packed(head, [result.data]))
+                await self._outbox.send(packed(head, [result.data]))
             else:
-                await self._send_json({"type": "reply", "id": number, "result": result})
+                await self._outbox.send_json({"type": "reply", "id": number, "result": result})
 
     async def _done(self, given: Arguments) -> Any:
         name = given.text("do")
@@ -250,7 +252,7 @@ class Client:
             self.debug_agent,
             agent=agent,
             views=views,
-            send=self._send_frame,
+            send=self._outbox.post,
             changes=lambda: (self._simulation.info.revision, self._touched()),
             ended=self._watch_ended,
             first_number=first,
@@ -311,56 +313,17 @@ class Client:
             info = self._simulation.info
             if (info.epoch, info.revision) != self._told_revision:
                 self._told_revision = (info.epoch, info.revision)
-                await self._send_json(told_scene(info))
+                await self._outbox.send_json(told_scene(info))
             if self._stats is not None:
                 stats, self._stats = self._stats, None
-                await self._send_json(stats)
-
-    def _send_frame(self, message: bytes) -> None:
-        """Send from the watch's thread; at most as many wait as its page may have on their way."""
-        self._from_thread(lambda: self._send(message))
+                await self._outbox.send_json(stats)
 
     def _watch_ended(self, why: str) -> None:
-        words = {"type": "watch_ended", "why": why[:MAX_WORDS]}
-        self._from_thread(lambda: self._send_json(words))
-
-    def _from_thread(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
-        with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._begin_sending, sending)
-
-    def _begin_sending(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
-        if not self._socket.closed:
-            task = asyncio.create_task(_quietly(sending()))
-            self._sends.add(task)
-            task.add_done_callback(self._sends.discard)
+        self._outbox.post_json({"type": "watch_ended", "why": why[:MAX_WORDS]})
 
     async def _refuse(self, number: object, error: SailenvError) -> None:
         words = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
-        await self._send_json({"type": "refused", "id": number, "error": words[:MAX_WORDS]})
-
-    async def _send_json(self, message: dict[str, Any]) -> None:
-        await self._send(json.dumps(message, separators=(",", ":"), allow_nan=False))
-
-    async def _send(self, message: str | bytes) -> None:
-        async with self._sending:
-            if self._socket.closed:
-                return
-            sent = (
-                self._socket.send_str(message)
-                if isinstance(message, str)
-                else self._socket.send_bytes(message)
-            )
-            try:
-                await asyncio.wait_for(sent, self._limits.send_s)
-            except asyncio.TimeoutError:
-                _log.warning("a viewer that does not read is disconnected")
-                self._drop()
-
-    def _drop(self) -> None:
-        """End without a goodbye, which would not be read either."""
-        transport = getattr(getattr(self._socket, "_req", None), "transport", None)
-        if transport is not None:
-            transport.abort()
+        await self._outbox.send_json({"type": "refused", "id": number, "error": words[:MAX_WORDS]})
 
 
 class _File:
@@ -368,11 +331,6 @@ class _File:
 
     def __init__(self, name: str, data: bytes) -> None:
         self.name, self.data, self.mime = name, data, "image/png"
-
-
-async def _quietly(sending: Coroutine[Any, Any, None]) -> None:
-    with contextlib.suppress(ConnectionError, RuntimeError):
-        await sending
 
 
 _OWN: dict[str, Callable[[Client, Arguments], Any]] = {

@@ -173,6 +173,7 @@ class ViewerServer:
             else:
                 started.set_exception(error)
         finally:
+            self._loop.run_until_complete(_end_of(asyncio.all_tasks(self._loop)))
             self._loop.run_until_complete(self._loop.shutdown_default_executor())
 
     async def _serve(self, started: Future[int]) -> None:
@@ -248,14 +249,17 @@ class ViewerServer:
         self._connected += 1
         try:
             await answer.prepare(request)
-            await self._serve_client(answer)
+            await self._serve_client(answer, request.transport)
         finally:
             self._connected -= 1
         return answer
 
-    async def _serve_client(self, answer: web.WebSocketResponse) -> None:
+    async def _serve_client(
+        self, answer: web.WebSocketResponse, transport: asyncio.Transport | None
+    ) -> None:
         client = Client(
             answer,
+            drop=lambda: None if transport is None else transport.abort(),
             simulation=self._simulation,
             debug_agent=self._debug_agent,
             may_change=self._may_change,
@@ -310,3 +314,11 @@ class ViewerServer:
 
     def _refusal(self, why: str) -> web.Response:
         return web.Response(status=403, text=f"Refused: {why}\n", headers=SECURITY_HEADERS)
+
+
+async def _end_of(tasks: set[asyncio.Task[Any]]) -> None:
+    """End what aiohttp has left, e.g. an answer for which nobody waits any more."""
+    for task in tasks:
+        task.cancel()
+    if tasks:
+        await asyncio.wait(tasks, timeout=1.0)

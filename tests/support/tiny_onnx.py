@@ -2,8 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
 _FLOAT = 1
+_TYPES = {"float32": _FLOAT, "int64": 7}
+_TENSOR = 4
 _INTS = 7
+
+
+def constant_network(
+    outputs: Mapping[str, np.ndarray[Any, Any]], *, size: tuple[int, int]
+) -> bytes:
+    """Give a network of one picture (1, 3, H, W), of size (W, H), that always answers the same."""
+    graph = b""
+    for name, array in outputs.items():
+        tensor = b"".join(_number(1, length) for length in array.shape)
+        tensor += _number(2, _TYPES[array.dtype.name]) + _field(9, array.tobytes())
+        attribute = _field(1, b"value") + _field(5, tensor) + _number(20, _TENSOR)
+        graph += _field(1, _field(2, name.encode()) + _field(4, b"Constant") + _field(5, attribute))
+    graph += _field(2, b"g") + _field(11, _value(b"picture", (1, 3, size[1], size[0])))
+    for name, array in outputs.items():
+        kind = _TYPES[array.dtype.name]
+        graph += _field(12, _value(name.encode(), array.shape, kind))
+    return _model(graph)
 
 
 def slice_network(*, height: int, width: int) -> bytes:
@@ -25,9 +49,9 @@ def _model(graph: bytes) -> bytes:
     return _number(1, 4) + _field(7, graph) + _field(8, opset)
 
 
-def _value(name: bytes, shape: tuple[int, ...]) -> bytes:
+def _value(name: bytes, shape: tuple[int, ...], kind: int = _FLOAT) -> bytes:
     dimensions = b"".join(_field(1, _number(1, length)) for length in shape)
-    tensor = _number(1, _FLOAT) + _field(2, dimensions)
+    tensor = _number(1, kind) + _field(2, dimensions)
     return _field(1, name) + _field(2, _field(1, tensor))
 
 

@@ -82,6 +82,7 @@ def test_tab_hands_the_mover_over_and_back(opened: OpenPage, simulation: Simulat
     for wanted in (drivers[1 - at], drivers[at]):
         opened.page.keyboard.press("Tab")
         until(lambda wanted=wanted: controller(simulation) == wanted, "Tab to hand over")
+        opened.until(lambda wanted=wanted: opened.data("controller") == wanted, "it to be shown")
 
 
 def test_keys_walk_the_mover(opened: OpenPage, simulation: Simulation) -> None:
@@ -128,6 +129,48 @@ def test_dragging_turns_and_the_wheel_zooms(opened: OpenPage, simulation: Simula
     until(
         lambda: simulation.info.agents[-1].intrinsics.vertical_fov_deg > lens.vertical_fov_deg,
         "a wider lens",
+    )
+
+
+def test_walk_lends_the_mouse_and_takes_over(opened: OpenPage, simulation: Simulation) -> None:
+    """The button gives the mover to whoever looks around; to the right is a turn to the right."""
+    page = opened.page
+    page.click("#walk")
+    opened.until(lambda: page.evaluate("document.pointerLockElement !== null"), "the mouse")
+    until(lambda: controller(simulation) == "rigidbody", "the keys to drive")
+    before = simulation.mover_pose().rpy_deg[2]
+    x, y = opened.at(0.3, 0.5)
+    page.mouse.move(x, y)
+    page.mouse.move(x + 100, y, steps=4)
+    until(lambda: simulation.mover_pose().rpy_deg[2] != before, "a turn")
+    assert (simulation.mover_pose().rpy_deg[2] - before) % 360.0 > 180.0
+    page.evaluate("document.exitPointerLock()")
+
+
+def test_what_is_dragged_into_the_picture_is_spawned(
+    opened: OpenPage, simulation: Simulation
+) -> None:
+    """From the catalogue to where it is let go; then it is selected, and a click places it."""
+    page = opened.page
+    opened.tab("Add")
+    page.fill("#catalogue-search", "sphere")
+    page.drag_and_drop("[data-asset=sphere]", ".tile.main")
+    opened.until(lambda: opened.data("selected") not in ("", "0"), "the new object")
+    number = int(opened.data("selected"))
+    before = simulation.get_object(number)
+    assert before.asset == "sphere"
+    page.click("text=Place by a click")
+    page.mouse.click(*opened.at(0.2, 0.95))
+    until(
+        lambda: (
+            np.linalg.norm(
+                np.subtract(
+                    simulation.get_object(number).pose.position_m[:2], before.pose.position_m[:2]
+                )
+            )
+            > 0.3
+        ),
+        "it to be placed elsewhere",
     )
 
 

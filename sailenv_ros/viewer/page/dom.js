@@ -60,7 +60,8 @@ export function section(title, ...children) {
   return el("section", { class: "block" }, el("h2", {}, title), ...children);
 }
 
-export const fixed = (value, digits = 2) => Number(value).toFixed(digits).replace("-0.00", "0.00");
+/** A number with so many digits after the point; never minus zero. */
+export const fixed = (value, digits = 2) => Number(value).toFixed(digits).replace(/^-(?=[0.]*$)/, "");
 
 export function toast(words, kind = "note") {
   const note = el("div", { class: `toast ${kind}` }, words);

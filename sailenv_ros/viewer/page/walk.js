@@ -60,9 +60,17 @@ export class Walker {
   }
 
   async toggle() {
-    if (!this.app.mover) return;
-    const controller = this.app.mover.controller === "waypoint" ? "rigidbody" : "waypoint";
-    await this.app.try("set_controller", { mover: this.mover, controller });
+    const { mover } = this.app;
+    if (!mover || !this.app.control) return;
+    const before = mover.controller;
+    // Known at once, so that another Tab before the scene's news gives it back.
+    mover.controller = before === "waypoint" ? "rigidbody" : "waypoint";
+    try {
+      await this.app.ask("set_controller", { mover: mover.name, controller: mover.controller });
+    } catch (fault) {
+      mover.controller = before;
+      toast(fault.message, "fault");
+    }
     $("stage").focus();
   }
 

@@ -149,8 +149,17 @@ class _Page(HTMLParser):
         assert self.open.pop() == tag
 
 
-def test_the_report_is_one_file_that_loads_nothing(folder: Path) -> None:
+def test_the_report_is_one_file_that_loads_nothing(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Plots and pictures lie in it; light and dark; well-formed; texts are escaped."""
+    drawn: list[tuple[str, str]] = []
+
+    def draw(_: object, name: str, theme: str) -> bytes:
+        drawn.append((name, theme))
+        return b"a plot"
+
+    monkeypatch.setattr("sailenv_ros.experiments.report.plot_png", draw)
     path = write_report(folder, folder / "out" / "report.html")
     text = path.read_text(encoding="utf-8")
     page = _Page()
@@ -163,10 +172,15 @@ def test_the_report_is_one_file_that_loads_nothing(folder: Path) -> None:
     assert "prefers-color-scheme: dark" in text
     assert "A &lt;fast&gt; CPU" in text
     assert page.tags.count("h2") == len(EXPERIMENTS)
+    names = [name for experiment in EXPERIMENTS for name in plot_names(experiment)]
+    assert drawn == [(name, theme) for name in names for theme in ("light", "dark")]
 
 
-def test_the_report_names_what_was_not_measured(tmp_path: Path) -> None:
+def test_the_report_names_what_was_not_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """With the command that would; a folder without any result is refused."""
+    monkeypatch.setattr("sailenv_ros.experiments.report.plot_png", lambda *_: b"a plot")
     save_result(tmp_path, "detection", TOLD, DATA["detection"])
     text = write_report(tmp_path, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Not measured yet: <code>sailenv bench flow-speed</code>" in text

@@ -85,8 +85,6 @@ def mirror(width: float, height: float) -> list[RawPart]:
     glass = box((0.006, width, height), (0.017, 0.0, height / 2))
     back = box((0.014, width - 0.06, height - 0.06), (0.007, 0.0, height / 2))
     return [
-        part(
-            "mirror chrome", glass, base_colour=(0.9, 0.92, 0.92, 1.0), metallic=1.0, roughness=0.03
-        ),
+        part("silvering", glass, base_colour=(0.9, 0.92, 0.92, 1.0), metallic=1.0, roughness=0.02),
         part("back plastic", back, base_colour=(0.08, 0.08, 0.08, 1.0)),
     ]
