@@ -97,7 +97,9 @@ def _become_the_node(args: argparse.Namespace) -> int:
 def _run_alone(args: argparse.Namespace) -> int:
     logging.basicConfig(level=logging.INFO, format="%(levelname)s: %(message)s")
     keep_freed_memory()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # A shell starts what it puts into the background with SIGINT ignored; who sends it means it.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
     with Simulation(args.scene, seed=args.seed, scene_paths=args.scenes) as simulation:
         server = GatewayServer(
             simulation, host=args.host, port=args.port, protocol=args.protocol

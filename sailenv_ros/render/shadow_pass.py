@@ -1,7 +1,8 @@
 """A shadow map of the main directional light: depth as the light sees some of the scene.
 
 A snapshot, a light and the choice of what casts come in; a depth texture and the matrix into it go
-out. It is drawn again only when something that it depends on has changed.
+out. It is drawn again only when something that it depends on has changed; then what has not moved
+is copied from a second map, where it was drawn once.
 """
 
 from __future__ import annotations
@@ -32,9 +33,14 @@ class ShadowPass:
         self.texture.compare_func = "<="
         self.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         self.texture.repeat_x = self.texture.repeat_y = False
-        self._framebuffer = context.framebuffer(depth_attachment=self.texture)
+        self._framebuffer = _with_colour(context, self.texture)
+        self._resting = _with_colour(context, context.depth_texture((SIZE_PX, SIZE_PX)))
         self._drawn: tuple[object, ...] = ()
         self._poses: NDArray[np.float64] | None = None
+        self._frame: tuple[object, ...] = ()
+        self._at_rest = np.zeros(0, bool)
+        self._rest_poses = np.zeros((0, 4, 4))
+        self._clip_from_light, self._light_from_world = np.eye(4), np.eye(4)
         self.map_from_world: NDArray[np.float64] = np.eye(4)
         self.texel_m = 0.0
 
@@ -62,34 +68,79 @@ class ShadowPass:
         casting = everything if casting is None else casting
         framed = everything if framed is None else framed
         key = (snapshot.contents, light.direction, casting.tobytes(), framed.tobytes())
-        poses = snapshot.world_from_body[casting | framed]
-        if self._drawn == key and self._poses is not None and np.array_equal(self._poses, poses):
+        poses = snapshot.world_from_body
+        before = self._poses if self._drawn == key else None
+        concerned = casting | framed
+        if before is not None and np.array_equal(before[concerned], poses[concerned]):
             return
         self._drawn, self._poses = key, poses
-        clip_from_light, light_from_world, width_m = _frustum(light, snapshot, framed)
+        self._fit(light, snapshot, framed, key)
+        draws.place(snapshot, self._clip_from_light, self._light_from_world)
+        moved = np.zeros(len(poses), bool)
+        if before is not None:
+            moved = (poses != before).any(axis=(1, 2))
+        if self._is_stale(poses):
+            self._at_rest, self._rest_poses = casting & ~moved, poses
+            self._resting.use()
+            self._resting.clear(depth=1.0)
+            self._issue(draws, geometry, self._at_rest)
+        self._context.copy_framebuffer(self._framebuffer, self._resting)
+        self._framebuffer.use()
+        self._issue(draws, geometry, casting & ~self._at_rest)
+
+    def _fit(
+        self,
+        light: Light,
+        snapshot: WorldSnapshot,
+        framed: NDArray[np.bool_],
+        key: tuple[object, ...],
+    ) -> None:
+        """Enclose the framed instances, if that is not done yet."""
+        frame = (key, snapshot.world_from_body[framed].tobytes())
+        if self._frame == frame:
+            return
+        self._frame = frame
+        self._at_rest = np.zeros(0, bool)
+        self._clip_from_light, self._light_from_world, width_m = _frustum(light, snapshot, framed)
         self.texel_m = width_m / SIZE_PX
         # From clip space, -1 to 1, to texture space, 0 to 1.
         half = np.diag([0.5, 0.5, 0.5, 1.0])
         half[:3, 3] = 0.5
-        self.map_from_world = half @ clip_from_light @ light_from_world
-        draws.place(snapshot, clip_from_light, light_from_world)
+        self.map_from_world = half @ self._clip_from_light @ self._light_from_world
+
+    def _is_stale(self, poses: NDArray[np.float64]) -> bool:
+        """Tell if something has left the place at which it was drawn as resting."""
+        if len(self._at_rest) != len(poses):
+            return True
+        return not np.array_equal(poses[self._at_rest], self._rest_poses[self._at_rest])
+
+    def _issue(
+        self, draws: DrawList, geometry: GeometryBuffers, casting: NDArray[np.bool_]
+    ) -> None:
+        """Draw some casters into the framebuffer in use."""
         draws.choose_casters(casting)
-        context = self._context
-        self._framebuffer.use()
-        self._framebuffer.clear(depth=1.0)
-        context.enable_only(moderngl.DEPTH_TEST)
+        self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.polygon_offset = 1.5, 2.0
         draws.row_buffer.bind_to_storage_buffer(0)
         for batch in draws.caster_batches:
-            if not batch.count:
-                continue
-            issue(context, self._program, draws, geometry, batch.commands, batch.count)
+            if batch.count:
+                issue(self._context, self._program, draws, geometry, batch.commands, batch.count)
         self._context.polygon_offset = 0.0, 0.0
 
     def close(self) -> None:
         """Free the map."""
-        self._framebuffer.release()
-        self.texture.release()
+        for framebuffer in (self._framebuffer, self._resting):
+            attached = (*framebuffer.color_attachments, framebuffer.depth_attachment)
+            framebuffer.release()
+            for texture in attached:
+                texture.release()
+
+
+def _with_colour(context: moderngl.Context, depth: moderngl.Texture) -> moderngl.Framebuffer:
+    """Make a framebuffer for depth; only those that have colours can be copied with moderngl."""
+    framebuffer = context.framebuffer([context.renderbuffer((SIZE_PX, SIZE_PX), 1)], depth)
+    framebuffer.color_mask = False, False, False, False
+    return framebuffer
 
 
 def _frustum(

@@ -103,7 +103,7 @@ def test_keys_walk_the_mover(opened: OpenPage, simulation: Simulation) -> None:
         opened.page.keyboard.up(key)
         moved = np.array(simulation.mover_pose().position_m) - start.position_m
         assert np.linalg.norm(moved - (moved @ direction) * direction) < 0.02
-    opened.until(lambda: not moves(simulation), "the mover to stand")
+        opened.until(lambda: not moves(simulation), "the mover to stand")
 
 
 def moves(simulation: Simulation) -> bool:
