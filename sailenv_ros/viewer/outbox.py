@@ -82,12 +82,12 @@ class Outbox:
 
     def _begun(self, sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
         if not self._socket.closed:
-            task = asyncio.create_task(_quietly(sending()))
+            task = asyncio.create_task(_quietly(sending))
             self._tasks.add(task)
             task.add_done_callback(self._tasks.discard)
 
 
-async def _quietly(sending: Coroutine[Any, Any, None]) -> None:
-    """Send to a client that may go meanwhile."""
+async def _quietly(sending: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    """Send to a client that may go meanwhile, even before the first step."""
     with contextlib.suppress(ConnectionError, RuntimeError):
-        await sending
+        await sending()

@@ -210,6 +210,8 @@ def test_a_scene_is_made_without_code(
 ) -> None:
     """Spawn, edit, let move, place waypoints, save; the file is valid and gives it all back."""
     page = opened.page
+    # Else the cube falls while it is edited, and the numbers change with it.
+    simulation.pause()
     opened.tab("Add")
     page.fill("#catalogue-search", "cube")
     page.click("[data-asset=cube]")
@@ -245,6 +247,7 @@ def test_a_scene_is_made_without_code(
     assert [kind["type"] for kind in again.behaviours] == ["rotate_rigidbody"]
     assert len(simulation.info.movers[0].waypoints) == 1
     opened.until(lambda: opened.data("scene") == "made_here", "the page to show it")
+    simulation.resume()
 
 
 def fill(opened: OpenPage, selector: str, value: str) -> None:
