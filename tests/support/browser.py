@@ -15,7 +15,7 @@ from tests.support.waiting import until
 DESKTOP = {"width": 1280, "height": 720}
 PHONE = {"width": 400, "height": 800}
 
-expect.set_options(timeout=20_000)
+expect.set_options(timeout=40_000)
 
 
 @contextlib.contextmanager
@@ -74,7 +74,7 @@ class OpenPage:
             self.page.wait_for_timeout(10)
             return condition()
 
-        until(heard, what)
+        until(heard, what, 40.0)
 
     def picture(self, view: str) -> str:
         """Give a view's pixels, as a text to compare."""
