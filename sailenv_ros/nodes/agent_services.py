@@ -6,7 +6,6 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
@@ -18,7 +17,7 @@ from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import SimulationClosed
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.nodes.publishers import AgentPublisher
-from sailenv_ros.nodes.requests import Requests, answered
+from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
 
 __all__ = ["AgentServices"]
 
@@ -47,16 +46,9 @@ class AgentServices:
         self._spec = spec
         # Waits and publishes, so that the executor does neither; one thread keeps their order.
         self._worker = ThreadPoolExecutor(1, thread_name_prefix=f"{spec.name}-capture")
-        # Handlers await: in a mutually exclusive group one that waits would hold up all others.
-        group = ReentrantCallbackGroup()
-        self._services = [
-            node.create_service(
-                kind, f"{spec.name}/{name}", answered(handler), callback_group=group
-            )
-            for name, kind, handler in self._table()
-        ]
+        self._services = offer(node, self._table(), prefix=f"{spec.name}/")
 
-    def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
+    def _table(self) -> ServiceTable:
         return (
             ("set_position", SetPosition, self._set_position),
             ("set_rotation", SetRotation, self._set_rotation),

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable
-from typing import Any
 
-from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from sailenv_msgs.srv import (
@@ -20,7 +17,7 @@ from sailenv_msgs.srv import (
 from sailenv_msgs_py.objects import keys_from_json
 from sailenv_msgs_py.transforms import pose_from_msg, xyz_from_msg
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.nodes.requests import Requests, answered
+from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
 
 __all__ = ["EditServices"]
 
@@ -42,12 +39,9 @@ class EditServices:
 
     def __init__(self, node: Node, requests: Requests) -> None:
         self._ask = requests
-        # Handlers await: in a mutually exclusive group one that waits would hold up all others.
-        group = ReentrantCallbackGroup()
-        for name, kind, handler in self._table():
-            node.create_service(kind, name, answered(handler), callback_group=group)
+        offer(node, self._table())
 
-    def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
+    def _table(self) -> ServiceTable:
         return (
             ("change_object", ChangeObject, self._change_object),
             ("set_environment", SetEnvironment, self._set_environment),

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from sailenv_msgs.srv import (
@@ -20,7 +16,7 @@ from sailenv_msgs.srv import (
 from sailenv_msgs_py.objects import light_changes_from_msg
 from sailenv_msgs_py.scene_info import colour_to_msg, light_to_msg, rgb_from_msg
 from sailenv_ros.lights import light_named
-from sailenv_ros.nodes.requests import Requests, answered
+from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
 
 __all__ = ["LightServices"]
 
@@ -36,12 +32,9 @@ class LightServices:
 
     def __init__(self, node: Node, requests: Requests) -> None:
         self._ask = requests
-        # Handlers await: in a mutually exclusive group one that waits would hold up all others.
-        group = ReentrantCallbackGroup()
-        for name, kind, handler in self._table():
-            node.create_service(kind, name, answered(handler), callback_group=group)
+        offer(node, self._table())
 
-    def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
+    def _table(self) -> ServiceTable:
         return (
             ("add_light", AddLight, self._add_light),
             ("remove_light", RemoveLight, self._remove_light),

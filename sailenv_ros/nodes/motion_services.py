@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
 
 from geometry_msgs.msg import Twist
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -15,7 +13,7 @@ from sailenv_msgs.srv import AddBehaviour, RemoveBehaviours, SetMoverController
 from sailenv_msgs_py.objects import behaviour_from_msg
 from sailenv_ros.errors import SailenvError, SimulationClosed
 from sailenv_ros.nodes.qos import command_qos
-from sailenv_ros.nodes.requests import Requests, answered
+from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
 
 __all__ = ["MotionServices"]
 
@@ -36,15 +34,13 @@ class MotionServices:
         self._node = node
         self._ask = requests
         self._warned_s = -WARN_INTERVAL_S
-        # Handlers await: in a mutually exclusive group one that waits would hold up all others.
         group = ReentrantCallbackGroup()
-        for name, kind, handler in self._table():
-            node.create_service(kind, name, answered(handler), callback_group=group)
+        offer(node, self._table(), group=group)
         node.create_subscription(
             Twist, "mover/cmd_vel", self._drive, command_qos(), callback_group=group
         )
 
-    def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
+    def _table(self) -> ServiceTable:
         return (
             ("add_behaviour", AddBehaviour, self._add_behaviour),
             ("remove_behaviours", RemoveBehaviours, self._remove_behaviours),

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from sailenv_msgs.srv import (
@@ -19,7 +15,7 @@ from sailenv_msgs.srv import (
 from sailenv_msgs_py.objects import behaviour_from_msg, object_state_to_response, scale_from_msg
 from sailenv_msgs_py.transforms import pose_from_msg
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.nodes.requests import Requests, answered
+from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
 from sailenv_ros.scene.entries import read_document
 
 __all__ = ["ObjectServices"]
@@ -36,12 +32,9 @@ class ObjectServices:
 
     def __init__(self, node: Node, requests: Requests) -> None:
         self._ask = requests
-        # Handlers await: in a mutually exclusive group one that waits would hold up all others.
-        group = ReentrantCallbackGroup()
-        for name, kind, handler in self._table():
-            node.create_service(kind, name, answered(handler), callback_group=group)
+        offer(node, self._table())
 
-    def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
+    def _table(self) -> ServiceTable:
         return (
             ("spawn_object", SpawnObject, self._spawn_object),
             ("despawn_object", DespawnObject, self._despawn_object),

@@ -9,20 +9,26 @@ from __future__ import annotations
 import logging
 from collections.abc import Awaitable, Callable, Coroutine
 from concurrent.futures import Future
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
+from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.service import Service
 from rclpy.task import Future as RosFuture
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 
-__all__ = ["Requests", "answered"]
+__all__ = ["Requests", "ServiceTable", "answered", "offer"]
 
 _log = logging.getLogger(__name__)
 
 T = TypeVar("T")
+
+ServiceTable: TypeAlias = tuple[tuple[str, type, Callable[[Any, Any], Awaitable[None]]], ...]
+"""Name, type and handler of each service."""
 
 
 class _Response(Protocol):
@@ -85,6 +91,28 @@ def answered(
             return _refusal(type(response)(), f"a fault in the simulator, see its log: {what}")
 
     return callback
+
+
+def offer(
+    node: Node, table: ServiceTable, *, group: CallbackGroup | None = None, prefix: str = ""
+) -> list[Service]:
+    """Serve what a table lists, each service by its handler as `answered` wraps it.
+
+    Parameters
+    ----------
+    node : Node
+    table : ServiceTable
+    group : CallbackGroup or None
+        None makes one. It must let calls overlap: handlers await, and in a mutually exclusive group
+        one that waits would hold up all others.
+    prefix : str
+        Put before each name.
+    """
+    group = group or ReentrantCallbackGroup()
+    return [
+        node.create_service(kind, f"{prefix}{name}", answered(handler), callback_group=group)
+        for name, kind, handler in table
+    ]
 
 
 def _refusal(response: _Response, text: str) -> _Response:

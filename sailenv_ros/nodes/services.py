@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
-from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
@@ -13,7 +11,7 @@ from sailenv_msgs.srv import ChangeScene, DeleteAgent, RegisterAgent, Reset, Ste
 from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg
-from sailenv_ros.nodes.requests import Requests, answered
+from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
 
 __all__ = ["SimulatorServices"]
 
@@ -33,12 +31,9 @@ class SimulatorServices:
     def __init__(self, node: Node, requests: Requests, agents_changed: Callable[[], None]) -> None:
         self._ask = requests
         self._agents_changed = agents_changed
-        # Handlers await: in a mutually exclusive group one that waits would hold up all others.
-        group = ReentrantCallbackGroup()
-        for name, kind, handler in self._table():
-            node.create_service(kind, name, answered(handler), callback_group=group)
+        offer(node, self._table())
 
-    def _table(self) -> tuple[tuple[str, type, Callable[[Any, Any], Any]], ...]:
+    def _table(self) -> ServiceTable:
         return (
             ("register_agent", RegisterAgent, self._register_agent),
             ("delete_agent", DeleteAgent, self._delete_agent),

@@ -13,8 +13,9 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from typing import TypeVar
 
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -57,6 +58,8 @@ SWITCH_INTERVAL_S = 0.0005
 """How long one Python thread may keep the others waiting; Python's own 5 ms delays every frame."""
 
 _log = logging.getLogger(f"sailenv_ros.nodes.{NODE_NAME}")  # __name__ may be __main__
+
+Server = TypeVar("Server")
 
 
 class SimNode:
@@ -253,37 +256,42 @@ def _simulation(parameters: SimParameters) -> Simulation:
 
 
 def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer | None:
-    if not parameters.gateway_port:
-        return None
-    try:
-        return GatewayServer(
+    return _unless_taken(
+        parameters.gateway_port,
+        lambda: GatewayServer(
             simulation,
             host=parameters.gateway_host,
             port=parameters.gateway_port,
             protocol=parameters.gateway_protocol,
-        )
-    except InvalidRequest as problem:
-        # Another simulator on this machine is no reason not to start; anything else is.
-        if getattr(problem.__cause__, "errno", None) != errno.EADDRINUSE:
-            raise
-        _log.warning("clients of the original SAILenv cannot connect here: %s", problem)
-        return None
+        ),
+        "clients of the original SAILenv cannot connect here",
+    )
 
 
 def _viewer(simulation: Simulation, parameters: SimParameters) -> ViewerServer | None:
-    if not parameters.viewer_port:
-        return None
-    try:
-        return ViewerServer(
+    return _unless_taken(
+        parameters.viewer_port,
+        lambda: ViewerServer(
             simulation,
             host=parameters.viewer_host,
             port=parameters.viewer_port,
             control=parameters.viewer_control,
-        )
+        ),
+        "there is no window in the browser here",
+    )
+
+
+def _unless_taken(port: int, serve: Callable[[], Server], otherwise: str) -> Server | None:
+    """Start a server; none on port 0, nor on one that is taken, of which the log then tells."""
+    if not port:
+        return None
+    try:
+        return serve()
     except InvalidRequest as problem:
+        # Another simulator on this machine is no reason not to start; anything else is.
         if getattr(problem.__cause__, "errno", None) != errno.EADDRINUSE:
             raise
-        _log.warning("there is no window in the browser here: %s", problem)
+        _log.warning("%s: %s", otherwise, problem)
         return None
 
 
