@@ -8,17 +8,17 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-import threading
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, ProtocolError
+from sailenv_ros.errors import InvalidRequest, ProtocolError
 from sailenv_ros.gateway.codec import Message
 from sailenv_ros.gateway.commands import commands_of
 from sailenv_ros.gateway.connection import CHUNK_BYTES, Connection
 from sailenv_ros.gateway.limits import GatewayLimits
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.requests import wait_for
+from sailenv_ros.simulation.loop_thread import LoopThread
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "GatewayServer"]
 
@@ -29,9 +29,6 @@ DEFAULT_PORT = 8085
 
 WORKERS = 2
 """Threads that write and compress pictures."""
-
-_START_S = 10.0
-_STOP_S = 5.0
 
 
 class GatewayServer:
@@ -77,15 +74,9 @@ class GatewayServer:
         self._ids = itertools.count(1)
         self._connections: dict[Connection, asyncio.Task[None] | None] = {}
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="sailenv-gateway-work")
-        self._loop = asyncio.new_event_loop()
-        self._stop = asyncio.Event()
-        started: Future[int] = Future()
-        self._thread = threading.Thread(
-            target=self._run, args=(started,), name="sailenv-gateway", daemon=True
-        )
-        self._thread.start()
+        self._thread = LoopThread("gateway", self._serve)
         try:
-            self._port = wait_for(started, "the gateway to listen", _START_S)
+            self._port = self._thread.start()
         except BaseException:
             self.close()
             raise
@@ -113,14 +104,10 @@ class GatewayServer:
 
     def close(self) -> None:
         """Disconnect everybody and stop to listen; a second call does nothing."""
-        if self._loop.is_closed():
+        if self._thread.ended:
             return
-        self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join(_STOP_S)
-        if self._thread.is_alive():
-            raise DeadlineExceeded("the gateway to end", _STOP_S)
+        self._thread.end()
         self._workers.shutdown(wait=False, cancel_futures=True)
-        self._loop.close()
 
     def __enter__(self) -> GatewayServer:
         return self
@@ -130,17 +117,7 @@ class GatewayServer:
 
     # -- in the thread ---------------------------------------------------------------------
 
-    def _run(self, started: Future[int]) -> None:
-        asyncio.set_event_loop(self._loop)
-        try:
-            self._loop.run_until_complete(self._serve(started))
-        except Exception as error:
-            if started.done():
-                _log.exception("the gateway ends because of a fault")
-            else:
-                started.set_exception(error)
-
-    async def _serve(self, started: Future[int]) -> None:
+    async def _serve(self, listening: Callable[[int], None]) -> None:
         try:
             server = await asyncio.start_server(
                 self._accept, self._host, self._port, limit=CHUNK_BYTES, backlog=128
@@ -149,8 +126,8 @@ class GatewayServer:
             where = f"{self._host}:{self._port}"
             accepted = f"one that can be listened on ({problem.strerror or problem})"
             raise InvalidRequest("address of the gateway", where, accepted) from problem
-        started.set_result(server.sockets[0].getsockname()[1])
-        await self._stop.wait()
+        listening(server.sockets[0].getsockname()[1])
+        await self._thread.stop.wait()
         server.close()
         await asyncio.sleep(0)  # those that were accepted just now begin, so as to be known
         # Again and again: until Python 3.12, wait_for loses a cancellation that meets a result.

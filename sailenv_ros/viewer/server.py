@@ -10,19 +10,17 @@ import contextlib
 import logging
 import secrets
 import socket
-import threading
 import time
 from collections.abc import Awaitable, Callable
-from concurrent.futures import Future
 from typing import Any
 
 from aiohttp import web
 
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, SailenvError
+from sailenv_ros.errors import InvalidRequest, SailenvError
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.requests import wait_for
+from sailenv_ros.simulation.loop_thread import LoopThread
 from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.guard import SECURITY_HEADERS, Guard, is_loopback
@@ -41,9 +39,6 @@ STATS_S = 0.5
 """Time between two reports of how fast the simulation runs [s]."""
 
 MAX_NAME = 200
-
-_START_S = 10.0
-_STOP_S = 5.0
 
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -92,15 +87,9 @@ class ViewerServer:
         self._clients: set[Client] = set()
         self._connected = 0
         self._touched = 0
-        self._loop = asyncio.new_event_loop()
-        self._stop = asyncio.Event()
-        started: Future[int] = Future()
-        self._thread = threading.Thread(
-            target=self._run, args=(started,), name="sailenv-viewer", daemon=True
-        )
-        self._thread.start()
+        self._thread = LoopThread("viewer", self._serve)
         try:
-            self._port = wait_for(started, "the viewer to listen", _START_S)
+            self._port = self._thread.start()
         except BaseException:
             self.close()
             raise
@@ -140,15 +129,11 @@ class ViewerServer:
 
     def close(self) -> None:
         """Disconnect everybody and stop to listen; a second call does nothing."""
-        if self._loop.is_closed():
+        if self._thread.ended:
             return
         with contextlib.suppress(AttributeError):
             self._end_news()
-        self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join(_STOP_S)
-        if self._thread.is_alive():
-            raise DeadlineExceeded("the viewer to end", _STOP_S)
-        self._loop.close()
+        self._thread.end()
 
     def __enter__(self) -> ViewerServer:
         return self
@@ -159,24 +144,11 @@ class ViewerServer:
     def _scene_changed(self, _: SceneInfo) -> None:
         """Have everybody told; called by the simulation's thread."""
         with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._tell_scene)
+            self._thread.loop.call_soon_threadsafe(self._tell_scene)
 
     # -- in the thread ---------------------------------------------------------------------
 
-    def _run(self, started: Future[int]) -> None:
-        asyncio.set_event_loop(self._loop)
-        try:
-            self._loop.run_until_complete(self._serve(started))
-        except Exception as error:
-            if started.done():
-                _log.exception("the viewer ends because of a fault")
-            else:
-                started.set_exception(error)
-        finally:
-            self._loop.run_until_complete(_end_of(asyncio.all_tasks(self._loop)))
-            self._loop.run_until_complete(self._loop.shutdown_default_executor())
-
-    async def _serve(self, started: Future[int]) -> None:
+    async def _serve(self, listening: Callable[[int], None]) -> None:
         app = web.Application(middlewares=[self._checked])
         app.router.add_get("/", self._page)
         app.router.add_get("/socket", self._socket)
@@ -192,9 +164,9 @@ class ViewerServer:
                 where = f"{self._host}:{self._port}"
                 accepted = f"one that can be listened on ({problem.strerror or problem})"
                 raise InvalidRequest("address of the viewer", where, accepted) from problem
-            started.set_result(runner.addresses[0][1])
+            listening(runner.addresses[0][1])
             stats = asyncio.create_task(self._tell_stats())
-            await self._stop.wait()
+            await self._thread.stop.wait()
             stats.cancel()
             await asyncio.gather(*(client.close() for client in tuple(self._clients)))
         finally:
@@ -314,11 +286,3 @@ class ViewerServer:
 
     def _refusal(self, why: str) -> web.Response:
         return web.Response(status=403, text=f"Refused: {why}\n", headers=SECURITY_HEADERS)
-
-
-async def _end_of(tasks: set[asyncio.Task[Any]]) -> None:
-    """End what aiohttp has left, e.g. an answer for which nobody waits any more."""
-    for task in tasks:
-        task.cancel()
-    if tasks:
-        await asyncio.wait(tasks, timeout=1.0)
