@@ -10,7 +10,6 @@ import contextlib
 import hashlib
 import logging
 import os
-import queue
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -18,10 +17,10 @@ from pathlib import Path
 from typing import Protocol
 
 from sailenv_ros.assets.places import cache_folder
-from sailenv_ros.errors import InvalidRequest, SimulationClosed
 from sailenv_ros.model import Asset
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.simulation.portrait_process import PortraitProcess
+from sailenv_ros.simulation.work_queue import WorkQueue
 
 __all__ = ["Thumbnails"]
 
@@ -55,7 +54,7 @@ class Catalogue(Protocol):
 
 
 class Thumbnails:
-    """The pictures of one simulation; its thread begins with the first and is a daemon.
+    """The pictures of one simulation.
 
     Parameters
     ----------
@@ -71,10 +70,12 @@ class Thumbnails:
         self._catalogue = catalogue
         self._backend: BackendName = backend
         self._device = device
-        self._waiting: queue.Queue[tuple[Future[bytes], str] | None] = queue.Queue()
-        self._lock = threading.Lock()
-        self._thread: threading.Thread | None = None
-        self._closed = False
+        self._queue: WorkQueue[str, bytes] = WorkQueue(
+            "thumbnails",
+            self._picture,
+            idle_s=lambda: None if self._process is None else IDLE_S,
+            rest=self._end_process,
+        )
         self._process: PortraitProcess | None = None
         self._of_uploads: dict[str, bytes] = {}
 
@@ -90,56 +91,17 @@ class Thumbnails:
         SimulationClosed
             If the simulation has ended.
         """
-        future: Future[bytes] = Future()
-        name = self._catalogue().canonical_asset(asset)
-        with self._lock:
-            if self._closed:
-                raise SimulationClosed()
-            if self._waiting.qsize() >= MAX_WAITING:
-                accepted = f"at most {MAX_WAITING} at a time; wait for one to be done"
-                raise InvalidRequest("number of thumbnails", MAX_WAITING + 1, accepted)
-            self._waiting.put((future, name))
-            if self._thread is None:
-                self._thread = threading.Thread(
-                    target=self._run, name="sailenv-thumbnails", daemon=True
-                )
-                self._thread.start()
-        return future
+        return self._queue.begin(self._catalogue().canonical_asset(asset), most=MAX_WAITING)
 
     def close(self) -> None:
         """Refuse those that wait and take no more; a second call does nothing."""
-        with self._lock:
-            self._closed = True
-            while not self._waiting.empty():
-                waiting = self._waiting.get_nowait()
-                if waiting is not None and waiting[0].set_running_or_notify_cancel():
-                    waiting[0].set_exception(SimulationClosed())
-            self._waiting.put(None)
+        self._queue.close()
         process = self._process
         if process is not None:
             process.kill()
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join(10.0)
+        self._queue.join(10.0)
 
     # -- in the thread ---------------------------------------------------------------------
-
-    def _run(self) -> None:
-        while True:
-            try:
-                waiting = self._waiting.get(timeout=None if self._process is None else IDLE_S)
-            except queue.Empty:
-                self._end_process()
-                continue
-            if waiting is None:
-                self._end_process()
-                return
-            future, name = waiting
-            if not future.set_running_or_notify_cancel():
-                continue
-            try:
-                future.set_result(self._picture(name))
-            except BaseException as error:  # whatever it is, whoever waits is told
-                future.set_exception(error)
 
     def _picture(self, name: str) -> bytes:
         catalogue = self._catalogue()
