@@ -6,6 +6,8 @@ lights change (light map) and when something moves (light around instances).
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +44,8 @@ class BakedTextures:
         if contents.baked is None:
             self.mixed = self._of = None
             return None
-        of = (contents.baked, contents.lights, contents.environment)
+        # Exposure comes after the light: a picture that is made brighter needs no new mixture.
+        of = (contents.baked, contents.lights, replace(contents.environment, exposure=0.0))
         if self.mixed is None or self._of != of:
             self.mixed, self._of = mix(*of), of
             self._upload(self.mixed)
