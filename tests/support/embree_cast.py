@@ -53,10 +53,7 @@ class RayCast:
             Where a surface with holes was met, through which the ray may have had to go.
         """
         intrinsics = camera.intrinsics
-        v, u = np.mgrid[0 : intrinsics.height, 0 : intrinsics.width]
-        x, y = (u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy
-        optical = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
-        directions = optical @ camera.world_from_camera[:3, :3].T
+        directions = intrinsics.rays().reshape(-1, 3) @ camera.world_from_camera[:3, :3].T
         eye = camera.world_from_camera[:3, 3]
         # Which side of a triangle is seen is a matter of where the eye is, not of the ray.
         away = np.einsum("ni,ni->n", self._corners[:, 0] - eye, self._normals) >= 0.0

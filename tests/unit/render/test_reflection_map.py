@@ -18,11 +18,8 @@ def test_six_cameras_see_every_direction_as_it_is() -> None:
     cameras = cube_cameras(np.array([1.0, 2.0, 3.0]))
     pictures = []
     for camera in cameras:
-        intrinsics = camera.intrinsics
-        v, u = np.mgrid[0 : intrinsics.height, 0 : intrinsics.width]
-        x, y = (u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy
-        rays = np.stack([x, y, np.ones_like(x)], axis=-1)
-        rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+        rays = camera.intrinsics.rays()
+        rays = rays / np.linalg.norm(rays, axis=-1, keepdims=True)
         pictures.append((rays @ camera.world_from_camera[:3, :3].T).astype(np.float32))
     found = flattened(cameras, pictures, 64)
     np.testing.assert_allclose(found, octahedral_directions(64), atol=2e-3)
