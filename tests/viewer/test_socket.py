@@ -219,13 +219,20 @@ def test_bytes_floods_and_giants_end_a_conversation(server: ViewerServer) -> Non
             await client.socket.send_bytes(b"\x00" * 100)
             assert (await client.until(lambda m: m["type"] == "refused"))["error"]
             await client.socket.send_str("x" * (70 * 1024))
-            assert await closing_code(client) == aiohttp.WSCloseCode.MESSAGE_TOO_BIG
+            assert await closing_code(client) in (aiohttp.WSCloseCode.MESSAGE_TOO_BIG, RESET)
         async with connected(server) as client:
             for _ in range(500):
-                await client.socket.send_str(json.dumps({"do": "shown", "number": 0}))
-            assert await closing_code(client) == aiohttp.WSCloseCode.POLICY_VIOLATION
+                try:
+                    await client.socket.send_str(json.dumps({"do": "shown", "number": 0}))
+                except ConnectionError:  # closed before the last of them
+                    break
+            assert await closing_code(client) in (aiohttp.WSCloseCode.POLICY_VIOLATION, RESET)
 
     asyncio.run(send())
+
+
+RESET = aiohttp.WSCloseCode.ABNORMAL_CLOSURE
+"""What a peer sees if it was still sending: the kernel drops the close message with the rest."""
 
 
 async def closing_code(client: ViewerSocket) -> int | None:
