@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from functools import partial
 from typing import Any, cast
 
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -92,7 +93,7 @@ class Recorder:
         self._agents = tuple(agents)
         self._views = tuple(views)
         self._namespace = node.get_namespace().rstrip("/")
-        self._subscribed: set[str] = set()
+        self._taken: dict[str, int] = {}  # messages of each topic that is subscribed to
         self._tallies: dict[str, FrameTally] = {}
         self.lost_on_the_way = 0
         self._subscribe(f"{self._namespace}/scene_info", SCENE_INFO)
@@ -141,14 +142,15 @@ class Recorder:
                 self._subscribe(f"{self._namespace}/{agent}/{name}", type_name, agent)
 
     def _subscribe(self, name: str, type_name: str, agent: str = "") -> None:
-        if name in self._subscribed:
+        if name in self._taken:
             return
-        self._subscribed.add(name)
+        self._taken[name] = 0
         spec = topic(name, type_name)
         self._writer.add_topic(spec)
 
         # rclpy tells by the signature whether a callback wants to know when a message was sent.
         def take(data: Any, about: Mapping[str, Any]) -> None:
+            self._taken[name] += 1
             sent_ns = self._put(name, data, about)
             if agent:
                 self._count(name.rpartition("/")[2], agent, data, sent_ns)
@@ -160,7 +162,7 @@ class Recorder:
             _listening(spec.qos),
             raw=True,
             event_callbacks=SubscriptionEventCallbacks(
-                message_lost=self._count_lost, use_default_callbacks=False
+                message_lost=partial(self._count_lost, name), use_default_callbacks=False
             ),
         )
 
@@ -177,8 +179,11 @@ class Recorder:
         self._writer.put(name, data, sent_ns)
         return int(sent_ns)
 
-    def _count_lost(self, event: Any) -> None:
-        self.lost_on_the_way += event.total_count_change
+    def _count_lost(self, name: str, event: Any) -> None:
+        # While writer and reader are finding each other, Fast DDS calls what was sent before then
+        # lost; it says so until the first message at the latest, which may be handled before.
+        if self._taken[name] > 1:
+            self.lost_on_the_way += event.total_count_change
 
 
 def main(argv: Sequence[str] | None = None) -> int:
