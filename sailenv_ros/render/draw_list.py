@@ -1,8 +1,8 @@
 """What is drawn: the parts of all instances, sorted into batches, with their matrices per frame.
 
-Scene contents come in once, poses and camera each frame; out come one storage buffer of rows and
-one indirect command buffer per batch. All matrices are composed in double precision and rounded
-once.
+Scene contents come in once, poses and camera each frame; out comes a block of uniforms for each
+part, and for each batch the parts that an eye may see. All matrices are composed in double
+precision and rounded once.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,26 +26,16 @@ LARGEST_CASTER_M = 40.0
 """Bodies with a longer diagonal (sheets without thickness: grounds; and still larger solids)
 receive shadows and cast none: they would stretch the shadow map to their own size."""
 
-ROW = np.dtype(
-    [
-        ("clip_from_object", "<f4", (4, 4)),
-        ("optical_normal_from_object", "<f4", (3, 4)),
-        ("instance_id", "<f4"),
-        ("material", "<u4"),
-        ("unused", "<f4", 2),
-        ("light_chart", "<f4", 4),
-    ]
-)
+ROWS = 12
+"""Vectors of four in a part's block of uniforms; `draw.glsl` says what each holds.
 
-COMMAND = np.dtype(
-    [
-        ("index_count", "<u4"),
-        ("instance_count", "<u4"),
-        ("first_index", "<u4"),
-        ("base_vertex", "<i4"),
-        ("base_instance", "<u4"),
-    ]
-)
+What a software rasteriser reads by a constant place it reads once for eight pixels or vertices; by
+a place that each of them brings along it reads for one after the other. So every part is drawn by a
+call of its own, with uniforms.
+"""
+
+_MATERIAL, _NORMAL, _CHART = 4, 8, 11
+"""Where things lie in the block; before them the columns of the matrix to clip space."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -78,36 +67,34 @@ class BatchKind:
         return cls(maps, material.alpha == "mask", material.double_sided)
 
 
+_CASTER = BatchKind((-1, -1, -1), masked=False, double_sided=True)
+"""Shadows are the same whatever a caster is made of."""
+
+
 class Batch:
-    """Draws of one kind: those that an eye may see, the nearest first.
+    """Parts of one kind: those that an eye may see, the nearest first.
 
     Parameters
     ----------
+    kind : BatchKind
     parts : (N,) int
-        Numbers of its parts among all.
-    commands : (N,) COMMAND
+        Their numbers among all.
+
+    Attributes
+    ----------
+    chosen : list of int
+        What is to be drawn, in this order.
     """
 
-    def __init__(
-        self,
-        context: moderngl.Context,
-        kind: BatchKind,
-        parts: NDArray[np.intp],
-        commands: NDArray[np.void],
-    ) -> None:
+    def __init__(self, kind: BatchKind, parts: NDArray[np.intp]) -> None:
         self.kind = kind
-        self.count = len(parts)
-        self.commands = context.buffer(commands.tobytes(), dynamic=True)
+        self.chosen: list[int] = parts.tolist()
         self._parts = parts
-        self._all = commands
 
     def choose(self, visible: NDArray[np.bool_], distance: NDArray[np.float64]) -> None:
-        """Keep the draws of visible parts, in the order of their distance."""
-        kept = np.flatnonzero(visible[self._parts])
-        order = kept[np.argsort(distance[self._parts[kept]], kind="stable")]
-        self.count = len(order)
-        if self.count:
-            self.commands.write(self._all[order].tobytes())
+        """Keep the visible parts, in the order of their distance."""
+        kept = self._parts[visible[self._parts]]
+        self.chosen = kept[np.argsort(distance[kept], kind="stable")].tolist()
 
     def least(self, distance: NDArray[np.float64]) -> float:
         """Give the least of its parts' distances."""
@@ -119,18 +106,23 @@ class DrawList:
 
     Parameters
     ----------
-    context : Context
     contents : SceneContents
     geometry : GeometryBuffers
     materials : MaterialBuffers
     see_through : bool
         True for the parts whose material is see-through (``blend``), each in a batch of its own;
         False for all others.
+
+    Attributes
+    ----------
+    uniforms : (P, ROWS, 4) float32
+        The block of each part.
+    slices : list of MeshSlice
+        Where each part's triangles lie.
     """
 
     def __init__(
         self,
-        context: moderngl.Context,
         contents: SceneContents,
         geometry: GeometryBuffers,
         materials: MaterialBuffers,
@@ -151,26 +143,17 @@ class DrawList:
         self.contents = contents
         self._instance_rows = np.array([row for _, row, *_ in parts], dtype=np.intp)
         self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
-        self._rows = np.zeros(max(1, len(parts)), ROW)
-        self._rows["instance_id"][: len(parts)] = contents.instance_ids[self._instance_rows]
-        self._rows["material"][: len(parts)] = [
-            materials.row(part.material) for _, _, part, _ in parts
-        ]
-        commands = np.zeros(len(parts), COMMAND)
-        for number, (*_, mesh) in enumerate(parts):
-            lies = geometry.slice(mesh)
-            commands[number] = (lies.index_count, 1, lies.first_index, lies.first_vertex, number)
-        self.row_buffer = context.buffer(reserve=self._rows.nbytes, dynamic=True)
-        self.draw_numbers = context.buffer(np.arange(max(1, len(parts)), dtype=np.int32).tobytes())
+        self.uniforms = np.zeros((len(parts), ROWS, 4), np.float32)
+        for block, (_, row, part, _) in zip(self.uniforms, parts, strict=True):
+            block[_MATERIAL:_NORMAL] = materials.vectors(part.material)
+            block[_MATERIAL, 0] = contents.instance_ids[row]
+        self.slices = [geometry.slice(mesh) for *_, mesh in parts]
         self._corners = np.array([_corners(part.mesh) for _, _, part, _ in parts]).reshape(-1, 8, 4)
         kinds = [kind for kind, *_ in parts]
         everything = np.arange(len(parts))
-        self.batches = tuple(_batches(context, kinds, everything, commands, apart=see_through))
+        self.batches = tuple(_batches(kinds, everything, apart=see_through))
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
-        chosen = _those(kinds, casting)
-        self.caster_batches = tuple(
-            _batches(context, chosen, everything[casting], commands[casting])
-        )
+        self.casters = Batch(_CASTER, everything[casting])
         self._charts, self._baked_poses = _charts(contents)
         self._visible = np.ones(len(parts), bool)
         self._distance = np.zeros(len(parts))
@@ -199,11 +182,10 @@ class DrawList:
             clip = clip_from_eye @ eye_from_object
             # Normals go by the inverse transpose: the rotation with the reciprocal scale.
             normal = eye_from_body[:, :3, :3] / self._scales[:, None, :]
-            rows = self._rows[:count]
             # GLSL stores columns, NumPy rows: the transpose is what GLSL reads as the matrix.
-            rows["clip_from_object"] = clip.transpose(0, 2, 1)[self._instance_rows]
-            rows["optical_normal_from_object"][:, :, :3] = normal[self._instance_rows]
-            rows["light_chart"] = np.where(
+            self.uniforms[:, :4] = clip.transpose(0, 2, 1)[self._instance_rows]
+            self.uniforms[:, _NORMAL : _NORMAL + 3, :3] = normal[self._instance_rows]
+            self.uniforms[:, _CHART] = np.where(
                 self.at_baked_pose(snapshot)[:, None], self._charts, 0.0
             )[self._instance_rows]
             self._visible, self._distance = _seen(clip[self._instance_rows], self._corners)
@@ -211,7 +193,6 @@ class DrawList:
                 self._visible &= only[self._instance_rows]
             for batch in self.batches:
                 batch.choose(self._visible, self._distance)
-        self.row_buffer.write(self._rows.tobytes())
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         """Tell which instances have baked light: those that stand where they stood for it."""
@@ -220,19 +201,12 @@ class DrawList:
 
     def farthest_first(self) -> list[Batch]:
         """Give the batches that the eye of `place` may see, the most distant first."""
-        seen = [batch for batch in self.batches if batch.count]
+        seen = [batch for batch in self.batches if batch.chosen]
         return sorted(seen, key=lambda batch: -batch.least(self._distance))
-
-    def close(self) -> None:
-        """Free the buffers."""
-        batches = (*self.batches, *self.caster_batches)
-        for buffer in (self.row_buffer, self.draw_numbers, *(b.commands for b in batches)):
-            buffer.release()
 
     def choose_casters(self, instances: NDArray[np.bool_]) -> None:
         """Keep those casters of some instances that the eye of `place` may see."""
-        for batch in self.caster_batches:
-            batch.choose(self._visible & instances[self._instance_rows], self._distance)
+        self.casters.choose(self._visible & instances[self._instance_rows], self._distance)
 
 
 def _charts(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -253,10 +227,6 @@ def casts(drawn: DrawnInstance) -> bool:
     low, high = drawn.model.bounds() * np.asarray(drawn.scale)
     largest = LARGEST_SHEET_M if (high - low).min() < 1e-3 else LARGEST_CASTER_M
     return float(np.linalg.norm(high - low)) <= largest
-
-
-def _those(kinds: list[BatchKind], chosen: NDArray[np.bool_]) -> list[BatchKind]:
-    return [kind for kind, wanted in zip(kinds, chosen, strict=True) if wanted]
 
 
 def _corners(mesh: Mesh) -> NDArray[np.float64]:
@@ -282,18 +252,12 @@ def _seen(
 
 
 def _batches(
-    context: moderngl.Context,
-    kinds: list[BatchKind],
-    parts: NDArray[np.intp],
-    commands: NDArray[np.void],
-    *,
-    apart: bool = False,
+    kinds: list[BatchKind], parts: NDArray[np.intp], *, apart: bool = False
 ) -> Iterator[Batch]:
     if apart:
-        for number, kind in enumerate(kinds):
-            one = slice(number, number + 1)
-            yield Batch(context, kind, parts[one], commands[one])
+        for kind, part in zip(kinds, parts, strict=True):
+            yield Batch(kind, np.array([part]))
         return
     for kind in sorted(set(kinds)):
         chosen = np.array([k == kind for k in kinds], dtype=bool)
-        yield Batch(context, kind, parts[chosen], commands[chosen])
+        yield Batch(kind, parts[chosen])

@@ -88,11 +88,10 @@ def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
 
 @dataclass(frozen=True, slots=True)
 class MeshSlice:
-    """Where a mesh lies in the buffers, in indices and vertices."""
+    """Where a mesh lies in the index buffer."""
 
     first_index: int
     index_count: int
-    first_vertex: int
 
 
 class GeometryBuffers:
@@ -116,13 +115,14 @@ class GeometryBuffers:
         # The number of an object is unique only while the object lives: it is kept.
         self._kept = wanted
         first_index = first_vertex = 0
+        indices = [np.zeros(0, np.uint32)]
         for mesh in wanted:
             count = mesh.triangles.size
-            self._slices[mesh.key] = MeshSlice(first_index, count, first_vertex)
+            self._slices[mesh.key] = MeshSlice(first_index, count)
+            indices.append(mesh.triangles.reshape(-1) + np.uint32(first_vertex))
             first_vertex += mesh.vertex_count
             first_index += count
         vertices = [np.zeros(0, VERTEX), *(mesh.interleaved() for mesh in wanted)]
-        indices = [np.zeros(0, np.uint32), *(mesh.triangles.reshape(-1) for mesh in wanted)]
         self.close()
         self.vertex_buffer = self._context.buffer(_or_one(np.concatenate(vertices)).tobytes())
         self.index_buffer = self._context.buffer(_or_one(np.concatenate(indices)).tobytes())

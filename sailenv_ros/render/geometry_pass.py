@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import moderngl
+import numpy as np
 
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.render.draw_list import BatchKind, DrawList
+from sailenv_ros.render.draw_list import ROWS, Batch, BatchKind, DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.programs import ProgramCache, set_uniform
@@ -134,10 +135,9 @@ class GeometryPass:
         # The projection turns the picture upside down, so that row 0 of OpenGL's window is the
         # picture's top row and no array is ever flipped; front faces turn the other way with it.
         context.front_face = "cw"
-        draws.row_buffer.bind_to_storage_buffer(0)
         try:
             for batch in draws.batches:
-                if not batch.count:
+                if not batch.chosen:
                     continue
                 program = self._program(batch.kind, targets)
                 set_uniform(program, "far_m", intrinsics.far_m)
@@ -147,7 +147,7 @@ class GeometryPass:
                     context.disable(moderngl.CULL_FACE)
                 else:
                     context.enable(moderngl.CULL_FACE)
-                issue(context, program, draws, geometry, batch.commands, batch.count)
+                issue(context, program, draws, geometry, batch)
         finally:
             context.disable_direct(GL_CLIP_DISTANCE0)
             context.disable_direct(GL_DEPTH_CLAMP)
@@ -173,7 +173,7 @@ class GeometryPass:
             switches["LOCATION_NORMALS"] = (4 if baked else 3) if shaded else 1
         if "SHADED" in switches and not shaded:
             switches["UNLIT"] = 1
-        return self._programs.get("geometry.vert", "geometry.frag", **switches)
+        return self._programs.get("geometry.vert", "geometry.frag", ROWS=ROWS, **switches)
 
 
 def issue(
@@ -181,10 +181,9 @@ def issue(
     program: moderngl.Program,
     draws: DrawList,
     geometry: GeometryBuffers,
-    commands: moderngl.Buffer,
-    count: int,
+    batch: Batch,
 ) -> None:
-    """Issue a batch of indirect draws with a program that reads the rows of `draws`."""
+    """Draw a batch with a program of `draw.glsl`."""
     formats, names = [], []
     for name in _VERTEX_FORMAT:
         used = name in program
@@ -192,14 +191,18 @@ def issue(
         names += [name] if used else []
     array = context.vertex_array(
         program,
-        [
-            (geometry.vertex_buffer, " ".join(formats), *names),
-            (draws.draw_numbers, "1i /i", "in_draw"),
-        ],
+        [(geometry.vertex_buffer, " ".join(formats), *names)],
         index_buffer=geometry.index_buffer,
         index_element_size=4,
     )
+    block = program["draw"]
+    assert isinstance(block, moderngl.Uniform)
+    # The compiler cuts off the vectors that a program does not read.
+    uniforms = np.ascontiguousarray(draws.uniforms[:, : block.array_length])
     try:
-        array.render_indirect(commands, mode=moderngl.TRIANGLES, count=count)
+        for part in batch.chosen:
+            block.write(uniforms[part])
+            lies = draws.slices[part]
+            array.render(moderngl.TRIANGLES, vertices=lies.index_count, first=lies.first_index)
     finally:
         array.release()

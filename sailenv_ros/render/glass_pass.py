@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
-from sailenv_ros.render.draw_list import Batch, DrawList
+from sailenv_ros.render.draw_list import ROWS, Batch, DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import GL_CLIP_DISTANCE0, GL_DEPTH_CLAMP, Targets, issue
 from sailenv_ros.render.lighting_pass import Illumination, set_camera
@@ -47,7 +47,7 @@ class GlassPass:
         self._contents = contents
         parts = (part for drawn in contents.instances for part in drawn.model.parts)
         if any(part.material.alpha == "blend" for part in parts):
-            self._draws = DrawList(self._context, contents, geometry, materials, see_through=True)
+            self._draws = DrawList(contents, geometry, materials, see_through=True)
 
     def draw(
         self,
@@ -76,7 +76,6 @@ class GlassPass:
         context.enable_direct(GL_CLIP_DISTANCE0)
         context.front_face = "cw"
         targets.picture.depth_mask = False
-        self._draws.row_buffer.bind_to_storage_buffer(0)
         try:
             for batch in batches:
                 self._draw(batch, camera, illumination, geometry, materials)
@@ -91,8 +90,6 @@ class GlassPass:
 
     def close(self) -> None:
         """Free the buffers."""
-        if self._draws is not None:
-            self._draws.close()
         self._draws = self._contents = None
 
     def _draw(
@@ -115,7 +112,7 @@ class GlassPass:
         # Of a body whose back is drawn, the back lies behind.
         for culled in ("front", "back") if batch.kind.double_sided else ("back",):
             self._context.cull_face = culled
-            issue(self._context, program, self._draws, geometry, batch.commands, batch.count)
+            issue(self._context, program, self._draws, geometry, batch)
 
     def _program(self, batch: Batch, illumination: Illumination) -> moderngl.Program:
         switches = {"SHADED": 1}
@@ -125,4 +122,4 @@ class GlassPass:
             switches["BAKED"] = 1
             if illumination.reflections is not None:
                 switches["REFLECTIONS"] = 1
-        return self._programs.get("geometry.vert", "glass.frag", **switches)
+        return self._programs.get("geometry.vert", "glass.frag", ROWS=ROWS, **switches)

@@ -142,7 +142,6 @@ class Renderer:
         self._beside.shutdown()
         with self._context:
             for resource in (
-                self._draws,
                 self._pictures,
                 self._glass_pass,
                 self._lighting_pass,
@@ -244,9 +243,7 @@ class Renderer:
         models = [drawn.model for drawn in contents.instances]
         self._geometry.show(mesh for meshes in drawn_meshes(contents) for mesh in meshes)
         self._materials.show(part.material for model in models for part in model.parts)
-        if self._draws is not None:
-            self._draws.close()
-        self._draws = DrawList(self._context, contents, self._geometry, self._materials)
+        self._draws = DrawList(contents, self._geometry, self._materials)
         return self._draws
 
     def _with_depth(self, previous: Observation) -> Observation:

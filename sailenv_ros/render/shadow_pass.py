@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.lights import Light
-from sailenv_ros.render.draw_list import DrawList, casts
+from sailenv_ros.render.draw_list import ROWS, DrawList, casts
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import issue
 from sailenv_ros.render.programs import ProgramCache
@@ -28,7 +28,7 @@ class ShadowPass:
 
     def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
         self._context = context
-        self._program = programs.get("shadow.vert", "shadow.frag")
+        self._program = programs.get("shadow.vert", "shadow.frag", ROWS=ROWS)
         self.texture = context.depth_texture((SIZE_PX, SIZE_PX))
         self.texture.compare_func = "<="
         self.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
@@ -121,10 +121,8 @@ class ShadowPass:
         draws.choose_casters(casting)
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.polygon_offset = 1.5, 2.0
-        draws.row_buffer.bind_to_storage_buffer(0)
-        for batch in draws.caster_batches:
-            if batch.count:
-                issue(self._context, self._program, draws, geometry, batch.commands, batch.count)
+        if draws.casters.chosen:
+            issue(self._context, self._program, draws, geometry, draws.casters)
         self._context.polygon_offset = 0.0, 0.0
 
     def close(self) -> None:

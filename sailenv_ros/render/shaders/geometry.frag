@@ -1,5 +1,5 @@
 // Leaves depth and instance id of each pixel; for pictures also normal and material.
-flat in float instance_id;
+#include "draw.glsl"
 
 layout(location = 0) out vec2 out_surface;  // depth along the optical axis [m], instance id
 
@@ -10,8 +10,6 @@ uniform vec4 lens;  // focal length, cx, cy [px], unused
 
 in vec3 optical_normal;
 in vec2 uv;
-flat in vec4 material_colour;
-flat in vec4 material_finish;  // roughness, metallic, alpha cutoff, emission
 #ifndef UNLIT
 layout(location = 1) out vec4 out_shape;   // octahedral normal, roughness, metallic
 layout(location = 2) out vec4 out_albedo;  // square root of linear albedo, emission / 16
@@ -36,11 +34,11 @@ vec2 octahedral(vec3 n) {
 void main() {
     // Clip w is the depth, and gl_FragCoord.w its reciprocal, which is linear in the window:
     // the most exact form in which the rasteriser knows it.
-    out_surface = vec2(1.0 / gl_FragCoord.w, instance_id);
+    out_surface = vec2(1.0 / gl_FragCoord.w, INSTANCE_ID);
 #ifdef SHADED
-    vec4 base = base_colour(material_colour, uv);
+    vec4 base = base_colour(MATERIAL_COLOUR, uv);
 #ifdef MASKED
-    if (base.a < cutoff(material_finish.z, uv)) discard;
+    if (base.a < cutoff(MATERIAL_FINISH.z, uv)) discard;
 #endif
     vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
 #ifdef NORMALS
@@ -51,9 +49,9 @@ void main() {
     vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
     normal = mapped_normal(uv, normal, point);
 #endif
-    vec2 rough_metal = roughness_metallic(material_finish.xy, uv);
+    vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, uv);
     out_shape = vec4(octahedral(normal), rough_metal);
-    out_albedo = vec4(sqrt(base.rgb), material_finish.w);
+    out_albedo = vec4(sqrt(base.rgb), MATERIAL_FINISH.w);
 #ifdef BAKED
     out_light_at = light_uv;
 #endif

@@ -3,6 +3,7 @@
 layout(location = 0, index = 0) out vec4 out_added;    // see picture.glsl
 layout(location = 0, index = 1) out vec4 out_through;  // share of what lies behind
 
+#include "draw.glsl"
 #include "picture.glsl"
 #include "textures.glsl"
 #include "reflections.glsl"
@@ -13,16 +14,13 @@ uniform float sky_share;
 uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
 #endif
 
-flat in float instance_id;
 in vec3 optical_normal;
 in vec2 uv;
-flat in vec4 material_colour;
-flat in vec4 material_finish;  // roughness, metallic, alpha cutoff, emission
 
 // Irradiance / pi on a surface.
 vec3 light_around(vec3 world_normal) {
 #ifdef BAKED
-    int id = int(instance_id + 0.5);
+    int id = int(INSTANCE_ID + 0.5);
     ivec2 row = ivec2((id & 255) * 3, id >> 8);
     vec4 facing_to = vec4(1.0, world_normal);
     return max(vec3(dot(texelFetch(instance_light, row, 0), facing_to),
@@ -43,7 +41,7 @@ vec3 mirrored_light(vec3 point, vec3 direction, float roughness) {
 }
 
 void main() {
-    vec4 base = base_colour(material_colour, uv);
+    vec4 base = base_colour(MATERIAL_COLOUR, uv);
     vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
     vec3 view = -normalize(ray);
     vec3 normal = normalize(optical_normal);
@@ -57,9 +55,9 @@ void main() {
     vec3 through = (1.0 - fresnel) * (1.0 - base.a) * mix(vec3(1.0), hue, base.a);
     vec3 world_normal = world_from_optical * normal;
     vec3 mirrored = world_from_optical * reflect(-view, normal);
-    vec3 added = fresnel * mirrored_light(ray / gl_FragCoord.w, mirrored, material_finish.x);
+    vec3 added = fresnel * mirrored_light(ray / gl_FragCoord.w, mirrored, MATERIAL_FINISH.x);
     added += (1.0 - fresnel) * base.a * base.rgb * light_around(world_normal);
-    added += base.rgb * (material_finish.w * 16.0);
+    added += base.rgb * (MATERIAL_FINISH.w * 16.0);
     // The share of light from around stays that of what lies behind.
     out_added = vec4(finished(added, vec3(0.0)).rgb, 0.0);
     out_through = vec4(through, 1.0);

@@ -1,9 +1,8 @@
 // Depth as the light sees it; its draws hold the light's clip matrices.
 in vec3 in_position;
-in int in_draw;
 
-#include "draws.glsl"
+#include "draw.glsl"
 
 void main() {
-    gl_Position = draws[in_draw].clip_from_object * vec4(in_position, 1.0);
+    gl_Position = CLIP_FROM_OBJECT * vec4(in_position, 1.0);
 }

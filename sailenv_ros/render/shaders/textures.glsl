@@ -1,9 +1,5 @@
 // What a pixel of a material is, from its factors and its textures, where it has any. Which maps
 // there are is known when the program is made: a software rasteriser runs all sides of a branch.
-#if defined(COLOUR_MAP) || defined(FINISH_MAP) || defined(NORMAL_MAP)
-flat in ivec4 material_layers;
-#endif
-
 #ifdef COLOUR_MAP
 uniform sampler2DArray colour_maps;
 #endif
@@ -16,7 +12,7 @@ uniform sampler2DArray normal_maps;
 
 vec4 base_colour(vec4 base, vec2 uv) {
 #ifdef COLOUR_MAP
-    vec4 texel = texture(colour_maps, vec3(uv, material_layers.x));
+    vec4 texel = texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x));
     vec3 c = texel.rgb;  // sRGB to linear: a cubic that is within 0.3 % of the curve
     base *= vec4(c * (c * (c * 0.305306 + 0.682171) + 0.012523), texel.a);
 #endif
@@ -26,7 +22,7 @@ vec4 base_colour(vec4 base, vec2 uv) {
 // Alpha below which there is nothing; from afar it is less (coverage.py).
 float cutoff(float nearby, vec2 uv) {
 #ifdef COLOUR_MAP
-    vec2 falls = unpackHalf2x16(uint(material_layers.w));
+    vec2 falls = CUTOFF_BY_LEVEL;
     return max(nearby - falls.x * textureQueryLod(colour_maps, uv).x, min(nearby, falls.y));
 #else
     return nearby;
@@ -35,7 +31,7 @@ float cutoff(float nearby, vec2 uv) {
 
 vec2 roughness_metallic(vec2 factors, vec2 uv) {
 #ifdef FINISH_MAP
-    factors *= texture(finish_maps, vec3(uv, material_layers.y)).gb;
+    factors *= texture(finish_maps, vec3(uv, MATERIAL_LAYERS.y)).gb;
 #endif
     return clamp(factors, vec2(0.045, 0.0), vec2(1.0));
 }
@@ -50,7 +46,7 @@ vec3 mapped_normal(vec2 uv, vec3 normal, vec3 point) {
     vec3 bitangent = across_y * tx.y + across_x * ty.y;
     float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
     if (longest < 1e-30) return normal;
-    vec3 local = texture(normal_maps, vec3(uv, material_layers.z)).xyz * 2.0 - 1.0;
+    vec3 local = texture(normal_maps, vec3(uv, MATERIAL_LAYERS.z)).xyz * 2.0 - 1.0;
     float scale = inversesqrt(longest);
     // The window's rows run downwards here, which turns the sense of the derivatives' frame.
     return normalize(tangent * scale * -local.x + bitangent * scale * -local.y + normal * local.z);
