@@ -8,18 +8,17 @@ precision and rounded once.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.model import Material, Mesh
+from sailenv_ros.model import Mesh
+from sailenv_ros.render import clusters
 from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
-from sailenv_ros.render.materials import MaterialBuffers
-from sailenv_ros.render.textures import array_of
+from sailenv_ros.render.materials import BatchKind, MaterialBuffers
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
-__all__ = ["Batch", "BatchKind", "DrawList", "casts"]
+__all__ = ["ROWS", "Batch", "DrawList", "casts"]
 
 LARGEST_SHEET_M = 12.0
 LARGEST_CASTER_M = 40.0
@@ -38,36 +37,7 @@ _MATERIAL, _NORMAL, _CHART = 4, 8, 11
 """Where things lie in the block; before them the columns of the matrix to clip space."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class BatchKind:
-    """What draws must share to be issued together.
-
-    Attributes
-    ----------
-    maps : (3,) tuple of int
-        Array that the base colour, metallic-roughness and normal map lie in, -1 for no map.
-    masked : bool
-        True if pixels may be dropped by alpha.
-    double_sided : bool
-        True if back faces are drawn.
-    """
-
-    maps: tuple[int, int, int]
-    masked: bool
-    double_sided: bool
-
-    @classmethod
-    def of(cls, material: Material) -> BatchKind:
-        """Classify a material."""
-        maps = (
-            array_of(material.base_colour_texture),
-            array_of(material.metallic_roughness_texture),
-            array_of(material.normal_texture),
-        )
-        return cls(maps, material.alpha == "mask", material.double_sided)
-
-
-_CASTER = BatchKind((-1, -1, -1), masked=False, double_sided=True)
+_CASTER = BatchKind()
 """Shadows are the same whatever a caster is made of."""
 
 
@@ -117,8 +87,8 @@ class DrawList:
     ----------
     uniforms : (P, ROWS, 4) float32
         The block of each part.
-    slices : list of MeshSlice
-        Where each part's triangles lie.
+    lies : list of (int, int)
+        First index and number of indices of each part, in the index buffer of `geometry`.
     """
 
     def __init__(
@@ -131,7 +101,7 @@ class DrawList:
     ) -> None:
         parts = sorted(
             (
-                (BatchKind.of(part.material), row, part, mesh)
+                (materials.kind(part.material), row, part, mesh)
                 for row, (drawn, meshes) in enumerate(
                     zip(contents.instances, drawn_meshes(contents), strict=True)
                 )
@@ -147,7 +117,13 @@ class DrawList:
         for block, (_, row, part, _) in zip(self.uniforms, parts, strict=True):
             block[_MATERIAL:_NORMAL] = materials.vectors(part.material)
             block[_MATERIAL, 0] = contents.instance_ids[row]
-        self.slices = [geometry.slice(mesh) for *_, mesh in parts]
+        slices = [geometry.slice(mesh) for *_, mesh in parts]
+        self.lies = [(mesh.first_index, mesh.index_count) for mesh in slices]
+        self._ranges = np.array(
+            [(lies.first_cluster, lies.cluster_count, lies.index_count) for lies in slices],
+            np.int64,
+        ).reshape(-1, 3)
+        self._geometry = geometry
         self._corners = np.array([_corners(part.mesh) for _, _, part, _ in parts]).reshape(-1, 8, 4)
         kinds = [kind for kind, *_ in parts]
         everything = np.arange(len(parts))
@@ -155,6 +131,9 @@ class DrawList:
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
         self.casters = Batch(_CASTER, everything[casting])
         self._charts, self._baked_poses = _charts(contents)
+        self._one_sided = np.array([not kind.double_sided for kind in kinds], bool)
+        self._clip = np.zeros((len(parts), 4, 4))
+        self._eye_from_object = np.zeros((len(contents.instances), 4, 4))
         self._visible = np.ones(len(parts), bool)
         self._distance = np.zeros(len(parts))
 
@@ -188,11 +167,41 @@ class DrawList:
             self.uniforms[:, _CHART] = np.where(
                 self.at_baked_pose(snapshot)[:, None], self._charts, 0.0
             )[self._instance_rows]
-            self._visible, self._distance = _seen(clip[self._instance_rows], self._corners)
+            self._clip = clip[self._instance_rows]
+            self._eye_from_object = eye_from_object
+            self._visible, self._distance = _seen(self._clip, self._corners)
             if only is not None:
                 self._visible &= only[self._instance_rows]
             for batch in self.batches:
                 batch.choose(self._visible, self._distance)
+
+    def seen_indices(self) -> tuple[NDArray[np.uint32], list[tuple[int, int]]]:
+        """Gather the triangles that the eye of `place`, which has perspective, may see.
+
+        Returns
+        -------
+        indices : (N,) uint32
+        lies : list of (int, int)
+            First index and number of indices of each part among them.
+        """
+        chosen = [part for batch in self.batches for part in batch.chosen]
+        if not chosen:
+            return np.zeros(0, np.uint32), [(0, 0)] * len(self.lies)
+        linear, offset = self._eye_from_object[:, :3, :3], self._eye_from_object[:, :3, 3:]
+        eyes = np.linalg.solve(linear, -offset)[:, :, 0].astype(np.float64)
+        # A mirrored body's triangles run the other way around.
+        upright = np.linalg.det(linear) > 0.0
+        rows = self._instance_rows
+        seen, lies = clusters.seen_indices(
+            np.array(chosen, np.intp),
+            self._geometry.clusters,
+            self._ranges,
+            self._clip,
+            eyes[rows],
+            self._one_sided & upright[rows],
+            self._geometry.indices,
+        )
+        return seen, [(first, count) for first, count in lies.tolist()]
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         """Tell which instances have baked light: those that stand where they stood for it."""

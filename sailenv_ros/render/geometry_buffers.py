@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import Unwrapping
 from sailenv_ros.model import Mesh
+from sailenv_ros.render.clusters import CLUSTER, clusters_of
 from sailenv_ros.snapshot import SceneContents
 
 __all__ = ["DrawnMesh", "GeometryBuffers", "MeshSlice", "drawn_meshes"]
@@ -88,14 +89,25 @@ def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
 
 @dataclass(frozen=True, slots=True)
 class MeshSlice:
-    """Where a mesh lies in the index buffer."""
+    """Where a mesh lies in the index buffer and among the clusters."""
 
     first_index: int
     index_count: int
+    first_cluster: int
+    cluster_count: int
 
 
 class GeometryBuffers:
-    """The meshes of the scene that is shown, in one context."""
+    """The meshes of the scene that is shown, in one context.
+
+    Attributes
+    ----------
+    vertex_buffer, index_buffer : Buffer
+    indices : (I,) uint32
+        What the index buffer holds.
+    clusters : (C,) CLUSTER
+        Groups of triangles that lie together in it; see `clusters`.
+    """
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -103,6 +115,8 @@ class GeometryBuffers:
         self._kept: list[DrawnMesh] = []
         self.vertex_buffer = context.buffer(np.zeros(1, VERTEX).tobytes())
         self.index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())
+        self.indices = np.zeros(0, np.uint32)
+        self.clusters = np.zeros(0, CLUSTER)
 
     def show(self, meshes: Iterable[DrawnMesh]) -> None:
         """Make sure that these meshes are there; others may be gone afterwards."""
@@ -114,18 +128,26 @@ class GeometryBuffers:
         self._slices = {}
         # The number of an object is unique only while the object lives: it is kept.
         self._kept = wanted
-        first_index = first_vertex = 0
-        indices = [np.zeros(0, np.uint32)]
+        first_index = first_vertex = first_cluster = 0
+        vertices, indices = [np.zeros(0, VERTEX)], [np.zeros(0, np.uint32)]
+        clusters = [np.zeros(0, CLUSTER)]
         for mesh in wanted:
-            count = mesh.triangles.size
-            self._slices[mesh.key] = MeshSlice(first_index, count)
-            indices.append(mesh.triangles.reshape(-1) + np.uint32(first_vertex))
-            first_vertex += mesh.vertex_count
-            first_index += count
-        vertices = [np.zeros(0, VERTEX), *(mesh.interleaved() for mesh in wanted)]
+            corners = mesh.interleaved()
+            triangles, groups = clusters_of(corners["position"], mesh.triangles)
+            self._slices[mesh.key] = MeshSlice(
+                first_index, triangles.size, first_cluster, len(groups)
+            )
+            groups["first_index"] += first_index
+            vertices.append(corners)
+            indices.append(triangles.reshape(-1) + np.uint32(first_vertex))
+            clusters.append(groups)
+            first_vertex += len(corners)
+            first_index += triangles.size
+            first_cluster += len(groups)
         self.close()
+        self.indices, self.clusters = np.concatenate(indices), np.concatenate(clusters)
         self.vertex_buffer = self._context.buffer(_or_one(np.concatenate(vertices)).tobytes())
-        self.index_buffer = self._context.buffer(_or_one(np.concatenate(indices)).tobytes())
+        self.index_buffer = self._context.buffer(_or_one(self.indices).tobytes())
 
     def slice(self, mesh: DrawnMesh) -> MeshSlice:
         """Say where a mesh that is shown lies."""

@@ -6,15 +6,16 @@ pictures normal and material, go out. Only the attachments that are asked for ex
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.render.draw_list import ROWS, Batch, BatchKind, DrawList
+from sailenv_ros.render.draw_list import ROWS, Batch, DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
-from sailenv_ros.render.materials import MaterialBuffers
+from sailenv_ros.render.materials import BatchKind, MaterialBuffers
 from sailenv_ros.render.programs import ProgramCache, set_uniform
 
 __all__ = ["GeometryPass", "Targets"]
@@ -78,6 +79,11 @@ class GeometryPass:
     def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
         self._context = context
         self._programs = programs
+        self._index_buffer = context.buffer(reserve=4)
+
+    def close(self) -> None:
+        """Free the buffer of indices."""
+        self._index_buffer.release()
 
     def make_targets(
         self,
@@ -135,9 +141,10 @@ class GeometryPass:
         # The projection turns the picture upside down, so that row 0 of OpenGL's window is the
         # picture's top row and no array is ever flipped; front faces turn the other way with it.
         context.front_face = "cw"
+        lies = self._choose(draws)
         try:
             for batch in draws.batches:
-                if not batch.chosen:
+                if not any(lies[part][1] for part in batch.chosen):
                     continue
                 program = self._program(batch.kind, targets)
                 set_uniform(program, "far_m", intrinsics.far_m)
@@ -147,11 +154,22 @@ class GeometryPass:
                     context.disable(moderngl.CULL_FACE)
                 else:
                     context.enable(moderngl.CULL_FACE)
-                issue(context, program, draws, geometry, batch)
+                array = bound(context, program, geometry, self._index_buffer)
+                issue(program, array, draws, batch, lies)
         finally:
             context.disable_direct(GL_CLIP_DISTANCE0)
             context.disable_direct(GL_DEPTH_CLAMP)
             context.front_face = "ccw"
+
+    def _choose(self, draws: DrawList) -> list[tuple[int, int]]:
+        """Upload the indices of what may be seen; say where each part's lie."""
+        seen, lies = draws.seen_indices()
+        if seen.nbytes > self._index_buffer.size:
+            self._index_buffer.release()
+            self._index_buffer = self._context.buffer(reserve=2 * seen.nbytes, dynamic=True)
+        if seen.nbytes:
+            self._index_buffer.write(seen)
+        return lies
 
     def _program(self, kind: BatchKind, targets: Targets) -> moderngl.Program:
         switches: dict[str, int] = {}
@@ -161,10 +179,10 @@ class GeometryPass:
             switches["SHADED"] = 1
             if kind.masked:
                 switches["MASKED"] = 1
-            needed = ("COLOUR_MAP", "FINISH_MAP", "NORMAL_MAP")[: 3 if shaded else 1]
-            for name, array in zip(needed, kind.maps, strict=False):
-                if array >= 0:
-                    switches[name] = 1
+            there = {"COLOUR_MAP": kind.maps[0] >= 0}
+            if shaded:
+                there |= {"FINISH_MAP": kind.finish, "NORMAL_MAP": kind.relief}
+            switches.update((name, 1) for name, is_there in there.items() if is_there)
         baked = targets.light_at is not None
         if baked:
             switches["BAKED"] = 1
@@ -176,33 +194,49 @@ class GeometryPass:
         return self._programs.get("geometry.vert", "geometry.frag", ROWS=ROWS, **switches)
 
 
-def issue(
+def bound(
     context: moderngl.Context,
     program: moderngl.Program,
-    draws: DrawList,
     geometry: GeometryBuffers,
-    batch: Batch,
-) -> None:
-    """Draw a batch with a program of `draw.glsl`."""
+    index_buffer: moderngl.Buffer,
+) -> moderngl.VertexArray:
+    """Bind the vertices that a program reads, and indices, for `issue`."""
     formats, names = [], []
     for name in _VERTEX_FORMAT:
         used = name in program
         formats.append(_VERTEX_FORMAT[name] if used else _PADDING[name])
         names += [name] if used else []
-    array = context.vertex_array(
+    return context.vertex_array(
         program,
         [(geometry.vertex_buffer, " ".join(formats), *names)],
-        index_buffer=geometry.index_buffer,
+        index_buffer=index_buffer,
         index_element_size=4,
     )
+
+
+def issue(
+    program: moderngl.Program,
+    array: moderngl.VertexArray,
+    draws: DrawList,
+    batch: Batch,
+    lies: Sequence[tuple[int, int]],
+) -> None:
+    """Draw a batch with a program of `draw.glsl`; `array` is released.
+
+    Parameters
+    ----------
+    lies : sequence of (int, int)
+        First index and number of indices of each part.
+    """
     block = program["draw"]
     assert isinstance(block, moderngl.Uniform)
     # The compiler cuts off the vectors that a program does not read.
     uniforms = np.ascontiguousarray(draws.uniforms[:, : block.array_length])
     try:
         for part in batch.chosen:
-            block.write(uniforms[part])
-            lies = draws.slices[part]
-            array.render(moderngl.TRIANGLES, vertices=lies.index_count, first=lies.first_index)
+            first, count = lies[part]
+            if count:
+                block.write(uniforms[part])
+                array.render(moderngl.TRIANGLES, vertices=count, first=first)
     finally:
         array.release()

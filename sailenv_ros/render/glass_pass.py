@@ -14,7 +14,13 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera
 from sailenv_ros.render.draw_list import ROWS, Batch, DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
-from sailenv_ros.render.geometry_pass import GL_CLIP_DISTANCE0, GL_DEPTH_CLAMP, Targets, issue
+from sailenv_ros.render.geometry_pass import (
+    GL_CLIP_DISTANCE0,
+    GL_DEPTH_CLAMP,
+    Targets,
+    bound,
+    issue,
+)
 from sailenv_ros.render.lighting_pass import Illumination, set_camera
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.programs import ProgramCache, set_uniform
@@ -112,7 +118,8 @@ class GlassPass:
         # Of a body whose back is drawn, the back lies behind.
         for culled in ("front", "back") if batch.kind.double_sided else ("back",):
             self._context.cull_face = culled
-            issue(self._context, program, self._draws, geometry, batch)
+            array = bound(self._context, program, geometry, geometry.index_buffer)
+            issue(program, array, self._draws, batch, self._draws.lies)
 
     def _program(self, batch: Batch, illumination: Illumination) -> moderngl.Program:
         switches = {"SHADED": 1}

@@ -6,6 +6,7 @@ Materials come in, numbers go out. Their textures are `textures.TextureArrays`' 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -13,12 +14,36 @@ from numpy.typing import NDArray
 
 from sailenv_ros.model import Material, Texture
 from sailenv_ros.render.coverage import cutoff_by_level
+from sailenv_ros.render.fine_maps import fine_map
 from sailenv_ros.render.textures import SIZES_PX, TextureArrays, array_of
 
-__all__ = ["MaterialBuffers"]
+__all__ = ["BatchKind", "MaterialBuffers"]
 
 EMISSION_SCALE = 16.0
 """Radiance, in units of the base colour, that the G-buffer's 8 bits can hold."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class BatchKind:
+    """What materials must share to be drawn by one program.
+
+    Attributes
+    ----------
+    maps : (2,) tuple of int
+        Array that the base colour map and the fine map lie in, -1 for no map.
+    finish, relief : bool
+        True if the fine map holds roughness and metallic; if it holds normals.
+    masked : bool
+        True if pixels may be dropped by alpha.
+    double_sided : bool
+        True if back faces are drawn.
+    """
+
+    maps: tuple[int, int] = (-1, -1)
+    finish: bool = False
+    relief: bool = False
+    masked: bool = False
+    double_sided: bool = False
 
 
 class MaterialBuffers:
@@ -27,6 +52,7 @@ class MaterialBuffers:
     def __init__(self, context: moderngl.Context, *, software: bool) -> None:
         self._textures = TextureArrays(context, software=software)
         self._shown: dict[int, Material] = {}
+        self._fine: dict[int, Texture | None] = {}
         self._vectors: dict[int, NDArray[np.float32]] = {}
 
     def show(self, materials: Iterable[Material]) -> None:
@@ -35,15 +61,33 @@ class MaterialBuffers:
         wanted = {id(material): material for material in materials}
         if wanted.keys() <= self._shown.keys():
             return
-        self._textures.show(t for m in wanted.values() for t in _textures(m) if t is not None)
+        joined: dict[tuple[int, int], Texture | None] = {
+            _fine_key(material): self._fine[key] for key, material in self._shown.items()
+        }
+        for material in wanted.values():
+            if _fine_key(material) not in joined:
+                joined[_fine_key(material)] = fine_map(material)
+        self._fine = {key: joined[_fine_key(material)] for key, material in wanted.items()}
         self._shown = wanted
+        self._textures.show(t for m in wanted.values() for t in self._maps(m) if t is not None)
         self._vectors = {key: self._described(material) for key, material in wanted.items()}
 
     def vectors(self, material: Material) -> NDArray[np.float32]:
         """Give (4, 4) float32: how `draw.glsl` has a material that is shown."""
         return self._vectors[id(material)]
 
-    def bind(self, program: moderngl.Program, maps: tuple[int, int, int]) -> None:
+    def kind(self, material: Material) -> BatchKind:
+        """Classify a material that is shown."""
+        colour, fine = (array_of(texture) for texture in self._maps(material))
+        return BatchKind(
+            maps=(colour, fine),
+            finish=material.metallic_roughness_texture is not None,
+            relief=material.normal_texture is not None,
+            masked=material.alpha == "mask",
+            double_sided=material.double_sided,
+        )
+
+    def bind(self, program: moderngl.Program, maps: tuple[int, int]) -> None:
         """Make the arrays that a kind's maps lie in readable for a program."""
         self._textures.bind(program, maps)
 
@@ -62,17 +106,17 @@ class MaterialBuffers:
         return np.array(
             [
                 [0.0, *cutoff_by_level(material, edge), 0.0],
-                [*(self._textures.layer(texture) for texture in _textures(material)), 0.0],
+                [*(self._textures.layer(texture) for texture in self._maps(material)), 0.0, 0.0],
                 base,
                 [material.roughness, material.metallic, material.alpha_cutoff, glow],
             ],
             np.float32,
         )
 
+    def _maps(self, material: Material) -> tuple[Texture | None, Texture | None]:
+        return material.base_colour_texture, self._fine[id(material)]
 
-def _textures(material: Material) -> tuple[Texture | None, Texture | None, Texture | None]:
-    return (
-        material.base_colour_texture,
-        material.metallic_roughness_texture,
-        material.normal_texture,
-    )
+
+def _fine_key(material: Material) -> tuple[int, int]:
+    """Tell joined maps apart, while the materials live."""
+    return id(material.metallic_roughness_texture), id(material.normal_texture)

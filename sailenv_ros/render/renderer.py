@@ -21,7 +21,7 @@ from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import checked_views
 from sailenv_ros.render import annotate as ground_truth
-from sailenv_ros.render import post_pass
+from sailenv_ros.render import clusters, post_pass
 from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.bands import beside
 from sailenv_ros.render.context import create_context
@@ -75,6 +75,7 @@ class Renderer:
         self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
         self._post = post_pass.PostPass(beside(self._beside))
         self._closed = False
+        clusters.warm_up()
         ground_truth.warm_up()
         post_pass.warm_up()
 
@@ -143,6 +144,7 @@ class Renderer:
         with self._context:
             for resource in (
                 self._pictures,
+                self._geometry_pass,
                 self._glass_pass,
                 self._lighting_pass,
                 self._scene_light,

@@ -7,6 +7,8 @@ is copied from a second map, where it was drawn once.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +16,17 @@ from numpy.typing import NDArray
 from sailenv_ros.lights import Light
 from sailenv_ros.render.draw_list import ROWS, DrawList, casts
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
-from sailenv_ros.render.geometry_pass import issue
+from sailenv_ros.render.geometry_pass import bound, issue
 from sailenv_ros.render.programs import ProgramCache
 from sailenv_ros.snapshot import WorldSnapshot
 
 __all__ = ["ShadowPass"]
 
 SIZE_PX = 1024
+
+POSE_STEP = 2.0**-12
+"""Casters' poses are rounded to this (0.24 mm, and 0.24 mm at one metre from a body's origin), a
+fraction of a texel: what comes to rest creeps by less for seconds, and needs no new map."""
 
 
 class ShadowPass:
@@ -64,11 +70,12 @@ class ShadowPass:
             Which instances the map encloses; None for all. Things that move are better left out:
             a map that follows them changes its texels' places, and so every shadow's edge.
         """
-        everything = np.ones(len(snapshot.world_from_body), bool)
+        poses = POSE_STEP * np.round(snapshot.world_from_body / POSE_STEP)
+        snapshot = replace(snapshot, world_from_body=poses)
+        everything = np.ones(len(poses), bool)
         casting = everything if casting is None else casting
         framed = everything if framed is None else framed
         key = (snapshot.contents, light.direction, casting.tobytes(), framed.tobytes())
-        poses = snapshot.world_from_body
         before = self._poses if self._drawn == key else None
         concerned = casting | framed
         if before is not None and np.array_equal(before[concerned], poses[concerned]):
@@ -122,7 +129,8 @@ class ShadowPass:
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.polygon_offset = 1.5, 2.0
         if draws.casters.chosen:
-            issue(self._context, self._program, draws, geometry, draws.casters)
+            array = bound(self._context, self._program, geometry, geometry.index_buffer)
+            issue(self._program, array, draws, draws.casters, draws.lies)
         self._context.polygon_offset = 0.0, 0.0
 
     def close(self) -> None:

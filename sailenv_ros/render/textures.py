@@ -22,8 +22,8 @@ __all__ = ["SIZES_PX", "TextureArrays", "array_of"]
 SIZES_PX = (128, 512, 1024)
 """Edge lengths of the three texture arrays."""
 
-ANISOTROPY = (4.0, 1.0, 1.0)
-"""Of colour, finish and normal maps, on graphics hardware: only in colours is it seen.
+ANISOTROPY = (4.0, 1.0)
+"""Of colour and fine maps, on graphics hardware: only in colours is it seen.
 
 On the CPU there is none. llvmpipe walks over every texel of a pixel's footprint: one textured wall
 seen edge-on has held up a frame for more than 30 s.
@@ -32,7 +32,7 @@ seen edge-on has held up a frame for more than 30 s.
 SPARE = 0.25
 """Share of layers that a new array has in reserve, for what is spawned later."""
 
-_UNIFORMS = ("colour_maps", "finish_maps", "normal_maps")
+_UNIFORMS = ("colour_maps", "fine_maps")
 _FIRST_TEXTURE_UNIT = 8
 
 
@@ -68,7 +68,7 @@ class TextureArrays:
         """Give the layer of a texture that is there; 0 for none."""
         return 0 if texture is None else self._arrays[array_of(texture)].layer(texture)
 
-    def bind(self, program: moderngl.Program, maps: tuple[int, int, int]) -> None:
+    def bind(self, program: moderngl.Program, maps: tuple[int, int]) -> None:
         """Make the arrays that a kind's maps lie in readable for a program."""
         for unit, (name, array) in enumerate(zip(_UNIFORMS, maps, strict=True)):
             if array >= 0:

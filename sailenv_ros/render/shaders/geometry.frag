@@ -45,11 +45,12 @@ void main() {
     out_normal = vec4(normal, 1.0);
 #endif
 #ifndef UNLIT
+    vec4 fine_texel = fine(uv);
 #ifdef NORMAL_MAP
     vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
-    normal = mapped_normal(uv, normal, point);
+    normal = mapped_normal(fine_texel.xy, uv, normal, point);
 #endif
-    vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, uv);
+    vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, fine_texel);
     out_shape = vec4(octahedral(normal), rough_metal);
     out_albedo = vec4(sqrt(base.rgb), MATERIAL_FINISH.w);
 #ifdef BAKED

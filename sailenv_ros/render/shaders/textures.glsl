@@ -3,11 +3,8 @@
 #ifdef COLOUR_MAP
 uniform sampler2DArray colour_maps;
 #endif
-#ifdef FINISH_MAP
-uniform sampler2DArray finish_maps;
-#endif
-#ifdef NORMAL_MAP
-uniform sampler2DArray normal_maps;
+#if defined(FINISH_MAP) || defined(NORMAL_MAP)
+uniform sampler2DArray fine_maps;
 #endif
 
 vec4 base_colour(vec4 base, vec2 uv) {
@@ -29,16 +26,25 @@ float cutoff(float nearby, vec2 uv) {
 #endif
 }
 
-vec2 roughness_metallic(vec2 factors, vec2 uv) {
+// Normal's x and y, roughness, metallic; see fine_maps.py.
+vec4 fine(vec2 uv) {
+#if defined(FINISH_MAP) || defined(NORMAL_MAP)
+    return texture(fine_maps, vec3(uv, MATERIAL_LAYERS.y));
+#else
+    return vec4(0.0);
+#endif
+}
+
+vec2 roughness_metallic(vec2 factors, vec4 fine_texel) {
 #ifdef FINISH_MAP
-    factors *= texture(finish_maps, vec3(uv, MATERIAL_LAYERS.y)).gb;
+    factors *= fine_texel.ba;
 #endif
     return clamp(factors, vec2(0.045, 0.0), vec2(1.0));
 }
 
 #ifdef NORMAL_MAP
 // The tangent frame follows from how point and uv change from pixel to pixel, so meshes need none.
-vec3 mapped_normal(vec2 uv, vec3 normal, vec3 point) {
+vec3 mapped_normal(vec2 texel, vec2 uv, vec3 normal, vec3 point) {
     vec3 px = dFdx(point), py = dFdy(point);
     vec2 tx = dFdx(uv), ty = dFdy(uv);
     vec3 across_y = cross(py, normal), across_x = cross(normal, px);
@@ -46,9 +52,10 @@ vec3 mapped_normal(vec2 uv, vec3 normal, vec3 point) {
     vec3 bitangent = across_y * tx.y + across_x * ty.y;
     float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
     if (longest < 1e-30) return normal;
-    vec3 local = texture(normal_maps, vec3(uv, MATERIAL_LAYERS.z)).xyz * 2.0 - 1.0;
+    vec2 local = texel * 2.0 - 1.0;
+    float upright = sqrt(max(1.0 - dot(local, local), 0.0));
     float scale = inversesqrt(longest);
     // The window's rows run downwards here, which turns the sense of the derivatives' frame.
-    return normalize(tangent * scale * -local.x + bitangent * scale * -local.y + normal * local.z);
+    return normalize(tangent * scale * -local.x + bitangent * scale * -local.y + normal * upright);
 }
 #endif
