@@ -69,7 +69,11 @@ class MaterialBuffers:
                 joined[_fine_key(material)] = fine_map(material)
         self._fine = {key: joined[_fine_key(material)] for key, material in wanted.items()}
         self._shown = wanted
-        self._textures.show(t for m in wanted.values() for t in self._maps(m) if t is not None)
+        maps = [self._maps(material) for material in wanted.values()]
+        self._textures.show(
+            (colour for colour, _ in maps if colour is not None),
+            (fine for _, fine in maps if fine is not None),
+        )
         self._vectors = {key: self._described(material) for key, material in wanted.items()}
 
     def vectors(self, material: Material) -> NDArray[np.float32]:
@@ -102,6 +106,7 @@ class MaterialBuffers:
             # The G-buffer holds one colour and one strength: what glows has the glow's colour.
             base[:3] = np.asarray(material.emission) / glow
         glow = min(1.0, glow / EMISSION_SCALE)
+        base[:3] = np.sqrt(base[:3])
         edge = SIZES_PX[array_of(material.base_colour_texture)]
         return np.array(
             [

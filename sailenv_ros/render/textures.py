@@ -29,11 +29,24 @@ On the CPU there is none. llvmpipe walks over every texel of a pixel's footprint
 seen edge-on has held up a frame for more than 30 s.
 """
 
+_SOFTWARE_FILTERS = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR_MIPMAP_NEAREST)
+"""The same on the CPU: from level to level, roughness and relief may change at once."""
+
 SPARE = 0.25
 """Share of layers that a new array has in reserve, for what is spawned later."""
 
 _UNIFORMS = ("colour_maps", "fine_maps")
 _FIRST_TEXTURE_UNIT = 8
+
+
+def _root_of_linear() -> NDArray[np.uint8]:
+    """Tabulate the square root of linear colour, 0 to 255, over the sRGB code."""
+    code = np.arange(256) / 255.0
+    linear = np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
+    return np.round(255.0 * np.sqrt(linear)).astype(np.uint8)
+
+
+_ROOT_OF_LINEAR = _root_of_linear()
 
 
 class TextureArrays:
@@ -50,17 +63,27 @@ class TextureArrays:
         self._arrays = tuple(_Layers(context, edge) for edge in SIZES_PX)
         self._samplers = tuple(
             context.sampler(
-                filter=(moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR),
+                filter=(smaller if software else moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR),
                 anisotropy=1.0 if software else anisotropy,
             )
-            for anisotropy in ANISOTROPY
+            for anisotropy, smaller in zip(ANISOTROPY, _SOFTWARE_FILTERS, strict=True)
         )
 
-    def show(self, textures: Iterable[Texture]) -> None:
-        """Make sure that these are there; others may be gone afterwards."""
-        by_size: list[list[Texture]] = [[] for _ in SIZES_PX]
-        for texture in {id(texture): texture for texture in textures}.values():
-            by_size[array_of(texture)].append(texture)
+    def show(self, colours: Iterable[Texture], fine: Iterable[Texture]) -> None:
+        """Make sure that these are there; others may be gone afterwards.
+
+        Parameters
+        ----------
+        colours : iterable of Texture
+            sRGB; the arrays hold the square root of linear colour (see `geometry.frag`).
+        fine : iterable of Texture
+            Held as they are.
+        """
+        coded = {id(texture): (texture, True) for texture in colours}
+        plain = {id(texture): (texture, False) for texture in fine}
+        by_size: list[list[tuple[Texture, bool]]] = [[] for _ in SIZES_PX]
+        for texture, is_colour in (plain | coded).values():
+            by_size[array_of(texture)].append((texture, is_colour))
         for array, wanted in zip(self._arrays, by_size, strict=True):
             array.show(wanted)
 
@@ -103,23 +126,23 @@ class _Layers:
     def close(self) -> None:
         self._array.release()
 
-    def show(self, wanted: list[Texture]) -> None:
+    def show(self, wanted: list[tuple[Texture, bool]]) -> None:
         """Bring in what is not there yet: over what is no longer wanted, or into a new array."""
-        new = [texture for texture in wanted if id(texture) not in self._layer_of]
+        new = [entry for entry in wanted if id(entry[0]) not in self._layer_of]
         roomy = len(self._textures) > 2 * (len(wanted) + 4)
         if not new and not roomy:
             return
         if roomy or len(wanted) > len(self._textures):
             self._make(len(wanted))
             new = wanted
-        kept = {id(texture) for texture in wanted}
+        kept = {id(texture) for texture, _ in wanted}
         free = (
             layer
             for layer, texture in enumerate(self._textures)
             if texture is None or id(texture) not in kept
         )
-        for layer, texture in zip(list(free), new, strict=False):
-            self._put(layer, texture)
+        for layer, (texture, is_colour) in zip(list(free), new, strict=False):
+            self._put(layer, texture, is_colour)
         if new:
             self._array.build_mipmaps()
 
@@ -132,7 +155,7 @@ class _Layers:
         self._textures = [None] * layers
         self._layer_of = {}
 
-    def _put(self, layer: int, texture: Texture) -> None:
+    def _put(self, layer: int, texture: Texture, is_colour: bool) -> None:
         old = self._textures[layer]
         if old is not None:
             del self._layer_of[id(old)]
@@ -140,6 +163,8 @@ class _Layers:
         self._textures[layer] = texture
         self._layer_of[id(texture)] = layer
         pixels = _resized(texture, self._edge)
+        if is_colour:
+            pixels = np.concatenate([_ROOT_OF_LINEAR[pixels[..., :3]], pixels[..., 3:]], axis=2)
         self._array.write(pixels, viewport=(0, 0, layer, self._edge, self._edge, 1))
 
 

@@ -4,7 +4,7 @@ uniform vec4 draw[ROWS];
 #define INSTANCE_ID draw[4].x
 #define CUTOFF_BY_LEVEL draw[4].yz   // fall of the alpha cut-off from level to level, where it ends
 #define MATERIAL_LAYERS draw[5].xy   // of base colour and fine map
-#define MATERIAL_COLOUR draw[6]      // linear
+#define MATERIAL_COLOUR draw[6]      // square root of linear colour; alpha
 #define MATERIAL_FINISH draw[7]      // roughness, metallic, alpha cut-off, emission
 #define OPTICAL_NORMAL_FROM_OBJECT transpose(mat3(draw[8].xyz, draw[9].xyz, draw[10].xyz))
 #define LIGHT_CHART draw[11]         // offset and scale in the light map, 0 for none

@@ -36,7 +36,7 @@ void main() {
     // the most exact form in which the rasteriser knows it.
     out_surface = vec2(1.0 / gl_FragCoord.w, INSTANCE_ID);
 #ifdef SHADED
-    vec4 base = base_colour(MATERIAL_COLOUR, uv);
+    vec4 base = base_colour(uv);
 #ifdef MASKED
     if (base.a < cutoff(MATERIAL_FINISH.z, uv)) discard;
 #endif
@@ -52,7 +52,7 @@ void main() {
 #endif
     vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, fine_texel);
     out_shape = vec4(octahedral(normal), rough_metal);
-    out_albedo = vec4(sqrt(base.rgb), MATERIAL_FINISH.w);
+    out_albedo = vec4(base.rgb, MATERIAL_FINISH.w);
 #ifdef BAKED
     out_light_at = light_uv;
 #endif

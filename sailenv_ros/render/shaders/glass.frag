@@ -41,7 +41,8 @@ vec3 mirrored_light(vec3 point, vec3 direction, float roughness) {
 }
 
 void main() {
-    vec4 base = base_colour(MATERIAL_COLOUR, uv);
+    vec4 base = base_colour(uv);
+    base.rgb *= base.rgb;
     vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
     vec3 view = -normalize(ray);
     vec3 normal = normalize(optical_normal);

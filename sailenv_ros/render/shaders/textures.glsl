@@ -7,13 +7,13 @@ uniform sampler2DArray colour_maps;
 uniform sampler2DArray fine_maps;
 #endif
 
-vec4 base_colour(vec4 base, vec2 uv) {
+// Square root of linear colour, and alpha: the roots of factor and texel multiply as these do.
+vec4 base_colour(vec2 uv) {
 #ifdef COLOUR_MAP
-    vec4 texel = texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x));
-    vec3 c = texel.rgb;  // sRGB to linear: a cubic that is within 0.3 % of the curve
-    base *= vec4(c * (c * (c * 0.305306 + 0.682171) + 0.012523), texel.a);
+    return MATERIAL_COLOUR * texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x));
+#else
+    return MATERIAL_COLOUR;
 #endif
-    return base;
 }
 
 // Alpha below which there is nothing; from afar it is less (coverage.py).
