@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.geometry import invert
+from sailenv_ros.render.bands import Bands, alone
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
 __all__ = ["OCCLUSION_TOLERANCE", "annotate", "motion_table", "warm_up"]
@@ -92,6 +93,7 @@ def annotate(
     previous: Observation | None,
     camera: Camera,
     views: frozenset[str],
+    bands: Bands = alone,
 ) -> dict[str, NDArray[Any]]:
     """Make the ground-truth views.
 
@@ -103,6 +105,8 @@ def annotate(
         As `RenderBackend.render` takes them. `previous.depth` must be there for ``occlusion``.
     views : frozenset of str
         Which to make; others than ground truth made here are left out. ``depth`` always is.
+    bands : Bands
+        Runs the walk.
 
     Returns
     -------
@@ -126,7 +130,7 @@ def annotate(
     same_lens = previous is None or previous.camera.intrinsics == intrinsics
     if not same_lens:
         rows = np.zeros_like(rows)
-    _walk(
+    given = (
         surface,
         snapshot.contents.category_of_instance,
         rows,
@@ -135,18 +139,17 @@ def annotate(
         dt_s if dt_s > 0.0 else 1.0,
         past_depth,
         arrays["depth"],
-        arrays.get("category", _EMPTY["category"]),
-        arrays.get("instance", _EMPTY["instance"]),
-        arrays.get("flow", _EMPTY["flow"]),
-        arrays.get("flow_valid", _EMPTY["flow_valid"]),
-        arrays.get("occlusion", _EMPTY["occlusion"]),
+        *(arrays.get(name, _EMPTY[name]) for name in _OPTIONAL),
     )
+    bands(lambda first, last: _walk(first, last, *given), height)
     return arrays
 
 
 def warm_up() -> None:
     """Compile the kernel now (or load it from numba's cache), not at the first frame."""
     _walk(
+        0,
+        1,
         np.zeros((1, 1, 2), np.float32),
         np.zeros(1, np.uint8),
         np.zeros(1, np.uint16),
@@ -155,9 +158,12 @@ def warm_up() -> None:
         1.0,
         _NOTHING,
         np.zeros((1, 1), np.float32),
-        *(_EMPTY[name] for name in ("category", "instance", "flow", "flow_valid", "occlusion")),
+        *(_EMPTY[name] for name in _OPTIONAL),
     )
 
+
+_OPTIONAL = ("category", "instance", "flow", "flow_valid", "occlusion")
+"""What the walk makes if it is wanted, in its order."""
 
 _EMPTY: dict[str, NDArray[Any]] = {
     name: np.zeros((0,) * (2 if spec.channels == 1 else 3), spec.dtype)
@@ -173,6 +179,8 @@ def _lens(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:
 
 @numba.njit(cache=True, nogil=True)
 def _walk(  # type: ignore[no-untyped-def]  # compiled; the caller above says what each is
+    first,
+    last,
     surface,
     category_of_instance,
     row_of_instance,
@@ -192,7 +200,7 @@ def _walk(  # type: ignore[no-untyped-def]  # compiled; the caller above says wh
     with_category, with_instance = category.size > 0, instance.size > 0
     with_flow, with_valid, with_occlusion = flow.size > 0, flow_valid.size > 0, occlusion.size > 0
     with_motion = with_flow or with_valid or with_occlusion
-    for v in range(surface.shape[0]):
+    for v in range(first, last):
         y = (v - cy) / focal
         for u in range(surface.shape[1]):
             z_seen = np.float64(surface[v, u, 0])

@@ -73,7 +73,8 @@ class Renderer:
             raise
         self._draws: DrawList | None = None
         self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
-        self._post = post_pass.PostPass(beside(self._beside))
+        self._bands = beside(self._beside)
+        self._post = post_pass.PostPass(self._bands)
         self._closed = False
         clusters.warm_up()
         ground_truth.warm_up()
@@ -109,18 +110,18 @@ class Renderer:
             arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
         surface = arrays.pop("surface")
+        annotate = partial(ground_truth.annotate, surface, snapshot, previous, camera, wanted)
         if "rgb" in wanted:
             still = self._draws_of(snapshot).at_baked_pose(snapshot)
             arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera, still)
             timings["develop"] = time.perf_counter() - began
             began = time.perf_counter()
-        # Both walks leave Python's lock alone: the labels are made beside the picture.
-        walk = self._beside.submit(
-            ground_truth.annotate, surface, snapshot, previous, camera, wanted
-        )
-        if "rgb" in wanted:
+            # Both walks leave Python's lock alone: the labels are made beside the picture.
+            walk = self._beside.submit(annotate)
             arrays["rgb"] = self._post.finished(arrays["rgb"], camera)
-        truth = walk.result()
+            truth = walk.result()
+        else:
+            truth = annotate(self._bands)
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
         depth: NDArray[np.float32] = truth["depth"]
