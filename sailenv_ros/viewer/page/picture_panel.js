@@ -52,7 +52,14 @@ export class PicturePanel {
     const { name, choices } = setting;
     const label = SHOWN[name]?.label ?? name.replaceAll("_", " ");
     // Whose picture it is, is settled when the control is moved, not when it is sent.
-    const newest = latest(([agent, value]) => this.app.ask("set_picture", { agent, changes: { [name]: value } }));
+    const newest = latest(async ([agent, value]) => {
+      try {
+        await this.app.ask("set_picture", { agent, changes: { [name]: value } });
+      } catch (fault) {
+        this.update(this.app.scene); // what was refused is not shown as if it were so
+        throw fault;
+      }
+    });
     const send = (value) => newest([this.app.agent, value]);
     const line = (input, set) => ({ root: el("label", { class: "line", data: { setting: name } }, el("span", {}, label), input), set });
     if (typeof setting.default === "boolean") {
@@ -71,15 +78,20 @@ export class PicturePanel {
   }
 
   #number({ name, whole, least, most, unit }, label, send, line) {
-    if (least === null || most - least > WIDEST_SLIDER) {
+    const from = SHOWN[name]?.least ?? least;
+    const to = SHOWN[name]?.most ?? most;
+    if (from === null || to === null || to - from > WIDEST_SLIDER) {
       const input = el("input", {
-        type: "number", min: least ?? "", max: most ?? "", step: SHOWN[name]?.step ?? 1, title: unit,
-        on: { change: () => input.value !== "" && send(Number(input.value)) },
+        type: "number", min: from ?? "", max: to ?? "", step: SHOWN[name]?.step ?? 1, title: unit,
+        on: {
+          change: () => {
+            if (input.value !== "") send(Number(input.value));
+            input.blur();
+          },
+        },
       });
       return line(input, (value) => put(input, value));
     }
-    const from = SHOWN[name]?.least ?? least;
-    const to = SHOWN[name]?.most ?? most;
     const step = SHOWN[name]?.step ?? (whole ? 1 : (to - from) / 200);
     const made = slider(label, from, to, step, send);
     made.root.dataset.setting = name;
