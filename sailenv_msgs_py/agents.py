@@ -7,6 +7,7 @@ stands on its pose topic.
 from __future__ import annotations
 
 from sailenv_msgs.msg import AgentInfo
+from sailenv_msgs_py.pictures import picture_from_msg, picture_to_msg
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.frame import FIVE_VIEWS
@@ -30,6 +31,7 @@ def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
         views=list(spec.views),
         following=spec.following,
         mover=spec.mover,
+        picture=picture_to_msg(spec.picture),
     )
 
 
@@ -39,7 +41,7 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
     Raises
     ------
     InvalidRequest
-        If a name, size, angle, distance, rate or view is out of its range.
+        If a name, size, angle, distance, rate, view or setting is out of its range.
     """
     intrinsics = CameraIntrinsics(
         width=msg.width,
@@ -56,5 +58,6 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
         views=tuple(msg.views) or FIVE_VIEWS,
         following=bool(msg.following),
         mover=msg.mover,
+        picture=picture_from_msg(msg.picture),
         pose=pose,
     )

@@ -77,6 +77,9 @@ class AgentSpec:
             raise InvalidRequest(
                 "depth_range_m", self.depth_range_m, f"a number above near_m = {near:g} [m]"
             )
+        picture: object = self.picture
+        if not isinstance(picture, PictureSettings):
+            raise InvalidRequest("picture", picture, "an object of PictureSettings")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

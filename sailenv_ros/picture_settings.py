@@ -5,14 +5,15 @@ Travels in `Camera` to the renderer. Concerns the picture alone: no ground truth
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, get_args
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 
-__all__ = ["LIMITS", "PictureSettings", "ToneCurve"]
+__all__ = ["LIMITS", "NAMES", "PictureSettings", "ToneCurve"]
 
 ToneCurve = Literal["filmic", "linear"]
 
@@ -79,3 +80,20 @@ class PictureSettings:
                 accepted = f"a number from {low:g} to {high:g}" + (f" [{unit}]" if unit else "")
                 raise InvalidRequest(name, value, accepted)
             object.__setattr__(self, name, float(value))
+
+    def changed(self, changes: Mapping[str, Any]) -> PictureSettings:
+        """Give these settings with some of them changed, by their names.
+
+        Raises
+        ------
+        InvalidRequest, UnknownName
+            If there is no such setting, or a value is out of its range.
+        """
+        for name in changes:
+            if name not in NAMES:
+                raise UnknownName("setting of a picture", str(name), NAMES)
+        return replace(self, **changes)
+
+
+NAMES: tuple[str, ...] = tuple(setting.name for setting in fields(PictureSettings))
+"""Names of all settings, in their order."""

@@ -25,6 +25,7 @@ from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_ros.agent.client import SimulatorClient
 from sailenv_ros.agent.frame_pictures import FramePictures
 from sailenv_ros.agent.frame_sync import Bundle
+from sailenv_ros.agent.picture_requests import PictureRequests
 from sailenv_ros.agent.pose_requests import PoseRequests
 from sailenv_ros.agent.received import frame_of_bundle
 from sailenv_ros.agent.recorded import RecordedAgent
@@ -38,6 +39,7 @@ from sailenv_ros.errors import (
     SimulationClosed,
 )
 from sailenv_ros.frame import checked_views
+from sailenv_ros.picture_settings import PictureSettings
 
 __all__ = ["Agent"]
 
@@ -51,7 +53,7 @@ END_S = 2.0
 """How long the simulator may take to take note of an Agent's end [s]."""
 
 
-class Agent(SimulatorClient, PoseRequests, FramePictures):
+class Agent(SimulatorClient, PoseRequests, PictureRequests, FramePictures):
     """A camera of its own in the simulator; a context manager.
 
     Parameters
@@ -71,6 +73,8 @@ depth_frame_active : bool
         Depth that the 8-bit depth picture shows as black [m].
     following : bool
         True if the camera starts on the scene's mover.
+    picture : PictureSettings or None
+        What is done to its picture; None means the defaults.
     name : str
         Name of the agent; empty makes a unique one.
     namespace : str
@@ -106,6 +110,7 @@ depth_frame_active : bool
         far_m: float = 100.0,
         depth_range_m: float = 10.0,
         following: bool = True,
+        picture: PictureSettings | None = None,
         name: str = "",
         namespace: str = "/sailenv",
         domain_id: int | None = None,
@@ -134,6 +139,7 @@ depth_frame_active : bool
             rate_hz=0.0,
             views=checked_views([*wanted, *views]),
             following=following,
+            picture=PictureSettings() if picture is None else picture,
         )
         self._lock = threading.RLock()
         self._topics: AgentTopics | None = None

@@ -9,8 +9,18 @@ from typing import Any
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
-from sailenv_msgs.srv import Capture, GetPose, SetPose, SetPosition, SetRate, SetRotation
+from sailenv_msgs.srv import (
+    Capture,
+    GetPicture,
+    GetPose,
+    SetPicture,
+    SetPose,
+    SetPosition,
+    SetRate,
+    SetRotation,
+)
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
+from sailenv_msgs_py.pictures import picture_changes_from_msg, picture_to_msg
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, xyz_from_msg
 from sailenv_ros.agents import AgentPose, AgentSpec
@@ -57,6 +67,8 @@ class AgentServices:
             ("toggle_follow", Trigger, self._toggle_follow),
             ("set_follow", SetBool, self._set_follow),
             ("set_rate", SetRate, self._set_rate),
+            ("get_picture", GetPicture, self._get_picture),
+            ("set_picture", SetPicture, self._set_picture),
             ("capture", Capture, self._capture),
         )
 
@@ -101,6 +113,18 @@ class AgentServices:
 
     async def _set_rate(self, request: SetRate.Request, response: SetRate.Response) -> None:
         await self._ask("set_rate", self._spec.name, request.rate_hz)
+
+    async def _get_picture(
+        self, request: GetPicture.Request, response: GetPicture.Response
+    ) -> None:
+        response.picture = picture_to_msg(await self._ask("get_picture", self._spec.name))
+
+    async def _set_picture(
+        self, request: SetPicture.Request, response: SetPicture.Response
+    ) -> None:
+        changes = picture_changes_from_msg(request.picture, request.fields)
+        settings = await self._ask("set_picture", self._spec.name, **changes)
+        response.picture = picture_to_msg(settings)
 
     async def _capture(self, request: Capture.Request, response: Capture.Response) -> None:
         views = checked_views(request.views) if request.views else self._spec.views

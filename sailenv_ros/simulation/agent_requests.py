@@ -79,13 +79,37 @@ class AgentRequests:
         self._agents.set_intrinsics(agent, intrinsics)
         self._announce()
 
-    def set_picture(self, agent: str, settings: PictureSettings) -> None:
-        """Change what is done to an agent's pictures, and to nothing else."""
-        given: object = settings
+    def get_picture(self, agent: str) -> PictureSettings:
+        """Say what is done to an agent's pictures."""
+        return self._agents[agent].spec.picture
+
+    def set_picture(
+        self, agent: str, settings: PictureSettings | None = None, /, **changes: Any
+    ) -> PictureSettings:
+        """Change what is done to an agent's pictures, and to nothing else.
+
+        Parameters
+        ----------
+        agent : str
+        settings : PictureSettings or None
+            All of them at once; None leaves what `changes` do not name.
+        **changes
+            Some of them by their names in `PictureSettings`.
+
+        Returns
+        -------
+        settings : PictureSettings
+            As they are then.
+        """
+        present = self.get_picture(agent)
+        given: object = present if settings is None else settings
         if not isinstance(given, PictureSettings):
             raise InvalidRequest("settings", given, "an object of PictureSettings")
-        self._agents.set_picture(agent, settings)
-        self._announce()
+        wanted = given.changed(changes)
+        if settings is not None or changes:
+            self._agents.set_picture(agent, wanted)
+            self._announce()
+        return wanted
 
     # -- of the simulation -----------------------------------------------------------------
 

@@ -39,6 +39,7 @@ REQUESTS = frozenset(
         "detach_behaviours",
         "drive_mover",
         "get_object",
+        "get_picture",
         "get_pose",
         "lights",
         "load_scenario",
@@ -140,14 +141,39 @@ class Requests(EditRequests):
         """Give an agent another lens or size; its next frame has no flow."""
         self._ask("set_intrinsics", timeout_s, agent, intrinsics)
 
+    def get_picture(self, agent: str, *, timeout_s: float = 30.0) -> PictureSettings:
+        """Say what is done to an agent's pictures."""
+        result: PictureSettings = self._ask("get_picture", timeout_s, agent)
+        return result
+
     def set_picture(
-        self, agent: str, settings: PictureSettings, *, timeout_s: float = 30.0
-    ) -> None:
+        self,
+        agent: str,
+        settings: PictureSettings | None = None,
+        /,
+        *,
+        timeout_s: float = 30.0,
+        **changes: Any,
+    ) -> PictureSettings:
         """Change exposure, tone curve and effects of an agent's pictures from the next frame on.
 
-        Ground truth does not depend on them. See `sailenv_ros.picture_settings`.
+        Ground truth does not depend on them.
+
+        Parameters
+        ----------
+        agent : str
+        settings : PictureSettings or None
+            All of them at once; None leaves what `changes` do not name.
+        **changes
+            Some of them by their names in `PictureSettings`.
+
+        Returns
+        -------
+        settings : PictureSettings
+            As they are then.
         """
-        self._ask("set_picture", timeout_s, agent, settings)
+        result: PictureSettings = self._ask("set_picture", timeout_s, agent, settings, **changes)
+        return result
 
     def change_scene(self, name: str, *, timeout_s: float = 120.0) -> None:
         """Leave the present world for another scene, at simulated time 0."""

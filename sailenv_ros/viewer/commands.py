@@ -8,106 +8,55 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Awaitable, Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Any
 
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.viewer.arguments import Arguments
-from sailenv_ros.viewer.debug_agent import DebugAgent
+from sailenv_ros.viewer.desk import Command, CommandTable, Desk
+from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from sailenv_ros.viewer.told import told_object, told_pose
 
-__all__ = ["COMMANDS", "Command", "Desk"]
+__all__ = ["COMMANDS"]
 
 MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
-OBJECT_KEYS = ("name", "category", "scale")
-
-
-class Desk(Protocol):
-    """What a command needs of the conversation that it came in."""
-
-    debug_agent: DebugAgent
-
-    @property
-    def info(self) -> SceneInfo:
-        """The scene as it was announced last."""
-
-    def frame(self, number: object) -> Frame:
-        """Give a frame that this client was sent lately; None means the last one."""
-
-    def select(self, instance_id: int) -> None:
-        """Have an instance's outline told; 0 for none."""
-
-    async def ask(self, request: str, /, *args: Any, **kwargs: Any) -> Any:
-        """Have the simulation do something; wait for its result."""
-
-
-Run = Callable[[Desk, Arguments], Awaitable[Any]]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Command:
-    """One command.
-
-    Attributes
-    ----------
-    run : callable
-        Gives what is answered, in plain values for JSON.
-    changes : bool
-        True if it changes anything: those who only watch may not.
-    """
-
-    run: Run
-    changes: bool
-
-
-_commands: dict[str, Command] = {}
+_commands = CommandTable(LIGHT_COMMANDS)
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""
 
-
-def _looks(run: Run) -> Run:
-    _commands[run.__name__] = Command(run=run, changes=False)
-    return run
-
-
-def _changes(run: Run) -> Run:
-    _commands[run.__name__] = Command(run=run, changes=True)
-    return run
+OBJECT_KEYS = ("name", "category", "scale")
 
 
 # -- looking ---------------------------------------------------------------------------------
 
 
-@_looks
+@_commands.looks
 async def probe(desk: Desk, given: Arguments) -> Any:
     """Tell the values at a pixel of a frame."""
     frame = desk.frame(given.get("frame"))
     return values_at(frame, desk.info, *pixel_of(frame, given.get("u"), given.get("v")))
 
 
-@_looks
+@_commands.looks
 async def get_object(desk: Desk, given: Arguments) -> Any:
     """Tell what and where an object is."""
     return told_object(await desk.ask("get_object", given.integer("object")))
 
 
-@_looks
+@_commands.looks
 async def select(desk: Desk, given: Arguments) -> Any:
     """Have an object's outline told with each frame; 0 for none."""
     desk.select(given.integer("object"))
 
 
-@_looks
+@_commands.looks
 async def scene_text(desk: Desk, given: Arguments) -> Any:
     """Give the present world as the text of a scene file."""
     return await desk.ask("scene_text", title=given.optional_text("title"))
@@ -116,7 +65,7 @@ async def scene_text(desk: Desk, given: Arguments) -> Any:
 # -- scene and time --------------------------------------------------------------------------
 
 
-@_changes
+@_commands.changes
 async def change_scene(desk: Desk, given: Arguments) -> Any:
     """Begin another scene; of those in the list alone, for a path would be read."""
     name = given.text("scene")
@@ -125,26 +74,26 @@ async def change_scene(desk: Desk, given: Arguments) -> Any:
     await desk.ask("change_scene", name)
 
 
-@_changes
+@_commands.changes
 async def reset(desk: Desk, given: Arguments) -> Any:
     """Begin the scene anew."""
     seed = given.get("seed")
     return await desk.ask("reset", None if seed is None else given.integer("seed"))
 
 
-@_changes
+@_commands.changes
 async def pause(desk: Desk, given: Arguments) -> Any:
     """Hold time."""
     await desk.ask("pause")
 
 
-@_changes
+@_commands.changes
 async def resume(desk: Desk, given: Arguments) -> Any:
     """Let time run on."""
     await desk.ask("resume")
 
 
-@_changes
+@_commands.changes
 async def step(desk: Desk, given: Arguments) -> Any:
     """Advance by some steps."""
     count = given.integer("count")
@@ -153,13 +102,13 @@ async def step(desk: Desk, given: Arguments) -> Any:
     return await desk.ask("step", count) * 1e-9
 
 
-@_changes
+@_commands.changes
 async def set_real_time_factor(desk: Desk, given: Arguments) -> Any:
     """Change how fast time is to run."""
     await desk.ask("set_real_time_factor", given.number("factor"))
 
 
-@_changes
+@_commands.changes
 async def save_scene(desk: Desk, given: Arguments) -> Any:
     """Write the world into the folder of one's own scenes; give the file's path."""
     return await desk.ask(
@@ -174,13 +123,13 @@ async def save_scene(desk: Desk, given: Arguments) -> Any:
 # -- walking ---------------------------------------------------------------------------------
 
 
-@_changes
+@_commands.changes
 async def set_controller(desk: Desk, given: Arguments) -> Any:
     """Choose what drives a mover."""
     await desk.ask("set_mover_controller", given.text("mover"), given.text("controller"))
 
 
-@_changes
+@_commands.changes
 async def drive(desk: Desk, given: Arguments) -> Any:
     """Have a mover walk for half a second."""
     await desk.ask(
@@ -191,7 +140,7 @@ async def drive(desk: Desk, given: Arguments) -> Any:
     )
 
 
-@_changes
+@_commands.changes
 async def turn(desk: Desk, given: Arguments) -> Any:
     """Turn a mover at once."""
     await desk.ask(
@@ -202,7 +151,7 @@ async def turn(desk: Desk, given: Arguments) -> Any:
     )
 
 
-@_changes
+@_commands.changes
 async def lens(desk: Desk, given: Arguments) -> Any:
     """Change what the debug agent sees, for all who watch it."""
     wanted = CameraIntrinsics(
@@ -215,7 +164,7 @@ async def lens(desk: Desk, given: Arguments) -> Any:
     await asyncio.to_thread(desk.debug_agent.set_intrinsics, wanted)
 
 
-@_changes
+@_commands.changes
 async def add_waypoint(desk: Desk, given: Arguments) -> Any:
     """Let a mover's track lead on to where the mover is now."""
     mover = given.text("mover")
@@ -224,7 +173,7 @@ async def add_waypoint(desk: Desk, given: Arguments) -> Any:
     return told_pose(here)
 
 
-@_changes
+@_commands.changes
 async def set_waypoints(desk: Desk, given: Arguments) -> Any:
     """Give a mover another track."""
     poses = [Arguments(entry, "waypoint") for entry in given.entries("waypoints")]
@@ -240,7 +189,7 @@ async def set_waypoints(desk: Desk, given: Arguments) -> Any:
 # -- objects ---------------------------------------------------------------------------------
 
 
-@_changes
+@_commands.changes
 async def spawn(desk: Desk, given: Arguments) -> Any:
     """Put an object where a pixel is seen, its front towards the camera; tell what it is."""
     frame = desk.frame(given.get("frame"))
@@ -253,7 +202,7 @@ async def spawn(desk: Desk, given: Arguments) -> Any:
     return await _set_down(desk, number, point)
 
 
-@_changes
+@_commands.changes
 async def place(desk: Desk, given: Arguments) -> Any:
     """Move an object to where a pixel is seen."""
     frame = desk.frame(given.get("frame"))
@@ -261,7 +210,7 @@ async def place(desk: Desk, given: Arguments) -> Any:
     return await _set_down(desk, given.integer("object"), point)
 
 
-@_changes
+@_commands.changes
 async def move(desk: Desk, given: Arguments) -> Any:
     """Move an object."""
     pose = _pose(given)
@@ -270,7 +219,7 @@ async def move(desk: Desk, given: Arguments) -> Any:
     return told_object(await desk.ask("get_object", number))
 
 
-@_changes
+@_commands.changes
 async def change(desk: Desk, given: Arguments) -> Any:
     """Change an object's name, category or scale."""
     number, changes = given.integer("object"), given.mapping("changes")
@@ -281,13 +230,13 @@ async def change(desk: Desk, given: Arguments) -> Any:
     return told_object(await desk.ask("get_object", number))
 
 
-@_changes
+@_commands.changes
 async def despawn(desk: Desk, given: Arguments) -> Any:
     """Take an object out of the scene."""
     await desk.ask("despawn_object", given.integer("object"))
 
 
-@_changes
+@_commands.changes
 async def attach(desk: Desk, given: Arguments) -> Any:
     """Let an object move of itself in one more way."""
     number = given.integer("object")
@@ -295,30 +244,12 @@ async def attach(desk: Desk, given: Arguments) -> Any:
     return told_object(await desk.ask("get_object", number))
 
 
-@_changes
+@_commands.changes
 async def detach(desk: Desk, given: Arguments) -> Any:
     """End everything that makes an object move of itself."""
     number = given.integer("object")
     await desk.ask("detach_behaviours", number)
     return told_object(await desk.ask("get_object", number))
-
-
-# -- lights and sky --------------------------------------------------------------------------
-
-
-@_changes
-async def set_light(desk: Desk, given: Arguments) -> Any:
-    """Change attributes of a light."""
-    changes = given.mapping("changes")
-    if "name" in changes:
-        raise InvalidRequest("change of a light", "name", "another attribute")
-    await desk.ask("set_light", given.text("light"), **changes)
-
-
-@_changes
-async def set_environment(desk: Desk, given: Arguments) -> Any:
-    """Change the surroundings, by the keys of a scene file."""
-    await desk.ask("set_environment", **given.mapping("changes"))
 
 
 def _pose(given: Arguments) -> Pose:

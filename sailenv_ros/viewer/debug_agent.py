@@ -11,6 +11,7 @@ import threading
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import SailenvError
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["NAME", "DebugAgent"]
@@ -33,6 +34,7 @@ class DebugAgent:
         self._guard = threading.Lock()
         self._watchers = 0
         self._intrinsics = CameraIntrinsics()
+        self._picture = PictureSettings()
 
     @property
     def intrinsics(self) -> CameraIntrinsics:
@@ -49,7 +51,12 @@ class DebugAgent:
         """
         with self._guard:
             if all(spec.name != NAME for spec in self._simulation.info.agents):
-                spec = AgentSpec(name=NAME, intrinsics=self._intrinsics, rate_hz=RATE_HZ)
+                spec = AgentSpec(
+                    name=NAME,
+                    intrinsics=self._intrinsics,
+                    rate_hz=RATE_HZ,
+                    picture=self._picture,
+                )
                 self._simulation.register_agent(spec)
             self._watchers += 1
 
@@ -59,6 +66,10 @@ class DebugAgent:
             self._watchers -= 1
             if self._watchers:
                 return
+            # Whoever watches next finds the picture as it was left.
+            for spec in self._simulation.info.agents:
+                if spec.name == NAME:
+                    self._picture = spec.picture
             # The simulation may have ended, or another client may have deleted it.
             with contextlib.suppress(SailenvError):
                 self._simulation.delete_agent(NAME)

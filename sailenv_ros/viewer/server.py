@@ -26,7 +26,7 @@ from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.guard import SECURITY_HEADERS, Guard, is_loopback
 from sailenv_ros.viewer.limits import ViewerLimits
 from sailenv_ros.viewer.page_files import page_file
-from sailenv_ros.viewer.told import told_behaviours, told_skies
+from sailenv_ros.viewer.told import told_behaviours, told_picture_settings, told_skies
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "ViewerServer"]
 
@@ -240,6 +240,7 @@ class ViewerServer:
                 "type": "hello",
                 "debug_agent": NAME,
                 "behaviours": told_behaviours(),
+                "picture_settings": told_picture_settings(),
                 "skies": await asyncio.to_thread(told_skies),
             },
             touch=self._touch,

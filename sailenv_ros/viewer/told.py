@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from functools import cache
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs
@@ -16,9 +17,17 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import UNLABELLED_CATEGORY
 from sailenv_ros.lights import Light
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.picture_settings import LIMITS, NAMES, PictureSettings
 from sailenv_ros.scene_info import MoverInfo, SceneInfo
 
-__all__ = ["told_behaviours", "told_object", "told_pose", "told_scene", "told_skies"]
+__all__ = [
+    "told_behaviours",
+    "told_object",
+    "told_picture_settings",
+    "told_pose",
+    "told_scene",
+    "told_skies",
+]
 
 _LIGHT_NUMBERS = ("intensity", "indirect_multiplier", "range_m")
 
@@ -73,6 +82,7 @@ def told_scene(info: SceneInfo) -> dict[str, Any]:
                 "rate_hz": agent.rate_hz,
                 "following": agent.following,
                 "mover": agent.mover,
+                "picture": asdict(agent.picture),
             }
             for agent in info.agents
         ],
@@ -105,6 +115,22 @@ def told_pose(pose: Pose) -> dict[str, Any]:
 def told_behaviours() -> list[dict[str, Any]]:
     """Tell which behaviours there are, with their parameters."""
     return [_behaviour(kind) for kind in behaviour_kinds().values()]
+
+
+def told_picture_settings() -> list[dict[str, Any]]:
+    """Tell which settings a picture has: defaults, choices, limits and units."""
+    usual, types = PictureSettings(), get_type_hints(PictureSettings)
+    unlimited = (None, None, "")
+    return [
+        {
+            "name": name,
+            "default": getattr(usual, name),
+            "choices": list(get_args(types[name])),
+            "whole": types[name] is int,
+            **dict(zip(("least", "most", "unit"), LIMITS.get(name, unlimited), strict=True)),
+        }
+        for name in NAMES
+    ]
 
 
 def told_skies() -> list[str]:

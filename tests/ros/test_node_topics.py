@@ -118,6 +118,8 @@ def test_services_are_those_of_the_interface(probe: Probe) -> None:
         "get_pose": "sailenv_msgs/srv/GetPose",
         "toggle_follow": "std_srvs/srv/Trigger",
         "set_follow": "std_srvs/srv/SetBool",
+        "get_picture": "sailenv_msgs/srv/GetPicture",
+        "set_picture": "sailenv_msgs/srv/SetPicture",
         "capture": "sailenv_msgs/srv/Capture",
     }
     own = {

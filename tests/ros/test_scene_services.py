@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from std_msgs.msg import ColorRGBA
 
-from sailenv_msgs.msg import AgentInfo, Behaviour, Light, SceneInfo
+from sailenv_msgs.msg import AgentInfo, Behaviour, Light, PictureSettings, SceneInfo
 from sailenv_msgs.srv import (
     Capture,
     ChangeScene,
@@ -31,6 +31,7 @@ from sailenv_msgs.srv import (
     SetAmbientLight,
     SetBackground,
     SetLight,
+    SetPicture,
     SetPose,
     SetPosition,
     SetRate,
@@ -287,6 +288,13 @@ BEHAVIOURS = st.lists(
     ),
     max_size=2,
 )
+PICTURES = st.builds(
+    PictureSettings,
+    exposure=NUMBERS,
+    tone_curve=st.one_of(st.sampled_from(["filmic", "linear"]), TEXTS),
+    bloom=st.one_of(st.just(0.0), st.floats()),
+    full_well=st.one_of(st.just(0.0), st.floats()),
+)
 IDS = st.one_of(st.integers(0, 12), st.integers(0, 65535))
 ANY_REQUEST = st.one_of(
     st.builds(
@@ -334,6 +342,7 @@ ANY_AGENT_REQUEST = st.one_of(
             views=st.lists(st.one_of(st.sampled_from(["rgb", "flow"]), TEXTS), max_size=2),
             following=st.booleans(),
             mover=st.one_of(st.just(""), TEXTS),
+            picture=PICTURES,
         ),
         has_pose=st.booleans(),
         pose=POSES,
@@ -342,6 +351,11 @@ ANY_AGENT_REQUEST = st.one_of(
     st.builds(SetPosition.Request, position=POINTS, teleport=st.booleans()),
     st.builds(SetRotation.Request, roll_deg=st.floats(), pitch_deg=NUMBERS, yaw_deg=NUMBERS),
     st.builds(SetPose.Request, pose=POSES),
+    st.builds(
+        SetPicture.Request,
+        picture=PICTURES,
+        fields=st.lists(st.one_of(st.sampled_from(["exposure", "bloom"]), TEXTS), max_size=2),
+    ),
     st.builds(SetRate.Request, rate_hz=st.one_of(st.just(0.0), st.floats())),
     st.builds(
         Capture.Request,
@@ -377,6 +391,7 @@ SERVICES = {
         (SetRotation, "eye/set_rotation"),
         (SetPose, "eye/set_pose"),
         (SetRate, "eye/set_rate"),
+        (SetPicture, "eye/set_picture"),
         (Capture, "eye/capture"),
         (ChangeScene, "change_scene"),
         (Reset, "reset"),

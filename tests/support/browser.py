@@ -83,6 +83,21 @@ class OpenPage:
         )
         return pixels
 
+    def brightness(self, view: str) -> float:
+        """Give the mean of a view's pixels, 0 to 255."""
+        mean: float = self.page.evaluate(
+            """view => {
+                const canvas = document.querySelector(`[data-view=${view}] .picture`);
+                const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+                copy.drawImage(canvas, 0, 0);
+                const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+                const sum = data.reduce((all, value, at) => (at % 4 === 3 ? all : all + value), 0);
+                return sum / (0.75 * data.length);
+            }""",
+            view,
+        )
+        return mean
+
     def tab(self, title: str) -> None:
         """Open a tab of the panel."""
         self.page.click(f"[data-tab={title}]")

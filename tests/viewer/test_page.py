@@ -10,10 +10,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Locator, expect
 
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cli.main import main
 from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import PHONE, OpenPage, chromium
@@ -294,6 +297,82 @@ def test_lights_time_and_files(opened: OpenPage, simulation: Simulation, tmp_pat
     opened.wait_for_frames()
 
 
+def test_a_picture_is_set_by_its_panel(opened: OpenPage, simulation: Simulation) -> None:
+    """Slider, list, switch and number reach the watched agent and no other; defaults undo them."""
+    page = opened.page
+    lens = CameraIntrinsics(width=96, height=72)
+    simulation.register_agent(AgentSpec(name="eye", intrinsics=lens))
+
+    def picture(name: str) -> PictureSettings:
+        (found,) = (agent.picture for agent in simulation.info.agents if agent.name == name)
+        return found
+
+    def control(name: str) -> Locator:
+        return page.locator(f"[data-setting={name}] :is(input, select)")
+
+    opened.tab("Picture")
+    expect(control("exposure")).to_have_value("0")
+    dark = opened.brightness("rgb")
+    control("exposure").fill("2")
+    until(lambda: picture("debug_agent").exposure == 2.0, "the exposure to be set")
+    opened.until(lambda: opened.brightness("rgb") > 1.2 * dark, "a brighter picture")
+    control("tone_curve").select_option("linear")
+    until(lambda: picture("debug_agent").tone_curve == "linear", "the curve to be set")
+    control("smooth_edges").uncheck()
+    until(lambda: not picture("debug_agent").smooth_edges, "edges to be left as they are")
+    control("full_well").fill("2000")
+    control("full_well").press("Enter")
+    until(lambda: picture("debug_agent").full_well == 2000.0, "noise")
+    control("read_noise").fill("-1")
+    control("read_noise").press("Enter")
+    expect(page.locator(".toast.fault")).to_contain_text("read_noise must be")
+    expect(control("read_noise")).to_have_value("0")
+    expect(control("full_well")).to_have_value("2000")
+    assert picture("eye") == PictureSettings()
+    simulation.set_picture("eye", exposure=-5.0, bloom=0.5)
+    page.select_option("#agent", "eye")
+    expect(control("bloom")).to_have_value("0.5")
+    expect(control("exposure")).to_have_value("-5")  # beyond what the slider usually has
+    expect(control("smooth_edges")).to_be_checked()
+    page.click(".defaults")
+    until(lambda: picture("eye") == PictureSettings(), "the defaults")
+    page.select_option("#agent", "debug_agent")
+    expect(control("exposure")).to_have_value("2")
+    page.click(".defaults")
+    until(lambda: picture("debug_agent") == PictureSettings(), "the defaults")
+    simulation.delete_agent("eye")
+
+
+def test_lights_are_hung_up_and_taken_down(opened: OpenPage, simulation: Simulation) -> None:
+    """With a name of one's own or one that is made; a name in use is refused in words."""
+    page = opened.page
+
+    def names() -> list[str]:
+        return [light.name for light in simulation.info.lights]
+
+    own = names()
+    opened.tab("Light")
+    page.get_by_text("Add a light").click()
+    page.click(".add-light")
+    until(lambda: names() == [*own, "point 1"], "a light of a name that is made")
+    page.click(".add-light")
+    until(lambda: names() == [*own, "point 1", "point 2"], "another one")
+    page.select_option("#light-type", "spot")
+    page.fill("#light-name", "reading lamp")
+    page.click(".add-light")
+    expect(page.locator("[data-light='reading lamp'] .kind")).to_have_text("spot")
+    expect(page.locator("#light-name")).to_have_value("")
+    page.fill("#light-name", "sun")
+    page.click(".add-light")
+    expect(page.locator(".toast.fault")).to_contain_text("sun")
+    page.locator("[data-light='reading lamp'] input[type=range]").fill("0")
+    until(lambda: simulation.info.lights[-1].intensity == 0.0, "the lamp to be put out")
+    for name in ("reading lamp", "point 1"):
+        page.get_by_title(f"Remove {name}").click()
+        expect(page.locator(f"[data-light='{name}']")).to_have_count(0)
+    assert names() == [*own, "point 2"]
+
+
 def test_who_may_only_watch_sees_no_tools(browser: Browser, simulation: Simulation) -> None:
     """From elsewhere, without --viewer-control: pictures, but nothing to change."""
     with ViewerServer(simulation, host="0.0.0.0", port=0) as server:
@@ -323,9 +402,14 @@ def test_the_page_fits(
     )
     opened.wait_for_frames(1)
     page = opened.page
-    for title in ("View", "Object", "Add", "Light", "Path", "Scene"):
+    for title in ("View", "Object", "Add", "Light", "Picture", "Path", "Scene"):
         opened.tab(title)
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        hidden = page.evaluate(
+            "document.querySelector('#tabs').scrollWidth - "
+            "document.querySelector('#tabs').clientWidth"
+        )
+        assert hidden <= 0, f"{hidden} px of the tabs with {title} open"
     box = page.locator(".tile.main").bounding_box()
     assert box is not None
     assert box["x"] >= 0

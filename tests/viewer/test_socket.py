@@ -11,12 +11,15 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import light_named
+from sailenv_ros.picture_settings import NAMES, PictureSettings
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.guard import SECURITY_HEADERS
 from sailenv_ros.viewer.limits import ViewerLimits
 from sailenv_ros.viewer.watch import IN_FLIGHT
-from tests.support.viewer_socket import ViewerSocket, connected
+from tests.support.viewer_socket import DEADLINE_S, ViewerSocket, connected
 from tests.support.waiting import until
 
 VIEWS = ["rgb", "depth", "category", "instance", "flow"]
@@ -163,6 +166,66 @@ def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerServer) -
     asyncio.run(look())
 
 
+def test_pictures_and_lights_are_changed(server: ViewerServer, simulation: Simulation) -> None:
+    """Some settings of an agent, which the debug agent keeps; a light comes where the camera is."""
+
+    def picture(name: str) -> PictureSettings:
+        (found,) = (agent.picture for agent in simulation.info.agents if agent.name == name)
+        return found
+
+    async def look() -> None:
+        async with connected(server) as client:
+            greeting = await client.until(lambda message: message["type"] == "hello")
+            assert [setting["name"] for setting in greeting["picture_settings"]] == list(NAMES)
+            await client.ask("watch", agent="debug_agent", views=["rgb"])
+            await client.frame()
+            changes = {"exposure": 1.0, "tone_curve": "linear"}
+            await client.ask("set_picture", agent="debug_agent", changes=changes)
+            assert picture("debug_agent") == PictureSettings(exposure=1.0, tone_curve="linear")
+            words = await client.refusal(
+                "set_picture", agent="debug_agent", changes={"exposure": 0.0, "bloom": 7}
+            )
+            assert words.startswith("bloom must be a number from 0 to 1")
+            assert picture("debug_agent").exposure == 1.0
+            while 1.0 not in [
+                agent["picture"]["exposure"]
+                for message in client.told
+                if message["type"] == "scene"
+                for agent in message["agents"]
+            ]:
+                await asyncio.wait_for(client.read(), DEADLINE_S)
+            await client.ask("set_controller", mover="", controller="rigidbody")
+            # Frames that came between answers: only who has shown them gets more.
+            last = client.heads[-1]["number"]
+            await client.socket.send_json({"do": "shown", "number": last})
+            for _ in range(IN_FLIGHT + 1):
+                head = await client.frame()  # the last one at the latest is of a camera at rest
+            await client.ask("add_light", light="lamp", type="spot", attributes={"intensity": 2.0})
+            lamp = light_named("lamp", simulation.info.lights)
+            assert (lamp.type, lamp.intensity) == ("spot", 2.0)
+            assert lamp.position_m == pytest.approx(head["position"], abs=1e-6)
+            ahead = Pose.from_rpy_deg((0.0, 0.0, 0.0), head["rpy_deg"]).matrix()[:3, 0]
+            assert lamp.direction == pytest.approx(tuple(ahead), abs=1e-6)
+            words = await client.refusal("add_light", light="lamp", type="point")
+            assert "lamp" in words
+            await client.ask("remove_light", light="lamp")
+            assert "lamp" not in {light.name for light in simulation.info.lights}
+            await client.ask("set_controller", mover="", controller="waypoint")
+
+    async def look_again() -> None:
+        async with connected(server) as client:
+            await client.ask("watch", agent="debug_agent", views=["rgb"])
+            await client.frame()
+            assert picture("debug_agent") == PictureSettings(exposure=1.0, tone_curve="linear")
+            usual = {setting: getattr(PictureSettings(), setting) for setting in NAMES}
+            await client.ask("set_picture", agent="debug_agent", changes=usual)
+            assert picture("debug_agent") == PictureSettings()
+
+    asyncio.run(look())
+    until(lambda: "debug_agent" not in agents_of(simulation), "the debug agent to go")
+    asyncio.run(look_again())
+
+
 HOSTILE = [
     "",
     "x",
@@ -177,6 +240,16 @@ HOSTILE = [
     '{"do": "probe", "u": 1e999, "v": null}',
     '{"do": "set_light", "light": "sun", "changes": {"name": "moon"}}',
     '{"do": "set_light", "light": "sun", "changes": {"timeout_s": 1}}',
+    '{"do": "set_picture", "agent": "nobody", "changes": {}}',
+    '{"do": "set_picture", "agent": "debug_agent", "changes": {"agent": "debug_agent"}}',
+    '{"do": "set_picture", "agent": "debug_agent", "changes": {"settings": {}}}',
+    '{"do": "set_picture", "agent": "debug_agent", "changes": {"exposure": "bright"}}',
+    '{"do": "set_picture", "agent": "debug_agent", "changes": [1]}',
+    '{"do": "add_light", "light": "", "type": "point"}',
+    '{"do": "add_light", "light": "lamp", "type": "candle"}',
+    '{"do": "add_light", "light": "lamp", "type": "spot", "attributes": {"name": "x"}}',
+    '{"do": "add_light", "light": "lamp", "type": "spot", "attributes": {"direction": null}}',
+    '{"do": "remove_light", "light": "nobody"}',
     '{"do": "set_environment", "changes": {"sky_map": "../../etc/passwd"}}',
     '{"do": "change_scene", "scene": "/etc/passwd"}',
     '{"do": "save_scene", "name": "../evil"}',

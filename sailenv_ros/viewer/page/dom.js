@@ -106,6 +106,33 @@ export function put(control, value) {
   if (document.activeElement !== control && control.value !== String(value)) control.value = value;
 }
 
+/** A labelled slider: `changed(value)` at every move; `set(value)` unless it is being used. */
+export function slider(label, least, most, step, changed) {
+  const shown = el("output", {});
+  const input = el("input", {
+    type: "range", min: least, max: most, step, title: label, "aria-label": label,
+    on: {
+      input: () => {
+        shown.textContent = fixed(input.value);
+        changed(Number(input.value));
+      },
+      change: () => input.blur(),
+    },
+  });
+  return {
+    input,
+    root: el("label", { class: "slider" }, el("span", {}, label), input, shown),
+    set: (value) => {
+      if (document.activeElement === input) return;
+      // What was set elsewhere may lie beyond what is usual here.
+      if (value > Number(input.max)) input.max = value;
+      if (value < Number(input.min)) input.min = value;
+      input.value = value;
+      shown.textContent = fixed(value);
+    },
+  };
+}
+
 // Colours of lights are linear, those of the page are sRGB.
 const toByte = (x) => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
 const fromByte = (b) => (b / 255 <= 0.04045 ? b / 255 / 12.92 : ((b / 255 + 0.055) / 1.055) ** 2.4);

@@ -1,6 +1,9 @@
-// Lights and sky: sliders whose newest value is sent.
+// Lights and sky: sliders whose newest value is sent; lights come where the camera is, and go.
 
-import { el, fixed, hexOfLinear, latest, linearOfHex, put, section } from "./dom.js";
+import { button, el, hexOfLinear, latest, linearOfHex, put, section, slider } from "./dom.js";
+
+// What a light of a type begins with: bright enough to be seen in a furnished room.
+const INTENSITIES = { point: 1, spot: 2, area: 2, directional: 1 };
 
 export class LightPanel {
   title = "Light";
@@ -26,7 +29,7 @@ export class LightPanel {
         this.share.root,
         this.ambient.root,
       ),
-      section("Lights", this.lights),
+      section("Lights", this.lights, this.#adder()),
     );
   }
 
@@ -61,6 +64,29 @@ export class LightPanel {
     return this.colour.map((part) => (most > 0 ? (part / most) * value : value));
   }
 
+  #adder() {
+    const types = Object.keys(INTENSITIES).map((type) => el("option", { value: type }, type));
+    const type = el("select", { id: "light-type" }, ...types);
+    const name = el("input", { type: "text", id: "light-name", placeholder: "made of the type", spellcheck: false });
+    const add = async () => {
+      const values = { light: name.value.trim() || this.#freeName(type.value), type: type.value };
+      const attributes = { intensity: INTENSITIES[type.value] };
+      if ((await this.app.try("add_light", { ...values, attributes })) !== undefined) name.value = "";
+    };
+    return el("details", {}, el("summary", {}, "Add a light"),
+      el("p", { class: "advice" }, "It hangs where the camera is now and shines where it looks."),
+      el("label", { class: "line" }, el("span", {}, "type"), type),
+      el("label", { class: "line" }, el("span", {}, "name"), name),
+      button("Add", add, { glyph: "plus", kind: "primary add-light" }));
+  }
+
+  #freeName(type) {
+    const taken = new Set(this.app.scene.lights.map(({ name }) => name));
+    let number = 1;
+    while (taken.has(`${type} ${number}`)) number += 1;
+    return `${type} ${number}`;
+  }
+
   #light({ name, type, intensity }) {
     const send = latest((changes) => this.app.ask("set_light", { light: name, changes }));
     const most = Math.max(1, 4 * intensity);
@@ -70,7 +96,10 @@ export class LightPanel {
       on: { input: () => send({ colour: linearOfHex(colour.value) }) },
     });
     const root = el("div", { class: "light", data: { light: name } },
-      el("div", { class: "line" }, el("strong", {}, name), el("span", { class: "kind" }, type), colour),
+      el("div", { class: "line" }, el("strong", {}, name), el("span", { class: "kind" }, type), colour,
+        button("", () => this.app.try("remove_light", { light: name }), {
+          glyph: "trash", title: `Remove ${name}`, kind: "icon quiet danger",
+        })),
       strength.root);
     return {
       root,
@@ -80,28 +109,4 @@ export class LightPanel {
       },
     };
   }
-}
-
-function slider(label, least, most, step, changed) {
-  const shown = el("output", {});
-  const input = el("input", {
-    type: "range", min: least, max: most, step, title: label, "aria-label": label,
-    on: {
-      input: () => {
-        shown.textContent = fixed(input.value);
-        changed(Number(input.value));
-      },
-      change: () => input.blur(),
-    },
-  });
-  return {
-    input,
-    root: el("label", { class: "slider" }, el("span", {}, label), input, shown),
-    set: (value) => {
-      if (document.activeElement === input) return;
-      if (value > Number(input.max)) input.max = value;
-      input.value = value;
-      shown.textContent = fixed(value);
-    },
-  };
 }

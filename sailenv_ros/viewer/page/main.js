@@ -6,6 +6,7 @@ import { LightPanel } from "./light_panel.js";
 import { Link } from "./link.js";
 import { ObjectPanel } from "./object_panel.js";
 import { PathPanel } from "./path_panel.js";
+import { PicturePanel } from "./picture_panel.js";
 import { ScenePanel } from "./scene_panel.js";
 import { Stage } from "./stage.js";
 import { ViewPanel, depthWords, flowWords } from "./view_panel.js";
@@ -37,7 +38,10 @@ class App {
     this.view = new ViewPanel(this);
     this.object = new ObjectPanel(this);
     this.path = new PathPanel(this);
-    this.#panels = [this.view, this.object, new AddPanel(this), new LightPanel(this), this.path, new ScenePanel(this)];
+    this.picture = new PicturePanel(this);
+    this.#panels = [
+      this.view, this.object, new AddPanel(this), new LightPanel(this), this.picture, this.path, new ScenePanel(this),
+    ];
     this.#tabs();
     this.#bar();
     this.walker = new Walker(this);
@@ -131,6 +135,7 @@ class App {
   #watch() {
     if (!this.link.open) return;
     put($("agent"), this.agent);
+    if (this.scene) this.picture.update(this.scene);
     this.try("watch", { agent: this.agent, views: this.stage.views });
   }
 

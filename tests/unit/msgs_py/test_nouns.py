@@ -13,10 +13,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from std_msgs.msg import Header
 
+import sailenv_msgs.msg as msgs
 from sailenv_msgs.msg import AgentInfo
 from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.camera_info import camera_info_from_intrinsics, intrinsics_from_camera_info
 from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.pictures import (
+    picture_changes_from_msg,
+    picture_from_msg,
+    picture_to_msg,
+)
 from sailenv_msgs_py.scene_info import (
     light_from_msg,
     light_to_msg,
@@ -32,6 +38,7 @@ from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import Category, CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
+from sailenv_ros.picture_settings import NAMES, PictureSettings
 from sailenv_ros.scene_info import MoverInfo, SceneInfo
 
 COORDINATES = st.floats(-1e4, 1e4)
@@ -50,6 +57,17 @@ INTRINSICS = st.builds(
     near_m=st.floats(1e-3, 1.0),
     far_m=st.floats(2.0, 1e4),
 )
+PICTURES = st.builds(
+    PictureSettings,
+    exposure=st.floats(-16.0, 16.0),
+    tone_curve=st.sampled_from(["filmic", "linear"]),
+    occlusion_strength=st.floats(0.0, 1.0),
+    occlusion_radius_m=st.floats(0.01, 5.0),
+    smooth_edges=st.booleans(),
+    bloom=st.floats(0.0, 1.0),
+    full_well=st.floats(0.0, 1e7),
+    read_noise=st.floats(0.0, 1e4),
+)
 SPECS = st.builds(
     AgentSpec,
     name=st.from_regex(r"[a-z][a-z0-9_]{0,62}", fullmatch=True),
@@ -59,6 +77,7 @@ SPECS = st.builds(
     views=st.sets(st.sampled_from(sorted(VIEWS)), min_size=1).map(tuple),
     following=st.booleans(),
     mover=st.text(max_size=8).filter(lambda text: "\x00" not in text),
+    picture=PICTURES,
 )
 
 
@@ -154,6 +173,8 @@ def test_a_message_with_a_name_alone_is_an_agent() -> None:
         ({"rate_hz": math.nan}, InvalidRequest),
         ({"vertical_fov_deg": math.inf}, InvalidRequest),
         ({"near_m": -1.0}, InvalidRequest),
+        ({"picture": msgs.PictureSettings(bloom=math.nan)}, InvalidRequest),
+        ({"picture": msgs.PictureSettings(tone_curve="log")}, UnknownName),
     ],
 )
 def test_an_agent_out_of_range_is_refused(
@@ -163,6 +184,23 @@ def test_an_agent_out_of_range_is_refused(
     fields = {"name": "cam", **change}
     with pytest.raises(error, match="must be"):
         agent_spec_from_msg(AgentInfo(**fields))
+
+
+def test_a_picture_s_message_has_every_setting() -> None:
+    """Names, order and defaults are those of the noun; numbers keep their precision."""
+    assert tuple(msgs.PictureSettings.get_fields_and_field_types()) == NAMES
+    assert picture_from_msg(msgs.PictureSettings()) == PictureSettings()
+    fine = PictureSettings(exposure=0.1, read_noise=1.0 / 3.0)
+    assert picture_from_msg(picture_to_msg(fine)) == fine
+
+
+def test_some_settings_of_a_picture_are_taken_over() -> None:
+    """Those that are named, or all if none is; what is not named is not looked at."""
+    msg = msgs.PictureSettings(exposure=1.5, bloom=7.0)
+    assert picture_changes_from_msg(msg, ["exposure"]) == {"exposure": 1.5}
+    assert tuple(picture_changes_from_msg(msg, [])) == NAMES
+    with pytest.raises(UnknownName, match="did you mean 'bloom'"):
+        picture_changes_from_msg(msg, ["blom"])
 
 
 def scene_info() -> SceneInfo:

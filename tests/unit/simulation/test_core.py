@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -294,6 +296,42 @@ def test_picture_settings_go_to_the_camera_and_survive_a_reset(core: SimulationC
     with pytest.raises(UnknownName, match="agent"):
         core.set_picture("nobody", first)
     assert core.info.agents[-1].picture == second
+
+
+def test_some_settings_of_a_picture_are_changed(core: SimulationCore) -> None:
+    """The others stay; what is refused, or names nothing, changes nothing and is not announced."""
+    begun = PictureSettings(bloom=0.5, smooth_edges=False)
+    core.register_agent(spec(rate_hz=0.0, picture=begun))
+    changed = core.set_picture("eye", exposure=1.0, tone_curve="linear")
+    assert changed == PictureSettings(
+        bloom=0.5, smooth_edges=False, exposure=1.0, tone_curve="linear"
+    )
+    assert core.get_picture("eye") == core.info.agents[-1].picture == changed
+    assert core.set_picture("eye", begun, bloom=0.25) == replace(begun, bloom=0.25)
+    before = core.info
+    refused: list[dict[str, Any]] = [
+        {"exposure": 1.0, "bloom": 2.0},
+        {"exposure": "bright"},
+        {"exposure": 1.0, "tone_curve": "log"},
+        {"exposure": 1.0, "agent": "eye"},
+        {"exposure": 1.0, "settings": begun},
+        {"smooth_edges": 1},
+    ]
+    for changes in refused:
+        with pytest.raises(InvalidRequest, match="must be"):
+            core.set_picture("eye", **changes)
+    with pytest.raises(UnknownName, match="did you mean 'exposure'"):
+        core.set_picture("eye", exposur=1.0)
+    assert core.set_picture("eye") == core.get_picture("eye") == replace(begun, bloom=0.25)
+    assert core.info.revision == before.revision
+    with pytest.raises(UnknownName, match="agent"):
+        core.get_picture("nobody")
+
+
+def test_an_agent_s_picture_is_an_object_of_settings() -> None:
+    """A mapping in its place is refused in words."""
+    with pytest.raises(InvalidRequest, match="object of PictureSettings"):
+        AgentSpec(name="eye", picture={"exposure": 1.0})  # type: ignore[arg-type]  # on purpose
 
 
 def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:

@@ -127,6 +127,7 @@ def told(core: SimulationCore) -> dict[str, Any]:
                 agent.mover,
                 agent.rate_hz,
                 agent.depth_range_m,
+                agent.picture,
             )
             for agent in info.agents
         },
@@ -374,6 +375,13 @@ def test_objects_of_a_scenario_are_saved_too(core: SimulationCore) -> None:
     """What came on top of the scene is a part of what is saved."""
     core.load_scenario({"objects": [{"asset": "cube", "name": "guest", "position": [1, 1, 1]}]})
     assert "name: guest" in assert_comes_back(core)
+
+
+def test_pictures_are_saved_as_they_are(core: SimulationCore) -> None:
+    """Settings that were changed at run time are in the file, and in the scene that it begins."""
+    changed = core.set_picture("watcher", exposure=-0.5, tone_curve="linear")
+    assert "tone_curve: linear" in assert_comes_back(core)
+    assert core.get_picture("watcher") == changed
 
 
 def test_agents_of_clients_are_saved_where_they_are_named(core: SimulationCore) -> None:
