@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,7 +18,9 @@ from sailenv_ros.pictures.colours import grey_depth
 
 __all__ = ["frame_dict"]
 
-_INSTANCE_BGR = np.ascontiguousarray(instance_colours()[:, ::-1])
+_INSTANCE_BGRX: NDArray[np.uint32] = np.ascontiguousarray(
+    cv2.cvtColor(instance_colours()[None], cv2.COLOR_RGB2BGRA)[0]
+).view(np.uint32)[:, 0]
 
 
 def frame_dict(
@@ -83,12 +86,12 @@ def _entries(
 ) -> tuple[str, dict[str, NDArray[Any]]]:
     """Give the original's name for a view, and the dict's entries that come of it."""
     if view == "rgb":
-        return "main", {"main": _channels_reversed(values)}
+        return "main", {"main": np.asarray(cv2.cvtColor(values, cv2.COLOR_RGB2BGR), np.uint8)}
     if view == "depth":
         picture = grey_depth(values, near_m=near_m, range_m=range_m)
         return "depth", {"depth": picture[..., None], "depth_m": values}
     if view == "instance":
-        return "object", {"object": np.take(_INSTANCE_BGR, values, axis=0), "instance": values}
+        return "object", {"object": _instance_colours(values), "instance": values}
     if view == "flow":
         invalid = np.isnan(values[..., 0])
         values[invalid] = 0.0
@@ -96,9 +99,7 @@ def _entries(
     return view, {view: values}
 
 
-def _channels_reversed(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    # Channel by channel: four times as fast as copying picture[..., ::-1].
-    result = np.empty_like(picture)
-    for channel in range(3):
-        result[..., channel] = picture[..., 2 - channel]
-    return result
+def _instance_colours(ids: NDArray[np.uint16]) -> NDArray[np.uint8]:
+    """Give (H, W, 3) BGR; four bytes are looked up at once, which is twice as fast as three."""
+    four = _INSTANCE_BGRX.take(ids, mode="clip").view(np.uint8).reshape(*ids.shape, 4)
+    return np.asarray(cv2.cvtColor(four, cv2.COLOR_BGRA2BGR), np.uint8)

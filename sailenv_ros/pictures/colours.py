@@ -64,7 +64,8 @@ def grey_depth(
     grey : (H, W) uint8
     """
     scale = np.float32(255.0 / (range_m - near_m))
-    grey = (np.float32(range_m) - depth_m) * scale
+    grey = np.float32(range_m) - depth_m
+    grey *= scale
     grey += np.float32(0.5)
     # fmin takes the number of a number and a NaN, which is just what is wanted of the too near.
     np.fmin(grey, np.float32(255.0), out=grey)
