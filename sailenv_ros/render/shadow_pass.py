@@ -18,7 +18,7 @@ from sailenv_ros.render.draw_list import ROWS, DrawList, casts
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import bound, issue
 from sailenv_ros.render.programs import ProgramCache
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["ShadowPass"]
 
@@ -46,6 +46,8 @@ class ShadowPass:
         self._frame: tuple[object, ...] = ()
         self._at_rest = np.zeros(0, bool)
         self._rest_poses = np.zeros((0, 4, 4))
+        self._rest_drawn = False
+        self._spheres = _Spheres()
         self._clip_from_light, self._light_from_world = np.eye(4), np.eye(4)
         self.map_from_world: NDArray[np.float64] = np.eye(4)
         self.texel_m = 0.0
@@ -87,7 +89,14 @@ class ShadowPass:
         if before is not None:
             moved = (poses != before).any(axis=(1, 2))
         if self._is_stale(poses):
-            self._at_rest, self._rest_poses = casting & ~moved, poses
+            # Drawn apart only when it is needed a second time: what goes on moving never is.
+            self._at_rest, self._rest_poses, self._rest_drawn = casting & ~moved, poses, False
+            self._framebuffer.use()
+            self._framebuffer.clear(depth=1.0)
+            self._issue(draws, geometry, casting)
+            return
+        if not self._rest_drawn:
+            self._rest_drawn = True
             self._resting.use()
             self._resting.clear(depth=1.0)
             self._issue(draws, geometry, self._at_rest)
@@ -108,7 +117,9 @@ class ShadowPass:
             return
         self._frame = frame
         self._at_rest = np.zeros(0, bool)
-        self._clip_from_light, self._light_from_world, width_m = _frustum(light, snapshot, framed)
+        self._clip_from_light, self._light_from_world, width_m = _frustum(
+            light, self._spheres.of(snapshot), framed
+        )
         self.texel_m = width_m / SIZE_PX
         # From clip space, -1 to 1, to texture space, 0 to 1.
         half = np.diag([0.5, 0.5, 0.5, 1.0])
@@ -150,7 +161,9 @@ def _with_colour(context: moderngl.Context, depth: moderngl.Texture) -> moderngl
 
 
 def _frustum(
-    light: Light, snapshot: WorldSnapshot, framed: NDArray[np.bool_]
+    light: Light,
+    spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
+    framed: NDArray[np.bool_],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
     """Fit an orthographic box along the light around those instances that can cast."""
     forward = np.asarray(light.direction)
@@ -160,7 +173,7 @@ def _frustum(
     up = np.cross(right, forward)
     light_from_world = np.eye(4)
     light_from_world[:3, :3] = np.stack([right, up, forward])
-    low, high = _caster_bounds(light_from_world, snapshot, framed)
+    low, high = _caster_bounds(light_from_world, spheres, framed)
     width = float(max(high[0] - low[0], high[1] - low[1], 0.5)) * 1.05
     centre = 0.5 * (low + high)
     near, far = float(low[2]) - 0.5, float(high[2]) + 0.5
@@ -173,26 +186,45 @@ def _frustum(
     return clip, light_from_world, width
 
 
+class _Spheres:
+    """Spheres around the instances of the contents seen last, in their own frames."""
+
+    def __init__(self) -> None:
+        self._contents: SceneContents | None = None
+        self._middles = np.zeros((0, 3))
+        self._radii = np.zeros(0)
+
+    def of(self, snapshot: WorldSnapshot) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Give centres in the world (N, 3) and radii (N,) [m]; 0 for what casts no shadow."""
+        if self._contents is not snapshot.contents:
+            self._contents = snapshot.contents
+            bounds = np.array(
+                [
+                    drawn.model.bounds() * np.asarray(drawn.scale)
+                    for drawn in snapshot.contents.instances
+                ]
+            ).reshape(-1, 2, 3)
+            casting = np.array([casts(drawn) for drawn in snapshot.contents.instances], bool)
+            self._middles = bounds.mean(axis=1)
+            self._radii = np.where(
+                casting, 0.5 * np.linalg.norm(bounds[:, 1] - bounds[:, 0], axis=1), 0.0
+            )
+        poses = snapshot.world_from_body
+        centres = (poses[:, :3, :3] @ self._middles[:, :, None])[:, :, 0] + poses[:, :3, 3]
+        return centres, self._radii
+
+
 def _caster_bounds(
-    light_from_world: NDArray[np.float64], snapshot: WorldSnapshot, framed: NDArray[np.bool_]
+    light_from_world: NDArray[np.float64],
+    spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
+    framed: NDArray[np.bool_],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    spheres = [
-        (np.mean(bounds, axis=0), 0.5 * float(np.linalg.norm(bounds[1] - bounds[0])))
-        for bounds in (
-            drawn.model.bounds() * np.asarray(drawn.scale) for drawn in snapshot.contents.instances
-        )
-    ]
-    instances = snapshot.contents.instances
-    placed = zip(snapshot.world_from_body, spheres, instances, framed, strict=True)
-    for matrix, (middle, radius), drawn, counts in placed:
-        if not counts or not casts(drawn):
-            continue
-        world = matrix[:3, :3] @ middle + matrix[:3, 3]
-        centre = light_from_world[:3, :3] @ world
-        low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
-    if not np.isfinite(low).all():
+    centres, radii = spheres
+    counts = framed & (radii > 0.0)
+    if not counts.any():
         return np.full(3, -5.0), np.full(3, 5.0)
+    seen, around = centres[counts] @ light_from_world[:3, :3].T, radii[counts, None]
+    low, high = (seen - around).min(axis=0), (seen + around).max(axis=0)
     # What receives the shadow may lie behind the last caster.
     high[2] += 6.0
     return low, high
