@@ -92,6 +92,8 @@ def seen_indices(
     eyes: NDArray[np.float64],
     one_sided: NDArray[np.bool_],
     indices: NDArray[np.uint32],
+    corner_indices: NDArray[np.uint32],
+    by_corner: NDArray[np.bool_],
 ) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
     """Gather the triangles that an eye may see.
 
@@ -108,8 +110,10 @@ def seen_indices(
         Where the eye is in each part's frame [m].
     one_sided : (P,) bool
         True for parts of which triangles that face away are not wanted.
-    indices : (I,) uint32
-        All indices.
+    indices, corner_indices : (I,) uint32
+        All indices, and those of the same triangles by position alone.
+    by_corner : (P,) bool
+        Which of the two are wanted of a part.
 
     Returns
     -------
@@ -122,7 +126,19 @@ def seen_indices(
     sides /= np.linalg.norm(sides[..., :3], axis=2, keepdims=True)
     seen = np.empty(int(ranges[parts, 2].sum()), np.uint32)
     lies = np.zeros((len(ranges), 2), np.int64)
-    count = _gather(parts, clusters, ranges, sides, eyes, one_sided, indices, seen, lies)
+    count = _gather(
+        parts,
+        clusters,
+        ranges,
+        sides,
+        eyes,
+        one_sided,
+        indices,
+        corner_indices,
+        by_corner,
+        seen,
+        lies,
+    )
     return seen[:count], lies
 
 
@@ -136,6 +152,8 @@ def warm_up() -> None:
         np.zeros((1, 3)),
         np.ones(1, bool),
         np.zeros(1, np.uint32),
+        np.zeros(1, np.uint32),
+        np.ones(1, bool),
     )
 
 
@@ -161,11 +179,22 @@ def _morton_codes(points: NDArray[np.float64]) -> NDArray[np.int64]:
 
 @numba.njit(cache=True, nogil=True)
 def _gather(  # type: ignore[no-untyped-def]  # compiled
-    parts, clusters, ranges, sides, eyes, one_sided, indices, seen, lies
+    parts,
+    clusters,
+    ranges,
+    sides,
+    eyes,
+    one_sided,
+    indices,
+    corner_indices,
+    by_corner,
+    seen,
+    lies,
 ):
     count = 0
     for part in parts:
         first = count
+        source = corner_indices if by_corner[part] else indices
         for number in range(ranges[part, 0], ranges[part, 0] + ranges[part, 1]):
             cluster = clusters[number]
             if _is_beyond(cluster, sides[part]):
@@ -174,7 +203,7 @@ def _gather(  # type: ignore[no-untyped-def]  # compiled
                 continue
             begin = cluster.first_index
             for index in range(begin, begin + cluster.index_count):
-                seen[count] = indices[index]
+                seen[count] = source[index]
                 count += 1
         lies[part, 0] = first
         lies[part, 1] = count - first

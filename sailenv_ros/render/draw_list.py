@@ -7,7 +7,7 @@ precision and rounded once.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,7 +125,7 @@ class DrawList:
         ).reshape(-1, 3)
         self._geometry = geometry
         self._corners = np.array([_corners(part.mesh) for _, _, part, _ in parts]).reshape(-1, 8, 4)
-        kinds = [kind for kind, *_ in parts]
+        self._kinds = kinds = [kind for kind, *_ in parts]
         everything = np.arange(len(parts))
         self.batches = tuple(_batches(kinds, everything, apart=see_through))
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
@@ -175,8 +175,15 @@ class DrawList:
             for batch in self.batches:
                 batch.choose(self._visible, self._distance)
 
-    def seen_indices(self) -> tuple[NDArray[np.uint32], list[tuple[int, int]]]:
+    def seen_indices(
+        self, by_corner: Callable[[BatchKind], bool]
+    ) -> tuple[NDArray[np.uint32], list[tuple[int, int]]]:
         """Gather the triangles that the eye of `place`, which has perspective, may see.
+
+        Parameters
+        ----------
+        by_corner : callable
+            Says of which kinds nothing is read but positions.
 
         Returns
         -------
@@ -200,6 +207,8 @@ class DrawList:
             eyes[rows],
             self._one_sided & upright[rows],
             self._geometry.indices,
+            self._geometry.corner_indices,
+            np.array([by_corner(kind) for kind in self._kinds], bool),
         )
         return seen, [(first, count) for first, count in lies.tolist()]
 

@@ -18,7 +18,7 @@ from sailenv_ros.model import Mesh
 from sailenv_ros.render.clusters import CLUSTER, clusters_of
 from sailenv_ros.snapshot import SceneContents
 
-__all__ = ["DrawnMesh", "GeometryBuffers", "MeshSlice", "drawn_meshes"]
+__all__ = ["DrawnMesh", "GeometryBuffers", "MeshSlice", "corners_of", "drawn_meshes"]
 
 VERTEX = np.dtype(
     [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("light_uv", "<f4", 2)]
@@ -103,10 +103,14 @@ class GeometryBuffers:
     Attributes
     ----------
     vertex_buffer, index_buffer : Buffer
-    indices : (I,) uint32
-        What the index buffer holds.
+        Everything that is known of a vertex.
+    corner_buffer, corner_index_buffer : Buffer
+        The same triangles by position alone: where vertices differ in nothing else, there is one
+        corner. Furniture has about half as many corners as vertices.
+    indices, corner_indices : (I,) uint32
+        What the index buffers hold.
     clusters : (C,) CLUSTER
-        Groups of triangles that lie together in it; see `clusters`.
+        Groups of triangles that lie together in them; see `clusters`.
     """
 
     def __init__(self, context: moderngl.Context) -> None:
@@ -115,7 +119,9 @@ class GeometryBuffers:
         self._kept: list[DrawnMesh] = []
         self.vertex_buffer = context.buffer(np.zeros(1, VERTEX).tobytes())
         self.index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())
-        self.indices = np.zeros(0, np.uint32)
+        self.corner_buffer = context.buffer(np.zeros(3, np.float32).tobytes())
+        self.corner_index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())
+        self.indices = self.corner_indices = np.zeros(0, np.uint32)
         self.clusters = np.zeros(0, CLUSTER)
 
     def show(self, meshes: Iterable[DrawnMesh]) -> None:
@@ -128,26 +134,34 @@ class GeometryBuffers:
         self._slices = {}
         # The number of an object is unique only while the object lives: it is kept.
         self._kept = wanted
-        first_index = first_vertex = first_cluster = 0
+        first_index = first_vertex = first_corner = first_cluster = 0
         vertices, indices = [np.zeros(0, VERTEX)], [np.zeros(0, np.uint32)]
+        corners, corner_indices = [np.zeros((0, 3), np.float32)], [np.zeros(0, np.uint32)]
         clusters = [np.zeros(0, CLUSTER)]
         for mesh in wanted:
-            corners = mesh.interleaved()
-            triangles, groups = clusters_of(corners["position"], mesh.triangles)
+            made = mesh.interleaved()
+            triangles, groups = clusters_of(made["position"], mesh.triangles)
+            places, numbers = corners_of(made["position"], triangles)
             self._slices[mesh.key] = MeshSlice(
                 first_index, triangles.size, first_cluster, len(groups)
             )
             groups["first_index"] += first_index
-            vertices.append(corners)
+            vertices.append(made)
+            corners.append(places)
             indices.append(triangles.reshape(-1) + np.uint32(first_vertex))
+            corner_indices.append(numbers.reshape(-1) + np.uint32(first_corner))
             clusters.append(groups)
-            first_vertex += len(corners)
+            first_vertex += len(made)
+            first_corner += len(places)
             first_index += triangles.size
             first_cluster += len(groups)
         self.close()
         self.indices, self.clusters = np.concatenate(indices), np.concatenate(clusters)
         self.vertex_buffer = self._context.buffer(_or_one(np.concatenate(vertices)).tobytes())
         self.index_buffer = self._context.buffer(_or_one(self.indices).tobytes())
+        self.corner_indices = np.concatenate(corner_indices)
+        self.corner_buffer = self._context.buffer(_or_one(np.concatenate(corners)).tobytes())
+        self.corner_index_buffer = self._context.buffer(_or_one(self.corner_indices).tobytes())
 
     def slice(self, mesh: DrawnMesh) -> MeshSlice:
         """Say where a mesh that is shown lies."""
@@ -155,10 +169,51 @@ class GeometryBuffers:
 
     def close(self) -> None:
         """Free the buffers."""
-        self.vertex_buffer.release()
-        self.index_buffer.release()
+        for buffer in (
+            self.vertex_buffer,
+            self.index_buffer,
+            self.corner_buffer,
+            self.corner_index_buffer,
+        ):
+            buffer.release()
 
 
-def _or_one(array: NDArray[np.void] | NDArray[np.uint32]) -> NDArray[np.generic]:
+def corners_of(
+    positions: NDArray[np.float32], triangles: NDArray[np.uint32]
+) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Give each place that triangles use a number, in the order in which they do.
+
+    Parameters
+    ----------
+    positions : (V, 3) float32
+    triangles : (M, 3) uint32
+
+    Returns
+    -------
+    corners : (K, 3) float32
+        Places, each once, bit for bit.
+    triangles : (M, 3) uint32
+        The same triangles of corners.
+    """
+    if not triangles.size:
+        return np.zeros((0, 3), np.float32), triangles
+    bits = np.ascontiguousarray(positions).view(np.uint32)
+    order = np.lexsort(bits.T)
+    differs = (np.diff(bits[order], axis=0) != 0).any(axis=1)
+    place_of = np.empty(len(positions), np.int64)
+    place_of[order] = np.concatenate([[0], np.cumsum(differs)])
+    used, first, corner_of = np.unique(
+        place_of[triangles.reshape(-1)], return_index=True, return_inverse=True
+    )
+    rank = np.empty(len(used), np.uint32)
+    by_use = np.argsort(first)
+    rank[by_use] = np.arange(len(used), dtype=np.uint32)
+    corners = positions[triangles.reshape(-1)[first[by_use]]]
+    return corners, rank[corner_of.reshape(-1)].reshape(-1, 3)
+
+
+def _or_one(
+    array: NDArray[np.void] | NDArray[np.uint32] | NDArray[np.float32],
+) -> NDArray[np.generic]:
     """OpenGL has no empty buffers."""
     return array if array.size else np.zeros(1, array.dtype)

@@ -6,7 +6,7 @@ pictures normal and material, go out. Only the attachments that are asked for ex
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -141,7 +141,9 @@ class GeometryPass:
         # The projection turns the picture upside down, so that row 0 of OpenGL's window is the
         # picture's top row and no array is ever flipped; front faces turn the other way with it.
         context.front_face = "cw"
-        lies = self._choose(draws)
+        # Masked materials need their alpha even where no picture is made.
+        plain = targets.shape is None and targets.normals is None
+        lies = self._choose(draws, lambda kind: plain and not kind.masked)
         try:
             for batch in draws.batches:
                 if not any(lies[part][1] for part in batch.chosen):
@@ -154,16 +156,19 @@ class GeometryPass:
                     context.disable(moderngl.CULL_FACE)
                 else:
                     context.enable(moderngl.CULL_FACE)
-                array = bound(context, program, geometry, self._index_buffer)
+                by_corner = plain and not batch.kind.masked
+                array = bound(context, program, geometry, self._index_buffer, by_corner=by_corner)
                 issue(program, array, draws, batch, lies)
         finally:
             context.disable_direct(GL_CLIP_DISTANCE0)
             context.disable_direct(GL_DEPTH_CLAMP)
             context.front_face = "ccw"
 
-    def _choose(self, draws: DrawList) -> list[tuple[int, int]]:
+    def _choose(
+        self, draws: DrawList, by_corner: Callable[[BatchKind], bool]
+    ) -> list[tuple[int, int]]:
         """Upload the indices of what may be seen; say where each part's lie."""
-        seen, lies = draws.seen_indices()
+        seen, lies = draws.seen_indices(by_corner)
         if seen.nbytes > self._index_buffer.size:
             self._index_buffer.release()
             self._index_buffer = self._context.buffer(reserve=2 * seen.nbytes, dynamic=True)
@@ -174,7 +179,6 @@ class GeometryPass:
     def _program(self, kind: BatchKind, targets: Targets) -> moderngl.Program:
         switches: dict[str, int] = {}
         shaded = targets.shape is not None
-        # Masked materials need their alpha even where no picture is made.
         if shaded or kind.masked or targets.normals is not None:
             switches["SHADED"] = 1
             if kind.masked:
@@ -199,8 +203,23 @@ def bound(
     program: moderngl.Program,
     geometry: GeometryBuffers,
     index_buffer: moderngl.Buffer,
+    *,
+    by_corner: bool = False,
 ) -> moderngl.VertexArray:
-    """Bind the vertices that a program reads, and indices, for `issue`."""
+    """Bind the vertices that a program reads, and indices, for `issue`.
+
+    Parameters
+    ----------
+    by_corner : bool
+        True if the indices are of corners; the program reads positions alone.
+    """
+    if by_corner:
+        return context.vertex_array(
+            program,
+            [(geometry.corner_buffer, "3f", "in_position")],
+            index_buffer=index_buffer,
+            index_element_size=4,
+        )
     formats, names = [], []
     for name in _VERTEX_FORMAT:
         used = name in program

@@ -140,7 +140,13 @@ class ShadowPass:
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.polygon_offset = 1.5, 2.0
         if draws.casters.chosen:
-            array = bound(self._context, self._program, geometry, geometry.index_buffer)
+            array = bound(
+                self._context,
+                self._program,
+                geometry,
+                geometry.corner_index_buffer,
+                by_corner=True,
+            )
             issue(self._program, array, draws, draws.casters, draws.lies)
         self._context.polygon_offset = 0.0, 0.0
 

@@ -72,6 +72,8 @@ def seen(
         np.array([eye]),
         np.array([one_sided]),
         ordered.reshape(-1),
+        np.zeros(ordered.size, np.uint32),
+        np.zeros(1, bool),
     )
     assert lies.tolist() == [[0, len(found)]]
     return ordered, found.reshape(-1, 3), clip
