@@ -12,7 +12,7 @@ import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 
-__all__ = ["LIMITS", "PictureSettings", "ToneCurve"]
+__all__ = ["LIMITS", "MAX_SUPERSAMPLING", "PictureSettings", "ToneCurve"]
 
 ToneCurve = Literal["filmic", "linear"]
 
@@ -25,6 +25,8 @@ LIMITS: dict[str, tuple[float, float, str]] = {
     "read_noise": (0.0, 1e4, "electrons"),
 }
 """Least and greatest value of each number, and its unit."""
+
+MAX_SUPERSAMPLING = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +45,10 @@ class PictureSettings:
     occlusion_radius_m : float
         From how far away surfaces darken each other [m], 0.01 to 5.
     smooth_edges : bool
-        True if stair-steps are smoothed.
+        True if stair-steps are smoothed; a picture of several samples a pixel needs it not.
+    supersampling : int
+        The picture is drawn this many times as wide and as high, 1 to 4, and each pixel is the
+        mean of the light of its samples.
     bloom : float
         Share of the light that is spread around bright places, 0 (off) to 1.
     full_well : float
@@ -63,6 +68,7 @@ class PictureSettings:
     occlusion_strength: float = 0.6
     occlusion_radius_m: float = 0.25
     smooth_edges: bool = True
+    supersampling: int = 1
     bloom: float = 0.0
     full_well: float = 0.0
     read_noise: float = 0.0
@@ -72,6 +78,7 @@ class PictureSettings:
             raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
         if not isinstance(self.smooth_edges, bool):
             raise InvalidRequest("smooth_edges", self.smooth_edges, "true or false")
+        self._check_supersampling()
         for name, (low, high, unit) in LIMITS.items():
             value = getattr(self, name)
             number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
@@ -79,3 +86,12 @@ class PictureSettings:
                 accepted = f"a number from {low:g} to {high:g}" + (f" [{unit}]" if unit else "")
                 raise InvalidRequest(name, value, accepted)
             object.__setattr__(self, name, float(value))
+
+    def _check_supersampling(self) -> None:
+        times = self.supersampling
+        whole = isinstance(times, int | np.integer) and not isinstance(times, bool)
+        if not whole or not 1 <= times <= MAX_SUPERSAMPLING:
+            raise InvalidRequest(
+                "supersampling", times, f"an integer from 1 to {MAX_SUPERSAMPLING}"
+            )
+        object.__setattr__(self, "supersampling", int(times))

@@ -6,7 +6,12 @@ from typing import Annotated, get_args
 
 from pydantic import Field
 
-from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
+from sailenv_ros.picture_settings import (
+    LIMITS,
+    MAX_SUPERSAMPLING,
+    PictureSettings,
+    ToneCurve,
+)
 from sailenv_ros.scene.fields import Fraction, SceneModel
 from sailenv_ros.scene.kinds import Choice, Number, Switch
 
@@ -41,6 +46,10 @@ class PictureSpec(SceneModel):
     )
     smooth_edges: Annotated[bool, Switch()] = Field(
         default=_STANDARD.smooth_edges, description="true if stair-steps are smoothed"
+    )
+    supersampling: Annotated[int, Number(least=1, most=MAX_SUPERSAMPLING, whole=True)] = Field(
+        default=_STANDARD.supersampling,
+        description="samples on a side of a pixel, whose light is averaged; 1: its centre alone",
     )
     bloom: Fraction = Field(
         default=_STANDARD.bloom, description="share of the light that is spread around; 0: off"
