@@ -157,6 +157,9 @@ void main() {
 #endif
 #ifdef REFLECTIONS
     vec3 room = mirrored_room(world_from_optical * point + eye, mirrored, roughness);
+    // Where less light arrives than in the middle of the room, less of the room is seen as well.
+    float in_the_open = dot(room_light, vec4(1.0, world_normal));
+    room *= clamp(dot(around, LUMA) / max(in_the_open, 1e-4), 0.0, 1.0);
     // The rougher, the more of the half space it mirrors: that is the light around the point.
     reflected = mix(room, around, smoothstep(0.25, 0.7, roughness));
 #elif !defined(BAKED)
