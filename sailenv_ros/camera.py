@@ -216,7 +216,9 @@ def require_drawable(intrinsics: CameraIntrinsics, picture: PictureSettings) -> 
     width, height, times = intrinsics.width, intrinsics.height, picture.supersampling
     most = MAX_SIZE_PX // max(width, height)
     if times > most:
-        accepted = f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
+        accepted = (
+            f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
+        )
         raise InvalidRequest("supersampling", times, accepted)
 
 
