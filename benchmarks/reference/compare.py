@@ -80,7 +80,7 @@ def _cameras(
     scenes: list[str] | None,
     views: list[str] | None,
     size: tuple[int, int],
-    picture: PictureSettings,
+    picture: PictureSettings | None = None,
 ) -> dict[str, dict[str, Camera]]:
     known = yaml.safe_load(VIEWS.read_text(encoding="utf-8"))
     return {
@@ -93,12 +93,14 @@ def _cameras(
     }
 
 
-def _camera(view: Mapping[str, Any], size: tuple[int, int], picture: PictureSettings) -> Camera:
+def _camera(
+    view: Mapping[str, Any], size: tuple[int, int], picture: PictureSettings | None
+) -> Camera:
     intrinsics = CameraIntrinsics(
         width=size[0], height=size[1], vertical_fov_deg=float(view["fov"])
     )
     pose = look_at(view["position"], view["look_at"])
-    return Camera(intrinsics=intrinsics, pose=pose, picture=picture)
+    return Camera(intrinsics=intrinsics, pose=pose, picture=picture or PictureSettings())
 
 
 def _compared(

@@ -53,7 +53,8 @@ def albedo_of(scenery: Scenery, layout: Layout, texels: Texels) -> NDArray[np.fl
         texel = float(np.median(fineness[triangle]))
         base = np.tile(np.asarray(look.base_colour[:3], np.float32), (len(chosen), 1))
         if look.base_colour_texture is not None:
-            base *= _sampled(cv2.LUT(look.base_colour_texture[..., :3].copy(), _LINEAR), at, texel)
+            colours = np.ascontiguousarray(look.base_colour_texture[..., :3])
+            base *= _sampled(np.asarray(cv2.LUT(colours, _LINEAR), np.float32), at, texel)
         finish = np.array([[look.roughness, look.metallic]])
         if look.metallic_roughness_texture is not None:
             shares = look.metallic_roughness_texture[..., 1:3].astype(np.float32) / 255.0

@@ -2,6 +2,8 @@
 // there are is known when the program is made: a software rasteriser runs all sides of a branch.
 #ifdef COLOUR_MAP
 uniform sampler2DArray colour_maps;
+// Mip-maps blur along a slanted surface as far as across it: half a level is given back.
+const float FINER = -0.5;
 #endif
 #ifdef FINISH_MAP
 uniform sampler2DArray finish_maps;
@@ -12,8 +14,7 @@ uniform sampler2DArray normal_maps;
 
 vec4 base_colour(vec4 base, vec2 uv) {
 #ifdef COLOUR_MAP
-    // Mip-maps are blurred along a slanted surface as far as across it: half a level is given back.
-    vec4 texel = texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x), -0.5);
+    vec4 texel = texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x), FINER);
     vec3 c = texel.rgb;  // sRGB to linear: a cubic that is within 0.3 % of the curve
     base *= vec4(c * (c * (c * 0.305306 + 0.682171) + 0.012523), texel.a);
 #endif
@@ -24,7 +25,8 @@ vec4 base_colour(vec4 base, vec2 uv) {
 float cutoff(float nearby, vec2 uv) {
 #ifdef COLOUR_MAP
     vec2 falls = CUTOFF_BY_LEVEL;
-    return max(nearby - falls.x * textureQueryLod(colour_maps, uv).x, min(nearby, falls.y));
+    float level = max(textureQueryLod(colour_maps, uv).x + FINER, 0.0);
+    return max(nearby - falls.x * level, min(nearby, falls.y));
 #else
     return nearby;
 #endif

@@ -174,7 +174,7 @@ def with_a_window(h: float, w: float) -> list[Thing]:
     )  # fmt: skip
     black = sending(grey(0.0))
     glass = {"alpha": "blend", "double_sided": True, "base_colour": (1.0, 1.0, 1.0, 0.1)}
-    pane = model_of(box_mesh((0.01, 2 * w, 2 * w)), **glass)
+    pane = model_of(box_mesh((2e-4, 2 * w, 2 * w)), **glass)
     return [
         Thing(model_of(open_box, **black)),
         Thing(model_of(wall, **black)),
@@ -189,7 +189,9 @@ def test_a_window_gives_its_form_factor() -> None:
     snapshot = still(with_a_window(h, w), lights=(), environment=sky)
     baked = bake(snapshot, settings=replace(COARSE, texel_m=0.04))
     points, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=5)
-    floor = points[:, 2] < -h + 1e-6
+    # Beside the window's wall all rays graze the glass: light changes within a texel.
+    floor = (points[:, 2] < -h + 1e-6) & (points[:, 0] < h - 0.2)
+    assert floor.sum() > 10
     grid = (np.arange(60) + 0.5) / 60 * 2 * w - w
     spots = np.stack(np.meshgrid([h], grid, grid), axis=-1).reshape(-1, 3)
     offset = spots[None] - points[floor][:, None]
