@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.render.bands import Bands, alone
 
-__all__ = ["Shade", "arriving_at", "develop", "shaded", "warm_up"]
+__all__ = ["Shade", "develop", "shaded", "warm_up"]
 
 Shade: TypeAlias = tuple[NDArray[np.uint8], NDArray[np.float32]]
 """What `ambient_occlusion.open_share` gives: share and 1 / depth at half resolution."""
@@ -134,29 +134,26 @@ def _scaled(half, factor):  # type: ignore[no-untyped-def]  # compiled
 
 
 @numba.njit(cache=True, nogil=True)
-def arriving_at(open_share, inverse, v, u, z):  # type: ignore[no-untyped-def]  # compiled
-    """Share of the light from around, of 255, that arrives at depth z in a pixel."""
-    one, off = np.float32(1.0), np.float32(SAME_SURFACE)
-    row, column = v >> 1, u >> 1
-    if abs(abs(inverse[row, column]) * z - one) <= off:
-        return open_share[row, column]
-    # An edge runs between the sample and the pixel: another may lie on its surface.
-    below, right = min(row + 1, open_share.shape[0] - 1), min(column + 1, open_share.shape[1] - 1)
-    for more in range(1, 4):
-        at_row, at_column = below if more >= 2 else row, right if more & 1 else column
-        if abs(abs(inverse[at_row, at_column]) * z - one) <= off:
-            return open_share[at_row, at_column]
-    return np.uint8(255)
-
-
-@numba.njit(cache=True, nogil=True)
 def _find_arriving(  # type: ignore[no-untyped-def]  # compiled
     bits, open_share, inverse, surface, v, factors
 ):
     """Share of each pixel's light in a row that is left, by the nearest sample on its surface."""
-    one = np.float32(1.0)
+    one, off = np.float32(1.0), np.float32(SAME_SURFACE)
+    above, below = v >> 1, min((v >> 1) + 1, open_share.shape[0] - 1)
+    last = open_share.shape[1] - 1
     for u in range(bits.shape[1]):
-        arriving = arriving_at(open_share, inverse, v, u, surface[v, u, 0])
+        z = surface[v, u, 0]
+        row, column = above, u >> 1
+        found = abs(abs(inverse[row, column]) * z - one) <= off
+        if not found:
+            # An edge runs between the sample and the pixel: another may lie on its surface.
+            for more in range(1, 4):
+                row = below if more >= 2 else above
+                column = min((u >> 1) + (more & 1), last)
+                found = abs(abs(inverse[row, column]) * z - one) <= off
+                if found:
+                    break
+        arriving = open_share[row, column] if found else np.uint8(255)
         share = np.int32(np.int32(bits[v, u, 3]) << 13).view(np.float32) * np.float32(2.0**112)
         closed = np.float32(np.int32(255) - np.int32(arriving)) * np.float32(1.0 / 255.0)
         factors[u] = one - min(share, one) * closed

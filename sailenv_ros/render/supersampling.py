@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.bands import Bands, alone
-from sailenv_ros.render.develop import Shade, arriving_at
+from sailenv_ros.render.develop import SAME_SURFACE, Shade
 
 __all__ = ["mean_radiance", "warm_up"]
 
@@ -72,15 +72,25 @@ def _average(  # type: ignore[no-untyped-def]  # compiled
     bits, times, shaded, open_share, inverse, surface, out, first, last
 ):
     part = np.float32(1.0 / (times * times))
-    one = np.float32(1.0)
+    one, off = np.float32(1.0), np.float32(SAME_SURFACE)
+    bottom, right = open_share.shape[0] - 1, open_share.shape[1] - 1
     for v in range(first, last):
+        above, below = v >> 1, min((v >> 1) + 1, bottom)
         for u in range(out.shape[1]):
             r = g = b = np.float32(0.0)
             for i in range(v * times, v * times + times):
                 for j in range(u * times, u * times + times):
                     weight = part
                     if shaded:
-                        arriving = arriving_at(open_share, inverse, v, u, surface[i, j, 0])
+                        # As in develop: by the nearest number that is of the sample's surface.
+                        z = surface[i, j, 0]
+                        arriving = np.uint8(255)
+                        for more in range(4):
+                            row = below if more >= 2 else above
+                            column = min((u >> 1) + (more & 1), right)
+                            if abs(abs(inverse[row, column]) * z - one) <= off:
+                                arriving = open_share[row, column]
+                                break
                         share = _number(bits[i, j, 3]) * np.float32(2.0**112)
                         closed = np.float32(np.int32(255) - np.int32(arriving))
                         weight *= one - min(share, one) * closed * np.float32(1.0 / 255.0)
