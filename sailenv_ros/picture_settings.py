@@ -12,7 +12,7 @@ import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 
-__all__ = ["LIMITS", "MAX_SUPERSAMPLING", "PictureSettings", "ToneCurve"]
+__all__ = ["LIMITS", "PictureSettings", "ToneCurve"]
 
 ToneCurve = Literal["filmic", "linear"]
 
@@ -20,13 +20,14 @@ LIMITS: dict[str, tuple[float, float, str]] = {
     "exposure": (-16.0, 16.0, "stops"),
     "occlusion_strength": (0.0, 1.0, ""),
     "occlusion_radius_m": (0.01, 5.0, "m"),
+    "supersampling": (1, 4, ""),
     "bloom": (0.0, 1.0, ""),
     "full_well": (0.0, 1e7, "electrons"),
     "read_noise": (0.0, 1e4, "electrons"),
 }
 """Least and greatest value of each number, and its unit."""
 
-MAX_SUPERSAMPLING = 4
+_WHOLE = frozenset({"supersampling"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,20 +79,12 @@ class PictureSettings:
             raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
         if not isinstance(self.smooth_edges, bool):
             raise InvalidRequest("smooth_edges", self.smooth_edges, "true or false")
-        self._check_supersampling()
         for name, (low, high, unit) in LIMITS.items():
             value = getattr(self, name)
-            number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+            whole = name in _WHOLE
+            kinds = int | np.integer if whole else int | float | np.number
+            number = isinstance(value, kinds) and not isinstance(value, bool)
             if not number or not low <= value <= high:
-                accepted = f"a number from {low:g} to {high:g}" + (f" [{unit}]" if unit else "")
-                raise InvalidRequest(name, value, accepted)
-            object.__setattr__(self, name, float(value))
-
-    def _check_supersampling(self) -> None:
-        times = self.supersampling
-        whole = isinstance(times, int | np.integer) and not isinstance(times, bool)
-        if not whole or not 1 <= times <= MAX_SUPERSAMPLING:
-            raise InvalidRequest(
-                "supersampling", times, f"an integer from 1 to {MAX_SUPERSAMPLING}"
-            )
-        object.__setattr__(self, "supersampling", int(times))
+                accepted = f"{'an integer' if whole else 'a number'} from {low:g} to {high:g}"
+                raise InvalidRequest(name, value, accepted + (f" [{unit}]" if unit else ""))
+            object.__setattr__(self, name, int(value) if whole else float(value))

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from sailenv_ros.picture_settings import MAX_SUPERSAMPLING
+from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.fields import Rule
 from sailenv_ros.scene.wording import shown, shown_number, suggestion
 
@@ -75,7 +75,7 @@ def few_samples(most: int, defaults: Mapping[str, int]) -> Rule:
     def rule(entry: Entry) -> Faults:
         picture = entry.get("picture")
         times = picture.get("supersampling", 1) if isinstance(picture, Mapping) else 1
-        if not is_number(times) or times > MAX_SUPERSAMPLING:
+        if not is_number(times) or times > LIMITS["supersampling"][1]:
             return
         for key in ("width", "height"):
             size = entry.get(key, defaults[key])

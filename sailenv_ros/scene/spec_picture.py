@@ -6,12 +6,7 @@ from typing import Annotated, get_args
 
 from pydantic import Field
 
-from sailenv_ros.picture_settings import (
-    LIMITS,
-    MAX_SUPERSAMPLING,
-    PictureSettings,
-    ToneCurve,
-)
+from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
 from sailenv_ros.scene.fields import Fraction, SceneModel
 from sailenv_ros.scene.kinds import Choice, Number, Switch
 
@@ -20,9 +15,9 @@ __all__ = ["PictureSpec"]
 _STANDARD = PictureSettings()
 
 
-def _number(name: str) -> Number:
+def _number(name: str, *, whole: bool = False) -> Number:
     low, high, unit = LIMITS[name]
-    return Number(least=low, most=high, unit=unit)
+    return Number(least=low, most=high, unit=unit, whole=whole)
 
 
 class PictureSpec(SceneModel):
@@ -47,7 +42,7 @@ class PictureSpec(SceneModel):
     smooth_edges: Annotated[bool, Switch()] = Field(
         default=_STANDARD.smooth_edges, description="true if stair-steps are smoothed"
     )
-    supersampling: Annotated[int, Number(least=1, most=MAX_SUPERSAMPLING, whole=True)] = Field(
+    supersampling: Annotated[int, _number("supersampling", whole=True)] = Field(
         default=_STANDARD.supersampling,
         description="samples on a side of a pixel, whose light is averaged; 1: its centre alone",
     )
