@@ -10,7 +10,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.camera import CameraIntrinsics, require_drawable
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import FIVE_VIEWS, checked_views
 from sailenv_ros.geometry import Pose
@@ -80,6 +80,7 @@ class AgentSpec:
         picture: object = self.picture
         if not isinstance(picture, PictureSettings):
             raise InvalidRequest("picture", picture, "an object of PictureSettings")
+        require_drawable(self.intrinsics, self.picture)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -100,6 +100,9 @@ class LightLayer:
     visibility : (H, W) uint8 or None
         Share of a directional light that is not in shadow, 255 = all of it; None for other lights.
         Kept beside `direct` because it does not depend on the fine structure of the surface.
+    clear : float
+        Share of a directional light that glass lets through where it comes into the air that the
+        probes know, 0 to 1: what moves has no texels that would know it. 1 for other lights.
     """
 
     light: Light | None
@@ -108,6 +111,7 @@ class LightLayer:
     probe_direct: NDArray[np.float16]
     probe_bounced: NDArray[np.float16]
     visibility: NDArray[np.uint8] | None = None
+    clear: float = 1.0
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

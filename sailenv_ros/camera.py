@@ -8,7 +8,7 @@ z forward) [m]. OpenGL's clip axes appear in `clip_from_optical` alone.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +18,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.picture_settings import PictureSettings
 
-__all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics"]
+__all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics", "require_drawable"]
 
 MIN_SIZE_PX = 8
 MAX_SIZE_PX = 4096
@@ -166,12 +166,29 @@ class Camera:
         Concerns the ``rgb`` view alone.
     name : str
         Whose camera it is: two cameras have different noise.
+
+    Raises
+    ------
+    InvalidRequest
+        If the picture would have to be drawn larger than `MAX_SIZE_PX`.
     """
 
     intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
     pose: Pose = field(default_factory=Pose)
     picture: PictureSettings = field(default_factory=PictureSettings)
     name: str = ""
+
+    def __post_init__(self) -> None:
+        require_drawable(self.intrinsics, self.picture)
+
+    def of_samples(self) -> Camera:
+        """Give the camera whose pixels are the samples of this one's picture."""
+        times, lens = self.picture.supersampling, self.intrinsics
+        return replace(
+            self,
+            intrinsics=replace(lens, width=times * lens.width, height=times * lens.height),
+            picture=replace(self.picture, supersampling=1),
+        )
 
     @cached_property
     def world_from_camera(self) -> NDArray[np.float64]:
@@ -186,6 +203,23 @@ class Camera:
         matrix = invert(self.world_from_camera)
         matrix.flags.writeable = False
         return matrix
+
+
+def require_drawable(intrinsics: CameraIntrinsics, picture: PictureSettings) -> None:
+    """Refuse a picture whose samples would be more than `MAX_SIZE_PX` a side.
+
+    Raises
+    ------
+    InvalidRequest
+        Naming what would be accepted for a picture of that size.
+    """
+    width, height, times = intrinsics.width, intrinsics.height, picture.supersampling
+    most = MAX_SIZE_PX // max(width, height)
+    if times > most:
+        accepted = (
+            f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
+        )
+        raise InvalidRequest("supersampling", times, accepted)
 
 
 def _check_range(name: str, value: float, low: float, high: float, unit: str) -> None:

@@ -21,11 +21,14 @@ LIMITS: dict[str, tuple[float, float, str]] = {
     "exposure": (-16.0, 16.0, "stops"),
     "occlusion_strength": (0.0, 1.0, ""),
     "occlusion_radius_m": (0.01, 5.0, "m"),
+    "supersampling": (1, 4, ""),
     "bloom": (0.0, 1.0, ""),
     "full_well": (0.0, 1e7, "electrons"),
     "read_noise": (0.0, 1e4, "electrons"),
 }
 """Least and greatest value of each number, and its unit."""
+
+_WHOLE = frozenset({"supersampling"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +47,10 @@ class PictureSettings:
     occlusion_radius_m : float
         From how far away surfaces darken each other [m], 0.01 to 5.
     smooth_edges : bool
-        True if stair-steps are smoothed.
+        True if stair-steps are smoothed; a picture of several samples a pixel needs it not.
+    supersampling : int
+        The picture is drawn this many times as wide and as high, 1 to 4, and each pixel is the
+        mean of the light of its samples.
     bloom : float
         Share of the light that is spread around bright places, 0 (off) to 1.
     full_well : float
@@ -64,6 +70,7 @@ class PictureSettings:
     occlusion_strength: float = 0.6
     occlusion_radius_m: float = 0.25
     smooth_edges: bool = True
+    supersampling: int = 1
     bloom: float = 0.0
     full_well: float = 0.0
     read_noise: float = 0.0
@@ -75,11 +82,13 @@ class PictureSettings:
             raise InvalidRequest("smooth_edges", self.smooth_edges, "true or false")
         for name, (low, high, unit) in LIMITS.items():
             value = getattr(self, name)
-            number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+            whole = name in _WHOLE
+            kinds = int | np.integer if whole else int | float | np.number
+            number = isinstance(value, kinds) and not isinstance(value, bool)
             if not number or not low <= value <= high:
-                accepted = f"a number from {low:g} to {high:g}" + (f" [{unit}]" if unit else "")
-                raise InvalidRequest(name, value, accepted)
-            object.__setattr__(self, name, float(value))
+                accepted = f"{'an integer' if whole else 'a number'} from {low:g} to {high:g}"
+                raise InvalidRequest(name, value, accepted + (f" [{unit}]" if unit else ""))
+            object.__setattr__(self, name, int(value) if whole else float(value))
 
     def changed(self, changes: Mapping[str, Any]) -> PictureSettings:
         """Give these settings with some of them changed, by their names.

@@ -1,7 +1,7 @@
 """Compare the renderer's pictures with those of a path tracer: same scene, same cameras.
 
     python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
-        [--size W H] [--trace-only | --no-trace | --last] [--output FOLDER]
+        [--size W H] [--supersampling N] [--trace-only | --no-trace | --last] [--output FOLDER]
 
 Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
 (ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
@@ -29,6 +29,7 @@ from benchmarks.reference.parts import Parts
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import look_at
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.render.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -43,7 +44,8 @@ Row = dict[str, Any]
 def main() -> int:
     """Trace, render, measure, show; 0 if every view was compared."""
     arguments = _arguments()
-    cameras = _cameras(arguments.scenes, arguments.views, tuple(arguments.size))
+    picture = PictureSettings(supersampling=arguments.supersampling)
+    cameras = _cameras(arguments.scenes, arguments.views, tuple(arguments.size), picture)
     try:
         rows = [row for scene in cameras for row in _compared(scene, cameras[scene], arguments)]
     except ToolMissing as problem:
@@ -61,6 +63,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
     parser.add_argument("--samples", type=int, default=64, help="per pixel of the reference")
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
+    parser.add_argument(
+        "--supersampling", type=int, default=1, metavar="N", help="of ours; 1: as by default"
+    )
     parser.add_argument("--output", type=Path, default=Path("build/reference"), metavar="FOLDER")
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--trace-only", action="store_true", help="do not render ours")
@@ -72,12 +77,15 @@ def _arguments() -> argparse.Namespace:
 
 
 def _cameras(
-    scenes: list[str] | None, views: list[str] | None, size: tuple[int, int]
+    scenes: list[str] | None,
+    views: list[str] | None,
+    size: tuple[int, int],
+    picture: PictureSettings | None = None,
 ) -> dict[str, dict[str, Camera]]:
     known = yaml.safe_load(VIEWS.read_text(encoding="utf-8"))
     return {
         scene: {
-            name: _camera(view, size)
+            name: _camera(view, size, picture)
             for name, view in known[scene].items()
             if views is None or name in views
         }
@@ -85,11 +93,14 @@ def _cameras(
     }
 
 
-def _camera(view: Mapping[str, Any], size: tuple[int, int]) -> Camera:
+def _camera(
+    view: Mapping[str, Any], size: tuple[int, int], picture: PictureSettings | None
+) -> Camera:
     intrinsics = CameraIntrinsics(
         width=size[0], height=size[1], vertical_fov_deg=float(view["fov"])
     )
-    return Camera(intrinsics=intrinsics, pose=look_at(view["position"], view["look_at"]))
+    pose = look_at(view["position"], view["look_at"])
+    return Camera(intrinsics=intrinsics, pose=pose, picture=picture or PictureSettings())
 
 
 def _compared(

@@ -24,7 +24,7 @@ from sailenv_ros.bake.probes import (
     probe_positions,
     straight_light,
 )
-from sailenv_ros.bake.rays import RayScene, in_chunks
+from sailenv_ros.bake.rays import NEVER, RayScene, in_chunks
 from sailenv_ros.bake.sampling import net, tile_shift
 from sailenv_ros.bake.scenery import static_scenery
 from sailenv_ros.bake.settings import BakeSettings
@@ -260,6 +260,16 @@ class _Bake:
         direct = np.stack([filled_in(d[..., None], unknown, grid)[..., 0] for d in direct])
         return grid, direct, bounced
 
+    def _clear(self, light: Light | None) -> float:
+        """Give how much of a light glass lets through, on the mean over the probes it reaches."""
+        if light is None or light.type != "directional":
+            return 1.0
+        spots = self._spots[self._air.useful]
+        towards = np.tile(-np.asarray(light.direction, np.float32), (len(spots), 1))
+        never = np.full(len(spots), NEVER, np.float32)
+        share = self._around.scene.share_that_passes(spots, towards, never)
+        return float(share[share > 0.0].mean(dtype=np.float64)) if share.any() else 1.0
+
     def _result(
         self,
         layout: Layout,
@@ -300,6 +310,7 @@ class _Bake:
                     .reshape(*grid.shape, 4, 3)
                     .astype(np.float16),
                     visibility=visibility,
+                    clear=self._clear(entry.light),
                 )
             )
         return BakedLight(

@@ -32,7 +32,7 @@ __all__ = [
     "store_baked",
 ]
 
-FORMAT = 1
+FORMAT = 2
 
 MOST_FILES = 24
 """The oldest are thrown away beyond it."""
@@ -140,6 +140,7 @@ def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:
         "fingerprint": baked.fingerprint,
         "probes": asdict(baked.probes),
         "lights": [None if y.light is None else asdict(y.light) for y in baked.layers],
+        "clear": [layer.clear for layer in baked.layers],
         "parts": [len(unwrapping.vertices) for unwrapping in unwrappings],
         "charts": {
             str(instance): [
@@ -169,13 +170,16 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
     layers = [
         LightLayer(
             light=None if light is None else Light(**_with_tuples(light)),
+            clear=clear,
             **{
                 name: _frozen(arrays[f"layer_{place}_{name}"])
                 for name in _LAYER_ARRAYS
                 if f"layer_{place}_{name}" in arrays
             },
         )
-        for place, light in enumerate(description["lights"])
+        for place, (light, clear) in enumerate(
+            zip(description["lights"], description["clear"], strict=True)
+        )
     ]
     return BakedLight(
         fingerprint=description["fingerprint"],

@@ -1,7 +1,7 @@
 """What each texel gives back of the light it gets, and what it gives of itself.
 
-From `Scenery`, `Layout` and `Texels` to albedo and emission. Metals, too, give back their base
-colour to everywhere: the amount is right, the direction is the mean one. Normal maps do nothing.
+From `Scenery`, `Layout` and `Texels` to albedo and emission. What is mirrored goes everywhere,
+too: the amount is right, the direction is the mean one. Normal maps do nothing.
 """
 
 from __future__ import annotations
@@ -13,17 +13,20 @@ from numpy.typing import NDArray
 from sailenv_ros.bake.layout import Layout
 from sailenv_ros.bake.scenery import Scenery
 from sailenv_ros.bake.texels import Texels
-from sailenv_ros.model import Material
 
-__all__ = ["albedo_of", "emission_of"]
+__all__ = ["albedo_of", "emission_of", "returned"]
 
 BRIGHTEST = 0.95
 """No surface gives back more: bounces would not end."""
 
-GLOSS = 0.09
-"""Share of the light from everywhere that the surface of something that is no metal gives back
-before any colour is met: Schlick's Fresnel term from 0.04 on, averaged over directions with the
-cosine, is 0.04 + 0.96 / 21 = 0.086; both ways through the surface little more is lost."""
+BELOW = 0.9565
+"""Share of the light from everywhere that meets the colour of something that is no metal."""
+
+GLOSS = np.array(
+    [0.0857, 0.0854, 0.0810, 0.0730, 0.0632, 0.0531, 0.0442, 0.0366, 0.0296, 0.0238, 0.0191]
+)
+"""Share that its surface gives back before, for roughness 0, 0.1 … 1: both are the lobes of
+lighting.frag, integrated over the hemispheres of where light comes from and where it goes to."""
 
 
 def emission_of(scenery: Scenery, texels: Texels) -> NDArray[np.float32]:
@@ -43,14 +46,38 @@ def albedo_of(scenery: Scenery, layout: Layout, texels: Texels) -> NDArray[np.fl
     albedo = np.zeros((texels.count, 3), dtype=np.float32)
     for place, look in enumerate(scenery.materials):
         chosen = order[bounds[place] : bounds[place + 1]]
-        albedo[chosen] = look.base_colour[:3]
-        if look.base_colour_texture is not None and len(chosen):
-            triangle = texels.triangle[chosen]
-            at = np.einsum("nc,ncx->nx", texels.weights[chosen], scenery.uvs[triangle])
-            albedo[chosen] *= _sampled(look, at, float(np.median(fineness[triangle])))
-        gloss = GLOSS * (1.0 - look.metallic)
-        albedo[chosen] = gloss + (1.0 - gloss) * albedo[chosen]
+        if not len(chosen):
+            continue
+        triangle = texels.triangle[chosen]
+        at = np.einsum("nc,ncx->nx", texels.weights[chosen], scenery.uvs[triangle])
+        texel = float(np.median(fineness[triangle]))
+        base = np.tile(np.asarray(look.base_colour[:3], np.float32), (len(chosen), 1))
+        if look.base_colour_texture is not None:
+            colours = np.ascontiguousarray(look.base_colour_texture[..., :3])
+            base *= _sampled(np.asarray(cv2.LUT(colours, _LINEAR), np.float32), at, texel)
+        finish = np.array([[look.roughness, look.metallic]])
+        if look.metallic_roughness_texture is not None:
+            shares = look.metallic_roughness_texture[..., 1:3].astype(np.float32) / 255.0
+            finish = finish * _sampled(shares, at, texel)
+        albedo[chosen] = returned(base, *finish.T[:, :, None])
     return np.clip(albedo, 0.0, BRIGHTEST)
+
+
+def returned(
+    base: NDArray[np.floating], roughness: NDArray[np.floating], metallic: NDArray[np.floating]
+) -> NDArray[np.float64]:
+    """Give the share of the light from everywhere that a surface gives back to everywhere.
+
+    Parameters
+    ----------
+    base : (N, 3) float
+        Linear colour.
+    roughness, metallic : (N, 1) or (1, 1) float
+        Of a metal all microfacets together give back its colour.
+    """
+    gloss = np.interp(roughness, np.linspace(0.0, 1.0, len(GLOSS)), GLOSS)
+    plain: NDArray[np.float64] = gloss + BELOW * base
+    return plain + metallic * (base - plain)
 
 
 def _texture_texels(scenery: Scenery, layout: Layout) -> NDArray[np.float64]:
@@ -64,19 +91,18 @@ def _texture_texels(scenery: Scenery, layout: Layout) -> NDArray[np.float64]:
     return np.sqrt(area(scenery.uvs) / np.maximum(area(layout.places), 1e-9))
 
 
-def _sampled(look: Material, at: NDArray[np.float32], texel: float) -> NDArray[np.float32]:
-    """Give (N, 3) float32: linear colour of the texture, averaged over about a texel of the map."""
-    texture = look.base_colour_texture
-    assert texture is not None
-    height, width = texture.shape[:2]
+def _sampled(
+    values: NDArray[np.float32], at: NDArray[np.float32], texel: float
+) -> NDArray[np.float32]:
+    """Give (N, C) float32: a texture's values, averaged over about a texel of the map."""
+    height, width = values.shape[:2]
     wide = int(np.clip(round(1.0 / max(texel, 1e-6)), 1, width))
     high = int(np.clip(round(wide * height / width), 1, height))
-    linear = cv2.LUT(np.ascontiguousarray(texture[..., :3]), _LINEAR)
-    small = cv2.resize(linear, (wide, high), interpolation=cv2.INTER_AREA).reshape(high, wide, 3)
+    small = cv2.resize(values, (wide, high), interpolation=cv2.INTER_AREA).reshape(high, wide, -1)
     column = np.floor(at[:, 0] * wide).astype(np.int64) % wide
     row = np.floor((1.0 - at[:, 1]) * high).astype(np.int64) % high
-    colours: NDArray[np.float32] = small[row, column]
-    return colours
+    found: NDArray[np.float32] = small[row, column]
+    return found
 
 
 def _linear_of_srgb() -> NDArray[np.float32]:

@@ -33,12 +33,15 @@ class MixedLight:
         Lights that must be drawn as if there were no bake: they were added or moved.
     main_baked : bool
         True if the fourth channel of `texels` belongs to the present main light.
+    main_clear : float
+        Share of the main light that glass lets through to what has no texels; 1 if not known.
     """
 
     texels: NDArray[np.float16]
     probes: NDArray[np.float32]
     live: tuple[Light, ...]
     main_baked: bool
+    main_clear: float
 
 
 def strength(light: Light) -> float:
@@ -67,7 +70,7 @@ def mix(baked: BakedLight, lights: Sequence[Light], environment: Environment) ->
     probes[..., 0, :] += more
     shown = np.full(texels.shape[:2], 255, np.uint8)
     main = main_light(lights)
-    main_baked = False
+    main_baked, main_clear = False, 1.0
     present = {light.name: light for light in lights}
     known = set()
     for layer in baked.layers[1:]:
@@ -79,12 +82,14 @@ def mix(baked: BakedLight, lights: Sequence[Light], environment: Environment) ->
         is_main = light is main and layer.visibility is not None
         _add(texels, probes, layer, light, direct=not is_main)
         if is_main and layer.visibility is not None:
-            shown, main_baked = layer.visibility, True
+            shown, main_baked, main_clear = layer.visibility, True, layer.clear
     four = np.empty((*texels.shape[:2], 4), np.float16)
     four[..., :3] = np.maximum(texels, 0.0)
     four[..., 3] = shown * np.float32(1.0 / 255.0)
     live = tuple(light for light in lights if light.name not in known and light is not main)
-    return MixedLight(texels=four, probes=probes, live=live, main_baked=main_baked)
+    return MixedLight(
+        texels=four, probes=probes, live=live, main_baked=main_baked, main_clear=main_clear
+    )
 
 
 def instance_light(

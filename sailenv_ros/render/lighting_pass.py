@@ -68,6 +68,8 @@ class Illumination:
     baked : BakedTextures or None
     main_baked : bool
         True if the light map knows the main light's shadows.
+    main_clear : float
+        Share of the main light that glass lets through to what is not in the light map.
     reflections : ReflectionMap or None
     """
 
@@ -78,6 +80,7 @@ class Illumination:
     static_shadow: ShadowPass | None = None
     baked: BakedTextures | None = None
     main_baked: bool = False
+    main_clear: float = 1.0
     reflections: ReflectionMap | None = None
 
 
@@ -183,6 +186,7 @@ class LightingPass:
         set_uniform(program, "shadow_from_optical", _columns(matrix))
         set_uniform(program, "shadow_texel", (shadow.texel_m, 1.0 / SIZE_PX, PENUMBRA_TEXELS))
         set_uniform(program, "main_baked", float(illumination.main_baked))
+        set_uniform(program, "main_clear", illumination.main_clear)
 
 
 def _set_textures(program: moderngl.Program, targets: Targets, illumination: Illumination) -> None:

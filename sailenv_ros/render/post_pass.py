@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
-from sailenv_ros.render import ambient_occlusion, develop, smooth_edges
+from sailenv_ros.render import ambient_occlusion, develop, smooth_edges, supersampling
 from sailenv_ros.render.bands import Bands
 from sailenv_ros.render.bloom import bloomed
 from sailenv_ros.render.sensor_noise import noisy
@@ -25,6 +25,7 @@ def warm_up() -> None:
     ambient_occlusion.warm_up()
     develop.warm_up()
     smooth_edges.warm_up()
+    supersampling.warm_up()
 
 
 class PostPass:
@@ -46,17 +47,20 @@ class PostPass:
         snapshot: WorldSnapshot,
         camera: Camera,
         still: NDArray[np.bool_],
+        samples: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
         """Give a picture whose edges are as they are.
 
         Parameters
         ----------
         radiance : (H, W, 4) float16
-            See `develop.develop`.
+            See `develop.develop`; of a camera with supersampling, of its samples.
         surface : (H, W, 2) float32
             Depth [m] and instance id; not written to.
         still : (N,) bool
             Which instances have baked light where they are.
+        samples : float32 array or None
+            Like `surface`, of the samples; needed where there are any and occlusion is on.
 
         Returns
         -------
@@ -76,10 +80,16 @@ class PostPass:
                 baked=baked,
                 bands=self._bands,
             )
-            if settings.bloom > 0.0 or settings.full_well > 0.0:
-                # Light is spread and counted as it arrives at the sensor.
-                radiance = develop.shaded(radiance, *shade, surface)
-                shade = None
+        if settings.supersampling > 1:
+            times = settings.supersampling
+            radiance = supersampling.mean_radiance(
+                radiance, times, shade, samples, bands=self._bands
+            )
+            shade = None
+        if shade is not None and (settings.bloom > 0.0 or settings.full_well > 0.0):
+            # Light is spread and counted as it arrives at the sensor.
+            radiance = develop.shaded(radiance, *shade, surface)
+            shade = None
         if settings.bloom > 0.0:
             radiance = bloomed(radiance, settings.bloom)
         if settings.full_well > 0.0:
@@ -88,6 +98,6 @@ class PostPass:
 
     def finished(self, picture: NDArray[np.uint8], camera: Camera) -> NDArray[np.uint8]:
         """Give the (H, W, 3) uint8 picture, its edges smoothed if they are to be; fresh."""
-        if camera.picture.smooth_edges:
+        if camera.picture.smooth_edges and camera.picture.supersampling == 1:
             return smooth_edges.smooth_edges(picture)
         return np.ascontiguousarray(picture[..., :3])

@@ -21,6 +21,7 @@ __all__ = [
     "ReflectionMap",
     "cube_cameras",
     "flattened",
+    "light_from_around",
     "octahedral_directions",
     "prefilter",
 ]
@@ -32,6 +33,8 @@ ROUGHNESSES = (0.0, 0.15, 0.3, 0.45, 0.6)
 """Of the layers; what is rougher mirrors the light around it, which the light map knows better."""
 
 SAMPLES = 96
+
+LUMA = np.array([0.299, 0.587, 0.114])
 
 UNIT = 6
 
@@ -129,6 +132,26 @@ def prefilter(radiance: NDArray[np.float32]) -> NDArray[np.float16]:
     return layers
 
 
+def light_from_around(radiance: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give the light that arrives on surfaces amidst a map of all directions.
+
+    Parameters
+    ----------
+    radiance : (N, N, 3) float64
+
+    Returns
+    -------
+    light : (4,) float64
+        c0, cx, cy, cz: irradiance / pi on a surface of normal n is about c0 + c · n; its luma.
+    """
+    directions = octahedral_directions(len(radiance)).astype(np.float64)
+    # A texel's solid angle shrinks with the cube of its distance from the octahedron's middle.
+    share = np.abs(directions).sum(axis=-1) ** 3
+    weighted = radiance @ LUMA * share / share.sum()
+    along = np.einsum("vu,vux->x", weighted, directions)
+    return np.array([weighted.sum(), *(2.0 * along)])
+
+
 class ReflectionMap:
     """The texture, in one context; black until `write`."""
 
@@ -138,6 +161,7 @@ class ReflectionMap:
         self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         self._texture.repeat_x = self._texture.repeat_y = self._texture.repeat_z = False
         self._box = np.zeros((3, 3))
+        self._light = np.zeros(4)
 
     def write(
         self, layers: NDArray[np.float16], position_m: NDArray[np.float64], box: NDArray[np.float64]
@@ -153,6 +177,7 @@ class ReflectionMap:
         """
         self._texture.write(np.ascontiguousarray(layers))
         self._box = np.stack([position_m, *box])
+        self._light = light_from_around(layers[0, 1:-1, 1:-1, :3].astype(np.float64))
 
     def bind(self, program: moderngl.Program) -> None:
         """Make it readable for a program."""
@@ -162,6 +187,7 @@ class ReflectionMap:
             ("reflection_from", "room_low", "room_high"), self._box, strict=True
         ):
             set_uniform(program, name, tuple(value))
+        set_uniform(program, "room_light", tuple(self._light))
         scale = EDGE / (EDGE + 2)
         last = len(ROUGHNESSES) - 1
         set_uniform(program, "reflection_texel", (scale, last / ROUGHNESSES[-1], last + 1.0))

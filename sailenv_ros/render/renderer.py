@@ -27,7 +27,7 @@ from sailenv_ros.render.bands import beside
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
-from sailenv_ros.render.geometry_pass import GeometryPass
+from sailenv_ros.render.geometry_pass import GeometryPass, Targets
 from sailenv_ros.render.glass_pass import GlassPass
 from sailenv_ros.render.lighting_pass import Illumination, LightingPass
 from sailenv_ros.render.materials import MaterialBuffers
@@ -113,7 +113,9 @@ class Renderer:
         annotate = partial(ground_truth.annotate, surface, snapshot, previous, camera, wanted)
         if "rgb" in wanted:
             still = self._draws_of(snapshot).at_baked_pose(snapshot)
-            arrays["rgb"] = self._post.developed(arrays["rgb"], surface, snapshot, camera, still)
+            arrays["rgb"] = self._post.developed(
+                arrays["rgb"], surface, snapshot, camera, still, arrays.pop("samples", None)
+            )
             timings["develop"] = time.perf_counter() - began
             began = time.perf_counter()
             # Both walks leave Python's lock alone: the labels are made beside the picture.
@@ -181,39 +183,57 @@ class Renderer:
                 snapshot, draws, self._geometry, partial(self._radiance, snapshot)
             )
             mark("shadow")
-        intrinsics = camera.intrinsics
-        clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
+        # With supersampling the picture has a walk of its own: ground truth is of pixel centres.
+        sampled = shaded and camera.picture.supersampling > 1
+        clip_from_optical = _UPSIDE_DOWN @ camera.intrinsics.clip_from_optical()
         draws.place(snapshot, clip_from_optical, camera.camera_from_world)
-        targets = self._pictures.targets(
-            intrinsics,
-            shaded=shaded,
-            normals="normals" in wanted,
-            baked=snapshot.contents.baked is not None,
-        )
-        self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
+        normals = "normals" in wanted
+        targets = self._surfaces(snapshot, camera, shaded=shaded and not sampled, normals=normals)
         mark("geometry")
         arrays: dict[str, NDArray[Any]] = {}
         if illumination is not None:
-            self._lighting_pass.draw(targets, camera, illumination)
+            seen, lit = camera, targets
+            if sampled:
+                seen = camera.of_samples()
+                lit = self._surfaces(snapshot, seen, shaded=True, normals=False)
+                mark("geometry")
+            self._lighting_pass.draw(lit, seen, illumination)
             self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
             self._glass_pass.draw(
-                targets,
+                lit,
                 snapshot,
-                camera,
+                seen,
                 clip_from_optical,
                 illumination,
                 self._geometry,
                 self._materials,
             )
             mark("lighting")
-            arrays["rgb"] = self._pictures.read_picture(targets)
+            arrays["rgb"] = self._pictures.read_picture(lit)
+            if sampled and camera.picture.occlusion_strength > 0.0:
+                arrays["samples"] = self._pictures.read_surface(lit)
         arrays["surface"] = self._pictures.read_surface(targets)
         if targets.normals is not None:
             arrays["normals"] = self._pictures.read_normals(targets)
         mark("readback")
         for (_, start), (stage, end) in itertools.pairwise(marks):
-            timings[stage] = end - start
+            timings[stage] = timings.get(stage, 0.0) + end - start
         return arrays
+
+    def _surfaces(
+        self, snapshot: WorldSnapshot, camera: Camera, *, shaded: bool, normals: bool
+    ) -> Targets:
+        """Draw the surfaces of what has been placed for a camera."""
+        intrinsics = camera.intrinsics
+        targets = self._pictures.targets(
+            intrinsics,
+            shaded=shaded,
+            normals=normals,
+            baked=snapshot.contents.baked is not None,
+        )
+        draws = self._draws_of(snapshot)
+        self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
+        return targets
 
     def _radiance(
         self,

@@ -118,6 +118,7 @@ class SceneLight:
             static_shadow=static_shadow,
             baked=self._baked,
             main_baked=mixed.main_baked,
+            main_clear=mixed.main_clear,
             reflections=reflections,
         )
 

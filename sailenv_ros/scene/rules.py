@@ -11,6 +11,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
+from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.fields import Rule
 from sailenv_ros.scene.wording import shown, shown_number, suggestion
 
@@ -21,6 +22,7 @@ __all__ = [
     "carriers_exist",
     "distinct",
     "distinct_values",
+    "few_samples",
     "is_number",
     "movers_exist",
     "only_beside",
@@ -63,6 +65,27 @@ def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool 
                 f"is refused: {lower} must be {accepted} {upper}, "
                 f"got {shown_number(low)} and {shown_number(high)}",
             )
+
+    return rule
+
+
+def few_samples(most: int, defaults: Mapping[str, int]) -> Rule:
+    """Make the rule that no side of a picture has more samples than this."""
+
+    def rule(entry: Entry) -> Faults:
+        picture = entry.get("picture")
+        times = picture.get("supersampling", 1) if isinstance(picture, Mapping) else 1
+        if not is_number(times) or times > LIMITS["supersampling"][1]:
+            return
+        for key in ("width", "height"):
+            size = entry.get(key, defaults[key])
+            if is_number(size) and size <= most < times * size:
+                yield (
+                    ("picture", "supersampling"),
+                    f"is refused: it must be at most {most // int(size)} with a {key} of "
+                    f"{shown_number(size)} px, got {shown_number(times)}",
+                )
+                return
 
     return rule
 

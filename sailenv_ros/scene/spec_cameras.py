@@ -13,7 +13,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.kinds import Choice, Number, Switch, Text
 from sailenv_ros.scene.placing import Aimed, Turned
-from sailenv_ros.scene.rules import below, distinct_values, turned_where_placed
+from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_where_placed
 from sailenv_ros.scene.spec_picture import PictureSpec
 
 __all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
@@ -84,6 +84,7 @@ class AgentSpecModel(Turned):
         below("near", "far", {"near": _DEFAULTS.near_m, "far": _DEFAULTS.far_m}),
         below("near", "depth_range", {"near": _DEFAULTS.near_m, "depth_range": 10.0}),
         distinct_values("views"),
+        few_samples(MAX_SIZE_PX, {"width": _DEFAULTS.width, "height": _DEFAULTS.height}),
     )
 
     name: Annotated[

@@ -15,9 +15,9 @@ __all__ = ["PictureSpec"]
 _STANDARD = PictureSettings()
 
 
-def _number(name: str) -> Number:
+def _number(name: str, *, whole: bool = False) -> Number:
     low, high, unit = LIMITS[name]
-    return Number(least=low, most=high, unit=unit)
+    return Number(least=low, most=high, unit=unit, whole=whole)
 
 
 class PictureSpec(SceneModel):
@@ -41,6 +41,10 @@ class PictureSpec(SceneModel):
     )
     smooth_edges: Annotated[bool, Switch()] = Field(
         default=_STANDARD.smooth_edges, description="true if stair-steps are smoothed"
+    )
+    supersampling: Annotated[int, _number("supersampling", whole=True)] = Field(
+        default=_STANDARD.supersampling,
+        description="samples on a side of a pixel, whose light is averaged; 1: its centre alone",
     )
     bloom: Fraction = Field(
         default=_STANDARD.bloom, description="share of the light that is spread around; 0: off"

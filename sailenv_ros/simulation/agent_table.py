@@ -202,7 +202,8 @@ class AgentTable:
         Raises
         ------
         InvalidRequest
-            If its depth picture would then end before the near plane.
+            If its depth picture would then end before the near plane, or its picture be too large
+            for its supersampling.
         """
         record = self[name]
         if intrinsics == record.spec.intrinsics:
@@ -213,7 +214,13 @@ class AgentTable:
         record.forget()
 
     def set_picture(self, name: str, settings: PictureSettings) -> None:
-        """Change what is done to an agent's pictures."""
+        """Change what is done to an agent's pictures.
+
+        Raises
+        ------
+        InvalidRequest
+            If pictures of its size would be too large for that supersampling.
+        """
         record = self[name]
         record.spec = replace(record.spec, picture=settings)
         record.registered = replace(record.registered, picture=settings)

@@ -110,6 +110,43 @@ def test_a_mirror_shows_the_room(render: Render) -> None:
     np.testing.assert_allclose(middle, 0.8 * ALBEDO, rtol=0.1)
 
 
+def test_where_less_light_arrives_less_of_the_room_is_mirrored(render: Render) -> None:
+    """In proportion to the light of the room's middle; where more arrives, the room as it is."""
+    mirror = model_of(wall_mesh(8.0, 8.0), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0)
+    back = Pose.from_rpy_deg((-4.0, 0.0, 0.0), (0.0, 0.0, 180.0))
+    glowing = model_of(wall_mesh(40.0, 40.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
+    things = [Thing(mirror, AHEAD), Thing(glowing, back)]
+
+    def seen(around: float) -> np.ndarray:
+        # The mirror has no chart: it is lit from the probes.
+        mean = np.zeros((4, 3))
+        mean[0] = around
+        room = layer(None, bounced=0.8, probe_bounced=mean)
+        light = baked({2: chart(glowing, back)}, [], room)
+        scene = snapshot_of(things, lights=(), environment=DARK, baked=light)
+        got = linear(render(scene, camera_at(), "rgb")["rgb"])
+        return got[got.shape[0] // 2, got.shape[1] // 2]
+
+    np.testing.assert_allclose(seen(0.5), 0.8 * ALBEDO, rtol=0.1)
+    np.testing.assert_allclose(seen(0.4), seen(0.5), rtol=0.03)
+    # The wall fills the half space before the mirror, and a part of what is amidst the probes sees.
+    dim, dimmer = seen(0.08), seen(0.04)
+    assert (dim < 0.8 * seen(0.5)).all()
+    np.testing.assert_allclose(dimmer, 0.5 * dim, rtol=0.1)
+
+
+def test_behind_glass_what_moves_gets_less_of_the_main_light(render: Render) -> None:
+    """The share that the bake found, as what stands still has it in its map."""
+
+    def seen(clear: float) -> np.ndarray:
+        light = baked({}, [replace(layer(SUN, visible=1.0), clear=clear)])
+        scene = snapshot_of([Thing(WALL, AHEAD)], lights=(SUN,), environment=DARK, baked=light)
+        return linear(render(scene, camera_at(), "rgb")["rgb"])[36, 48]
+
+    assert seen(1.0).min() > 0.05
+    np.testing.assert_allclose(seen(0.5), 0.5 * seen(1.0), rtol=0.03)
+
+
 def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:
     """Every other view is the same, to the byte, with and without it."""
     views = [view for view in VIEWS if view != "rgb"]

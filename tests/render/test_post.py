@@ -39,6 +39,7 @@ ALL = PictureSettings(
     occlusion_strength=1.0,
     occlusion_radius_m=0.5,
     smooth_edges=True,
+    supersampling=3,
     bloom=0.3,
     full_well=500.0,
     read_noise=4.0,
@@ -270,6 +271,14 @@ def test_numbers_out_of_range_are_refused(name: str) -> None:
     for refused in (low - 0.1, high * 1.1, float("nan"), "1", True):
         with pytest.raises(InvalidRequest, match=name):
             PictureSettings(**{name: refused})
+
+
+@pytest.mark.parametrize("refused", [0, 5, 2.0, True, "2", float("nan")])
+def test_supersampling_is_a_small_whole_number(refused: object) -> None:
+    for accepted in (1, 4, np.int64(2)):
+        assert PictureSettings(supersampling=accepted).supersampling == accepted  # type: ignore[arg-type]
+    with pytest.raises(InvalidRequest, match="supersampling must be an integer from 1 to 4"):
+        PictureSettings(supersampling=refused)  # type: ignore[arg-type]
 
 
 def test_unknown_words_are_refused() -> None:

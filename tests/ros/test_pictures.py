@@ -35,6 +35,7 @@ OTHERS: dict[str, Any] = {
     "occlusion_strength": 0.0,
     "occlusion_radius_m": 2.0,
     "smooth_edges": False,
+    "supersampling": 2,
     "bloom": 0.5,
     "full_well": 300.0,
     "read_noise": 40.0,

@@ -29,6 +29,7 @@ uniform sampler2D light_at;        // place in the light map, 0 where there is n
 uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
 uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
+uniform float main_clear;          // share that glass lets through to what is not in the light map
 uniform float main_baked;          // 1 if the light map knows the main light's shadows
 #endif
 #include "reflections.glsl"
@@ -146,7 +147,8 @@ void main() {
                        dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to));
     float charted = place.x > 0.0 ? 1.0 : 0.0;
     vec3 around = mix(max(probed, vec3(0.0)), mapped.rgb, charted);
-    main_arrives *= mix(texture(static_shadow_map, in_shadow), mapped.a, charted * main_baked);
+    float past_what_stands = main_clear * texture(static_shadow_map, in_shadow);
+    main_arrives *= mix(past_what_stands, mapped.a, charted * main_baked);
     vec3 reflected = around;
 #else
     float main_arrives = four_taps(shadow_map, in_shadow);
@@ -157,6 +159,9 @@ void main() {
 #endif
 #ifdef REFLECTIONS
     vec3 room = mirrored_room(world_from_optical * point + eye, mirrored, roughness);
+    // Where less light arrives than in the middle of the room, less of the room is seen as well.
+    float in_the_open = dot(room_light, vec4(1.0, world_normal));
+    room *= clamp(dot(around, LUMA) / max(in_the_open, 1e-4), 0.0, 1.0);
     // The rougher, the more of the half space it mirrors: that is the light around the point.
     reflected = mix(room, around, smoothstep(0.25, 0.7, roughness));
 #elif !defined(BAKED)

@@ -2,6 +2,7 @@
 #ifdef REFLECTIONS
 uniform sampler3D reflections;     // octahedral, world frame; roughness along z
 uniform vec3 reflection_from, room_low, room_high, eye;
+uniform vec4 room_light;           // irradiance / pi where it was seen from: c0, cx, cy, cz; luma
 uniform vec3 reflection_texel;     // share of the square without its border, layers per roughness, layers
 
 // What lies in a direction, looked for on the walls of a box around the room (box projection).

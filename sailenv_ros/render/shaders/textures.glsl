@@ -2,6 +2,8 @@
 // there are is known when the program is made: a software rasteriser runs all sides of a branch.
 #ifdef COLOUR_MAP
 uniform sampler2DArray colour_maps;
+// Mip-maps blur along a slanted surface as far as across it: half a level is given back.
+const float FINER = -0.5;
 #endif
 #if defined(FINISH_MAP) || defined(NORMAL_MAP)
 uniform sampler2DArray fine_maps;
@@ -10,7 +12,7 @@ uniform sampler2DArray fine_maps;
 // Square root of linear colour, and alpha: the roots of factor and texel multiply as these do.
 vec4 base_colour(vec2 uv) {
 #ifdef COLOUR_MAP
-    return MATERIAL_COLOUR * texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x));
+    return MATERIAL_COLOUR * texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x), FINER);
 #else
     return MATERIAL_COLOUR;
 #endif
@@ -20,7 +22,8 @@ vec4 base_colour(vec2 uv) {
 float cutoff(float nearby, vec2 uv) {
 #ifdef COLOUR_MAP
     vec2 falls = CUTOFF_BY_LEVEL;
-    return max(nearby - falls.x * textureQueryLod(colour_maps, uv).x, min(nearby, falls.y));
+    float level = max(textureQueryLod(colour_maps, uv).x + FINER, 0.0);
+    return max(nearby - falls.x * level, min(nearby, falls.y));
 #else
     return nearby;
 #endif

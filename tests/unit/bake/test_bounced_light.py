@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from sailenv_ros.bake.bake import bake
-from sailenv_ros.bake.surfaces import GLOSS
+from sailenv_ros.bake.rays import through_glass
+from sailenv_ros.bake.surfaces import BELOW, GLOSS, returned
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light, SkyMap
 from tests.support.bake_scenes import COARSE, DARK, ground, hollow, read, still
@@ -27,13 +28,49 @@ def sending(colour: tuple[float, float, float, float]) -> dict[str, Any]:
     return {"base_colour": colour, "metallic": 1.0}
 
 
-@pytest.mark.parametrize("colour", [0.0, 0.7])
-def test_gloss_sends_back_what_colour_does_not(colour: float) -> None:
+@pytest.mark.parametrize("roughness", [0.2, 0.5, 0.85, 1.0])
+def test_surfaces_give_back_what_their_lobes_do(roughness: float) -> None:
+    """The table is the integral of the lobes of lighting.frag over both hemispheres."""
+    rng = np.random.default_rng(7)
+    share, turn, other, far = rng.random((4, 400_000))
+    sine, nv = np.sqrt(share), np.sqrt(1.0 - share)
+    view = np.stack([sine, np.zeros_like(sine), nv], axis=1)
+
+    def fresnel(vh: np.ndarray) -> np.ndarray:
+        return 0.04 + 0.96 * (1.0 - np.clip(vh, 0.0, 1.0)) ** 5
+
+    def direction(cosine: np.ndarray) -> np.ndarray:
+        away = np.sqrt(1.0 - cosine**2)
+        angle = 2.0 * np.pi * turn
+        return np.stack([away * np.cos(angle), away * np.sin(angle), cosine], axis=1)
+
+    light = direction(np.sqrt(1.0 - other))
+    halfway = view + light
+    halfway /= np.linalg.norm(halfway, axis=1, keepdims=True)
+    below = np.mean(1.0 - fresnel(np.einsum("nx,nx->n", view, halfway)))
+    a2 = roughness**4
+    facet = direction(np.sqrt((1.0 - far) / (1.0 + (a2 - 1.0) * far)))
+    vh = np.einsum("nx,nx->n", view, facet)
+    nl = 2.0 * vh * facet[:, 2] - nv
+    seen = (nl > 0.0) & (vh > 0.0)
+    nl = np.where(seen, nl, 1.0)
+    smith = nl * np.sqrt(nv * nv * (1.0 - a2) + a2) + nv * np.sqrt(nl * nl * (1.0 - a2) + a2)
+    gloss = np.mean(np.where(seen, fresnel(vh) * 0.5 / smith * nl * 4.0 * vh / facet[:, 2], 0.0))
+    assert pytest.approx(below, abs=1e-3) == BELOW
+    given = returned(np.array([[0.6, 0.3, 0.0]]), np.array([[roughness]]), np.array([[0.0]]))
+    np.testing.assert_allclose(given[0], gloss + below * np.array([0.6, 0.3, 0.0]), atol=2e-3)
+    metal = returned(np.array([[0.6, 0.3, 0.0]]), np.array([[roughness]]), np.array([[1.0]]))
+    np.testing.assert_allclose(metal[0], [0.6, 0.3, 0.0])
+
+
+@pytest.mark.parametrize(("colour", "roughness"), [(0.0, 0.0), (0.7, 1.0)])
+def test_gloss_sends_back_what_colour_does_not(colour: float, roughness: float) -> None:
     """Of a furnace that is no metal a part comes back before its colour is met, the rest after."""
-    box = Thing(hollow((2.0, 3.0, 2.5), base_colour=grey(colour), emission=(1.0, 0.5, 0.0)))
+    look = {"base_colour": grey(colour), "roughness": roughness, "emission": (1.0, 0.5, 0.0)}
+    box = Thing(hollow((2.0, 3.0, 2.5), **look))
     snapshot = still([box], lights=())
     baked = bake(snapshot, settings=COARSE)
-    expected = np.array([1.0, 0.5, 0.0]) / (1.0 - (GLOSS + (1.0 - GLOSS) * colour))
+    expected = np.array([1.0, 0.5, 0.0]) / (1.0 - (GLOSS[int(10 * roughness)] + BELOW * colour))
     _, bounced = read(baked, 1, snapshot, baked.layers[0].bounced)
     np.testing.assert_allclose(bounced.mean(axis=0), expected, rtol=0.03)
 
@@ -121,18 +158,15 @@ def test_a_sky_picture_lights_from_where_it_is_bright(azimuth: float) -> None:
     assert light[2] > 0.0
 
 
-def test_a_window_gives_its_form_factor() -> None:
-    """Far from and near to a pane in a black box, the sky's share is that of the opening."""
-    size = 2.0
-    h, w = size / 2, 0.4
-    # The wall at x = h has a square hole, which glass fills.
+def with_a_window(h: float, w: float) -> list[Thing]:
+    """A black box of half size h; the wall at x = h has a hole of half size w with glass in it."""
     bars = [(-h, -h, h, -w), (-h, w, h, h), (-h, -w, -w, w), (w, -w, h, w)]
     corners = [[(h, a, b), (h, a, d), (h, c, d), (h, c, b)] for a, b, c, d in bars]
     wall = mesh_of(
         np.array(corners).reshape(-1, 3), [(-1, 0, 0)] * 16, np.zeros((16, 2)),
         [4 * k + np.array(t) for k in range(4) for t in ((0, 1, 2), (0, 2, 3))],
     )  # fmt: skip
-    box = hollow(size, **sending(grey(0.0)))
+    box = hollow(2 * h, **sending(grey(0.0)))
     mesh = box.parts[0].mesh
     open_box = mesh_of(
         mesh.positions, mesh.normals, mesh.uvs,
@@ -140,24 +174,42 @@ def test_a_window_gives_its_form_factor() -> None:
     )  # fmt: skip
     black = sending(grey(0.0))
     glass = {"alpha": "blend", "double_sided": True, "base_colour": (1.0, 1.0, 1.0, 0.1)}
-    pane = model_of(box_mesh((0.01, 2 * w, 2 * w)), **glass)
-    things = [
+    pane = model_of(box_mesh((2e-4, 2 * w, 2 * w)), **glass)
+    return [
         Thing(model_of(open_box, **black)),
         Thing(model_of(wall, **black)),
         Thing(pane, Pose((h, 0.0, 0.0))),
     ]
+
+
+def test_a_window_gives_its_form_factor() -> None:
+    """Far from and near to a pane in a black box, the sky's share is that of the opening."""
+    h, w = 1.0, 0.4
     sky = Environment(background="colour", background_colour=(1.0, 1.0, 1.0))
-    snapshot = still(things, lights=(), environment=sky)
+    snapshot = still(with_a_window(h, w), lights=(), environment=sky)
     baked = bake(snapshot, settings=replace(COARSE, texel_m=0.04))
     points, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=5)
-    floor = points[:, 2] < -h + 1e-6
+    # Beside the window's wall all rays graze the glass: light changes within a texel.
+    floor = (points[:, 2] < -h + 1e-6) & (points[:, 0] < h - 0.2)
+    assert floor.sum() > 10
     grid = (np.arange(60) + 0.5) / 60 * 2 * w - w
     spots = np.stack(np.meshgrid([h], grid, grid), axis=-1).reshape(-1, 3)
     offset = spots[None] - points[floor][:, None]
     d2 = (offset**2).sum(axis=2)
-    factors = (offset[..., 2] * offset[..., 0] / d2**2).mean(axis=1) * (2 * w) ** 2 / math.pi
-    expected = 0.9 * factors
+    clear = through_glass(offset[..., 0] / np.sqrt(d2))
+    factors = (clear * offset[..., 2] * offset[..., 0] / d2**2).mean(axis=1)
+    expected = 0.9 * factors * (2 * w) ** 2 / math.pi
     np.testing.assert_allclose(bounced[floor][:, 0], expected, rtol=0.06, atol=1e-3)
+
+
+def test_what_moves_is_told_how_much_glass_lets_through() -> None:
+    """Of the sun that comes in through a window as much as of its rays; of one that does not, 1."""
+    suns = [
+        Light(name=f"sun {x}", type="directional", direction=(x, 0.0, -0.2)) for x in (-1.0, 1.0)
+    ]
+    baked = bake(still(with_a_window(1.0, 0.4), lights=suns), settings=COARSE)
+    passes = 0.9 * float(through_glass(np.float32([1.0 / math.hypot(1.0, 0.2)]))[0])
+    assert [layer.clear for layer in baked.layers] == pytest.approx([1.0, passes, 1.0], abs=1e-4)
 
 
 def test_the_backs_of_walls_are_black() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.bake.bake import bake
+from sailenv_ros.bake.rays import through_glass
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light
 from tests.support.bake_scenes import COARSE, ground, read, still
@@ -108,15 +109,27 @@ def test_what_stands_in_the_way_casts_a_shadow() -> None:
     assert (seen[far > 0.65] == 255).all()
 
 
+def test_double_glazing_mirrors_what_the_equations_say() -> None:
+    """Four faces of 4 % head-on, with what goes to and fro; nothing passes along the pane."""
+    sheet = (1.0 - 0.04) / (1.0 + 0.04)
+    assert through_glass(np.float32([1.0, 0.0])) == pytest.approx([sheet**2, 0.0], abs=1e-6)
+    # At Brewster's angle one polarisation is not mirrored at all, the other by cos²(2 angle).
+    brewster = math.atan(1.5)
+    mirrored = 0.5 * math.cos(2 * brewster) ** 2
+    sheet = (1.0 - mirrored) / (1.0 + mirrored)
+    assert through_glass(np.float32([math.cos(brewster)])) == pytest.approx([sheet**2], abs=1e-5)
+
+
 @pytest.mark.parametrize(("alpha", "share"), [("blend", 0.75), ("opaque", 0.0)])
 def test_glass_lets_light_pass(alpha: str, share: float) -> None:
-    """The sun shines through a pane, less its alpha; not through a board of the same shape."""
+    """The sun shines through a pane, less its alpha and what it mirrors; not through a board."""
     clear = {"alpha": alpha, "double_sided": True, "base_colour": (1.0, 1.0, 1.0, 0.25)}
     pane = Thing(model_of(box_mesh((0.01, 9.0, 9.0)), **clear), Pose((2.5, 0.0, 0.0)))
     sun = Light(name="sun", type="directional", direction=(-1.0, 0.0, -1.0))
     points, direct = direct_on_floor(sun, things=(pane,))
     behind = points[:, 0] < 1.9
     cosine = math.sqrt(0.5)
+    share *= float(through_glass(np.float32([cosine]))[0])
     np.testing.assert_allclose(direct[behind], share * cosine / math.pi, atol=2e-3)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +35,8 @@ def baked() -> BakedLight:
 
 def test_what_is_stored_comes_back(baked: BakedLight) -> None:
     """Every number, read-only, and one unwrapping for all instances of a model."""
+    dimmed = [replace(layer, clear=1.0 - place / 7.0) for place, layer in enumerate(baked.layers)]
+    baked = replace(baked, layers=tuple(dimmed))
     files.store_baked(baked)
     loaded = files.load_baked(baked.fingerprint)
     assert loaded is not None
@@ -52,7 +54,7 @@ def test_what_is_stored_comes_back(baked: BakedLight) -> None:
             ):
                 np.testing.assert_array_equal(one, other)
     for layer, same_layer in zip(baked.layers, loaded.layers, strict=True):
-        assert same_layer.light == layer.light
+        assert (same_layer.light, same_layer.clear) == (layer.light, layer.clear)
         for name in ("direct", "bounced", "probe_direct", "probe_bounced", "visibility"):
             np.testing.assert_array_equal(getattr(same_layer, name), getattr(layer, name))
         assert not same_layer.bounced.flags.writeable

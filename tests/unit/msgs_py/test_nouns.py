@@ -64,6 +64,7 @@ PICTURES = st.builds(
     occlusion_strength=st.floats(0.0, 1.0),
     occlusion_radius_m=st.floats(0.01, 5.0),
     smooth_edges=st.booleans(),
+    supersampling=st.integers(1, 4),
     bloom=st.floats(0.0, 1.0),
     full_well=st.floats(0.0, 1e7),
     read_noise=st.floats(0.0, 1e4),

@@ -8,6 +8,7 @@ from sailenv_ros.render.reflection_map import (
     ROUGHNESSES,
     cube_cameras,
     flattened,
+    light_from_around,
     octahedral_directions,
     prefilter,
 )
@@ -53,3 +54,14 @@ def test_the_border_goes_on_across_the_edges() -> None:
     inside = np.abs(np.diff(layer[1:-1, 1:-1], axis=0)).max()
     assert np.abs(layer[0, 1:-1] - layer[1, 1:-1]).max() < 1.5 * inside
     assert np.abs(layer[1:-1, -1] - layer[1:-1, -2]).max() < 1.5 * inside
+
+
+def test_light_from_around_is_that_of_the_half_space() -> None:
+    """Even light gives itself to every surface; a lit upper half half of it to walls."""
+    directions = octahedral_directions(64)
+    even = np.full((64, 64, 3), 0.5)
+    np.testing.assert_allclose(light_from_around(even), [0.5, 0.0, 0.0, 0.0], atol=1e-6)
+    above = np.where(directions[..., 2:] > 0.0, 2.0, 0.0) * np.ones(3)
+    np.testing.assert_allclose(light_from_around(above), [1.0, 0.0, 0.0, 1.0], atol=2e-2)
+    red = above * np.array([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(light_from_around(red), 0.299 * light_from_around(above), atol=1e-9)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
 from sailenv_ros.agents import AgentSpec
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.scene import SceneSpec
 from sailenv_ros.scene.describing import agent_entry
@@ -33,6 +34,7 @@ def test_every_setting_can_be_written() -> None:
         occlusion_strength=0.2,
         occlusion_radius_m=0.7,
         smooth_edges=False,
+        supersampling=3,
         bloom=0.1,
         full_well=9000.0,
         read_noise=2.5,
@@ -55,3 +57,29 @@ def test_limits_are_those_of_the_settings(name: str) -> None:
     for refused in (low - 0.01, high * 1.01):
         with pytest.raises(ValidationError, match=key):
             settings_of(**{key: refused})
+
+
+@pytest.mark.parametrize("refused", [0, 5, 1.5, True])
+def test_supersampling_is_a_small_whole_number(refused: object) -> None:
+    assert settings_of(supersampling=4).supersampling == 4
+    with pytest.raises(ValidationError, match=r"supersampling[\s\S]*an integer from 1 to 4"):
+        settings_of(supersampling=refused)
+
+
+@pytest.mark.parametrize(("size", "times"), [((1366, 100), 3), ((100, 4096), 2)])
+def test_a_picture_of_too_many_samples_is_refused_in_the_file(
+    size: tuple[int, int], times: int
+) -> None:
+    """With its place, where the noun would refuse it as well; one less is accepted."""
+
+    def agent(number: int) -> AgentSpec:
+        entry = {"name": "eye", "width": size[0], "height": size[1]}
+        entry["picture"] = {"supersampling": number}
+        scene = SceneSpec.model_validate({"version": 1, "agents": [entry]})
+        return scene.agents[0].to_agent_spec()
+
+    assert agent(times - 1).picture.supersampling == times - 1
+    with pytest.raises(ValidationError, match=f"at most {times - 1} with a"):
+        agent(times)
+    with pytest.raises(InvalidRequest, match=f"supersampling must be at most {times - 1} for"):
+        replace(agent(times - 1), picture=PictureSettings(supersampling=times))

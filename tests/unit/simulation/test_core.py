@@ -334,6 +334,21 @@ def test_an_agent_s_picture_is_an_object_of_settings() -> None:
         AgentSpec(name="eye", picture={"exposure": 1.0})  # type: ignore[arg-type]  # on purpose
 
 
+def test_a_picture_of_too_many_samples_changes_nothing(core: SimulationCore) -> None:
+    """Neither by its settings nor by its size, whichever comes second."""
+    wide = CameraIntrinsics(width=2048, height=16)
+    core.register_agent(spec(rate_hz=0.0))
+    core.set_intrinsics("eye", wide)
+    twice = PictureSettings(supersampling=2)
+    core.set_picture("eye", twice)
+    before = core.info.agents
+    with pytest.raises(InvalidRequest, match="supersampling must be at most 2 for 2048 x 16 px"):
+        core.set_picture("eye", PictureSettings(supersampling=3))
+    with pytest.raises(InvalidRequest, match="supersampling must be at most 1 for 4096 x 16 px"):
+        core.set_intrinsics("eye", CameraIntrinsics(width=4096, height=16))
+    assert core.info.agents == before
+
+
 def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
     """Frames fall on multiples of the new interval, from the next on; a reset keeps the rate."""
     core.register_agent(spec(rate_hz=30.0))
