@@ -1,8 +1,10 @@
 """Time what the renderer does: each pass, readback, annotations, at the paper's picture sizes.
 
-    python benchmarks/render_passes.py [--frames N] [--scene NAME] [--device N] [--json FILE]
+    python benchmarks/render_passes.py [--frames N] [--scene NAME] [--skip-steps N] [--device N]
+                                       [--json FILE]
 
-One simulated world moves on; at each of its instants every set of views is rendered by OpenGL, and
+One simulated world moves on, from when its things have come to rest and in its baked light where
+that is in the cache; at each of its instants every set of views is rendered by OpenGL, and
 PyBullet's own `getCameraImage` draws the same bodies from the same camera at the same size (colour,
 depth and segmentation, without shadows; no flow, which it does not know). They take turns in one
 run, so that what disturbs the machine disturbs all alike, and the ratio of medians is robust. Each
@@ -14,6 +16,7 @@ set has a renderer of its own: none finds the shadow map that another has just d
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import logging
 import os
@@ -88,13 +91,12 @@ class PlainBullet:
 def measure(
     size: tuple[int, int],
     frames: int,
-    scene: str,
+    make_world: Callable[[], World],
     renderers: Mapping[str, Renderer],
     bullet: PlainBullet,
 ) -> dict[str, dict[str, dict[str, float]]]:
     """Time every set of views at one size: stage by stage, median and 90th percentile [ms]."""
-    counter = iter(range(1, 1 << 30))
-    world = SceneLibrary().build(scene, 0, 1, lambda: next(counter))
+    world = make_world()
     camera_of = _camera_of(world, CameraIntrinsics(width=size[0], height=size[1]))
     times: dict[str, Times] = defaultdict(lambda: defaultdict(list))
     past: dict[str, Observation | None] = dict.fromkeys(SETS)
@@ -122,6 +124,26 @@ def measure(
         name: {stage: _summary(seconds) for stage, seconds in stages.items()}
         for name, stages in times.items()
     }
+
+
+def world_maker(scene: str, skip_steps: int) -> Callable[[], World]:
+    """Give what builds a scene's world, as a simulator does, and lets it run for so many steps."""
+    library, next_revision = SceneLibrary(), itertools.count(1).__next__
+
+    def make() -> World:
+        world = library.build(scene, seed=0, epoch=1, next_revision=next_revision)
+        world.step(skip_steps)
+        return world
+
+    return make
+
+
+def _is_baked(make_world: Callable[[], World]) -> bool:
+    world = make_world()
+    try:
+        return world.contents.baked is not None
+    finally:
+        world.close()
 
 
 def _camera_of(world: World, intrinsics: CameraIntrinsics) -> Callable[[int], Camera]:
@@ -159,18 +181,30 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--frames", type=int, default=40)
     parser.add_argument("--scene", default="optical")
+    parser.add_argument(
+        "--skip-steps",
+        type=int,
+        default=400,
+        metavar="N",
+        help="physics steps before the first frame (default: %(default)s, things are at rest)",
+    )
     parser.add_argument("--device", type=int, default=None, help="EGL's number of the device")
     parser.add_argument("--json", type=Path, default=None, help="write the figures here too")
     arguments = parser.parse_args()
-    logging.basicConfig(level=logging.WARNING)
+    # Says how to have the light baked where it is not.
+    logging.basicConfig(level=logging.INFO, format="%(message)s")
+    make_world = world_maker(arguments.scene, arguments.skip_steps)
+    is_baked = _is_baked(make_world)
     renderers = {name: Renderer(device=arguments.device) for name in SETS}
     description = renderers["rgb"].description
     bullet = PlainBullet()
+    light = "baked light" if is_baked else "no baked light"
+    print(f"{arguments.scene} with {light}, from step {arguments.skip_steps} on")
     print(f"{description}; {os.cpu_count()} CPUs, {platform.platform()}")
     results = {}
     try:
         for size in SIZES:
-            result = measure(size, arguments.frames, arguments.scene, renderers, bullet)
+            result = measure(size, arguments.frames, make_world, renderers, bullet)
             show(size, result)
             results[f"{size[0]}x{size[1]}"] = result
     finally:
@@ -178,7 +212,13 @@ def main() -> None:
         for renderer in renderers.values():
             renderer.close()
     if arguments.json is not None:
-        report = {"renderer": description, "scene": arguments.scene, "sizes": results}
+        report = {
+            "renderer": description,
+            "scene": arguments.scene,
+            "baked": is_baked,
+            "skip_steps": arguments.skip_steps,
+            "sizes": results,
+        }
         arguments.json.write_text(json.dumps(report, indent=1), encoding="utf-8")
 
 

@@ -15,7 +15,7 @@ from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.pictures.contact_sheet import save_contact_sheet, save_picture
 from sailenv_ros.scene.catalogue import SUFFIXES
 from sailenv_ros.simulation.simulation import Simulation
 
@@ -44,6 +44,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--height", type=int, default=480, metavar="PX")
     parser.add_argument("--fov", type=float, default=60.0, metavar="DEG", help="vertical")
     parser.add_argument("--columns", type=int, default=3, metavar="N")
+    parser.add_argument(
+        "--plain", action="store_true", help="a single view's pixels alone, no label and no border"
+    )
 
 
 def render_scene(args: argparse.Namespace) -> int:
@@ -53,6 +56,9 @@ def render_scene(args: argparse.Namespace) -> int:
     """
     if min(args.time) < 0.0:
         raise InvalidRequest("time", min(args.time), "0 s or later")
+    count = len(args.time) * len(set(args.views))
+    if args.plain and count != 1:
+        raise InvalidRequest("number of pictures", count, "one view of one time with --plain")
     scene = Path(args.scene) if Path(args.scene).suffix in SUFFIXES else args.scene
     pictures: dict[str, Any] = {}
     with Simulation(scene=scene, mode="lockstep") as simulation:
@@ -62,6 +68,10 @@ def render_scene(args: argparse.Namespace) -> int:
             frame = _frame_at(simulation, time_s, args.views)
             label = f"{time_s:g} s " if len(args.time) > 1 else ""
             pictures.update({label + name: p for name, p in _pictures(frame, table).items()})
+    if args.plain:
+        (picture,) = pictures.values()
+        print(save_picture(args.output, picture))
+        return 0
     columns = min(args.columns, len(pictures))
     print(save_contact_sheet(args.output, pictures, columns=columns))
     return 0

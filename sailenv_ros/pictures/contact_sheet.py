@@ -1,4 +1,4 @@
-"""Several pictures on one sheet, each with its label, as an array or a picture file."""
+"""Pictures as files: one alone, or several on one sheet, each with its label."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from sailenv_ros.errors import InvalidRequest
 
-__all__ = ["contact_sheet", "save_contact_sheet"]
+__all__ = ["contact_sheet", "save_contact_sheet", "save_picture"]
 
 GAP_PX = 6
 PAPER = (24, 24, 28)
@@ -78,12 +78,27 @@ def save_contact_sheet(
     InvalidRequest
         If a picture is none, or the file's name ends in neither ``.png`` nor ``.jpg``.
     """
+    file = _picture_file(path, "path of the contact sheet")
+    return save_picture(file, contact_sheet(pictures, columns=columns, tile_width=tile_width))
+
+
+def save_picture(path: str | Path, picture: NDArray[np.uint8]) -> Path:
+    """Write (H, W, 3) RGB pixels as they are, as a PNG or JPEG file; give its path.
+
+    Raises
+    ------
+    InvalidRequest
+        If the file's name ends in neither ``.png`` nor ``.jpg``.
+    """
+    file = _picture_file(path, "path of the picture")
+    Image.fromarray(picture).save(file, optimize=True, quality=88)
+    return file
+
+
+def _picture_file(path: str | Path, what: str) -> Path:
     file = Path(path)
     if file.suffix.lower() not in (".png", ".jpg"):
-        accepted = "a name that ends in .png or .jpg"
-        raise InvalidRequest("path of the contact sheet", str(path), accepted)
-    sheet = contact_sheet(pictures, columns=columns, tile_width=tile_width)
-    Image.fromarray(sheet).save(file, optimize=True, quality=88)
+        raise InvalidRequest(what, str(path), "a name that ends in .png or .jpg")
     return file
 
 

@@ -25,7 +25,7 @@ from sailenv_ros.recording.channels import (
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.requests import wait_for
+from sailenv_ros.simulation.calls import wait_for
 
 __all__ = ["FrameRecorder", "due_steps", "record_lockstep"]
 

@@ -13,7 +13,7 @@ from concurrent.futures import Future
 from typing import Any
 
 from sailenv_ros.errors import DeadlineExceeded
-from sailenv_ros.simulation.requests import wait_for
+from sailenv_ros.simulation.calls import wait_for
 
 __all__ = ["LoopThread"]
 

@@ -31,7 +31,7 @@ from sailenv_ros.scene.entries import checked_object, checked_objects, free_name
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.places import user_scene_folder
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
-from sailenv_ros.simulation.scene_light import SceneLight
+from sailenv_ros.simulation.light_cache import LightCache
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -79,7 +79,7 @@ class SceneLibrary:
         self._packs = installed_packs()
         self._skies = sky_files(pack.folder for pack in self._packs)
         self._assets = AssetLibrary(installed_sources(self._packs))
-        self._light = SceneLight()
+        self._light_cache = LightCache()
         self._uploads = 0
         self._uploaded: set[str] = set()
         self._unkept: set[str] = set()
@@ -161,7 +161,7 @@ class SceneLibrary:
             skies=self._skies,
         )
         if spec.room is not None:
-            self._light.hang(world, str(scene))
+            self._light_cache.hang(world, str(scene))
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self.path(scene)

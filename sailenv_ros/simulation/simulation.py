@@ -19,9 +19,10 @@ from sailenv_ros.errors import DeadlineExceeded, SimulationClosed, UnknownName
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.backends import make_backend
+from sailenv_ros.simulation.calls import wait_for
 from sailenv_ros.simulation.core import SimulationCore, checked_real_time_factor
 from sailenv_ros.simulation.pacing import Pacer
-from sailenv_ros.simulation.requests import REQUESTS, Requests, wait_for
+from sailenv_ros.simulation.requests import REQUESTS, Requests
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.thumbnails import Thumbnails

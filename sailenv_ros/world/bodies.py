@@ -6,19 +6,20 @@ in which the model's vertices stand.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.behaviours import MAX_SPEED_M_S, Action, BodyState, RunningBehaviour
+from sailenv_ros.behaviours import BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, PhysicsError
 from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world import acting
+from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision import build_collision
 from sailenv_ros.world.placement import Placement
 
@@ -31,16 +32,8 @@ Confines: TypeAlias = Callable[[str, float], NDArray[np.float64]]
 
 MAX_BEHAVIOURS = 16
 
-CAREFUL_SPEED_M_S = 0.5
-"""Slower bodies are kept out of walls by the engine alone."""
-
-MAX_DEPTH_M = 0.002
-OUT_OF_WALLS_PER_S = 24.0
-
 TOUCH_M = 0.02
 """What is nearer may rest on a body."""
-
-_LINK_OF_BASE = -1
 
 _NO_PLANES = np.zeros((0, 4))
 
@@ -76,7 +69,7 @@ class Body:
         self._id = self._build()
         self._inertia = np.ones(3)
         if not placement.static:
-            self._inertia = np.asarray(self._client.getDynamicsInfo(self._id, _LINK_OF_BASE)[2])
+            self._inertia = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
         self._static_pose = placement.pose
         self._matrix = placement.pose.matrix()
         # PyBullet has no per-body gravity; the weight of those it must not pull is given back.
@@ -129,13 +122,11 @@ class Body:
     def wake(self) -> None:
         """Let physics move it again, if it has come to rest and sleeps."""
         if not self.placement.static:
-            state = self._client.constants.ACTIVATION_STATE_WAKE_UP
-            self._client.changeDynamics(self._id, _LINK_OF_BASE, activationState=state)
+            acting.wake(self._client, self._id)
 
     def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
-        linear, angular = self._client.getBaseVelocity(self._id)
-        return np.asarray(linear), np.asarray(angular)
+        return acting.velocity(self._client, self._id)
 
     def state(self, instance: Instance, sim_time_ns: int) -> ObjectState:
         """Give all that clients may know of it now."""
@@ -224,13 +215,14 @@ class Body:
         acted = False
         for running in self._behaviours:
             if not running.is_idle(time_s):
-                self._apply(running.act(time_s, self._state(running, confines)))
+                action = running.act(time_s, self._state(running, confines))
+                acting.apply_action(self._client, self._id, action)
                 acted = True
         # What rests is not asked for its speed: that would cost more than all else.
         if acted or self._is_fast:
-            self._is_fast = self._tame()
+            self._is_fast = acting.tame(self._client, self._id)
         if self._lift is not None:
-            self._push(self._lift)
+            acting.push(self._client, self._id, self._lift)
 
     def touching_ids(self) -> frozenset[int]:
         """Give PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
@@ -271,7 +263,7 @@ class Body:
         )
         self._client.changeDynamics(
             body,
-            _LINK_OF_BASE,
+            LINK_OF_BASE,
             lateralFriction=placement.friction,
             restitution=placement.restitution,
             # Bullet's own default of 0.04 /s would make free fall and free flight inexact.
@@ -284,7 +276,7 @@ class Body:
             # What has come to rest sleeps: it keeps the very same pose, and costs nothing.
             states = self._client.constants
             self._client.changeDynamics(
-                body, _LINK_OF_BASE, activationState=states.ACTIVATION_STATE_ENABLE_SLEEPING
+                body, LINK_OF_BASE, activationState=states.ACTIVATION_STATE_ENABLE_SLEEPING
             )
             self._client.resetBaseVelocity(
                 body, placement.linear_velocity, placement.angular_velocity
@@ -303,57 +295,6 @@ class Body:
             inertia_kg_m2=self._inertia,
             confines=planes,
         )
-
-    def _tame(self) -> bool:
-        """Keep it out of walls, into which driven bodies are pressed anew at each step.
-
-        Returns
-        -------
-        is_fast : bool
-            True if it must be looked after at the next step, too.
-        """
-        linear, angular = self.velocity()
-        speed = float(np.linalg.norm(linear))
-        if speed < CAREFUL_SPEED_M_S:
-            return False
-        tamed = linear * min(1.0, MAX_SPEED_M_S / speed)
-        for normal, depth_m in self._walls():
-            # As fast into the wall as the engine bears, or out of it where it is in too deep.
-            least = max(0.0, depth_m - MAX_DEPTH_M) * OUT_OF_WALLS_PER_S
-            tamed = tamed + max(0.0, least - float(tamed @ normal)) * normal
-        if (tamed != linear).any():
-            self._client.resetBaseVelocity(self._id, tamed.tolist(), angular.tolist())
-        return True
-
-    def _walls(self) -> Iterator[tuple[NDArray[np.float64], float]]:
-        """Yield the normals of static bodies that it stands in, and how deep [m]."""
-        for point in self._client.getContactPoints(bodyA=self._id):
-            other, normal, distance = point[2], point[7], point[8]
-            if distance < 0.0 and not self._client.getDynamicsInfo(other, _LINK_OF_BASE)[0]:
-                yield np.asarray(normal), -distance
-
-    def _apply(self, action: Action) -> None:
-        if action.acts:
-            self.wake()
-        if action.linear_velocity is not None or action.angular_velocity is not None:
-            linear, angular = self.velocity()
-            self._client.resetBaseVelocity(
-                self._id,
-                action.linear_velocity if action.linear_velocity is not None else linear.tolist(),
-                action.angular_velocity
-                if action.angular_velocity is not None
-                else angular.tolist(),
-            )
-        if action.force_n is not None:
-            self._push(action.force_n)
-        if action.torque_nm is not None:
-            frame = self._client.constants.WORLD_FRAME
-            self._client.applyExternalTorque(self._id, _LINK_OF_BASE, action.torque_nm, frame)
-
-    def _push(self, force_n: tuple[float, ...]) -> None:
-        position, _ = self._client.getBasePositionAndOrientation(self._id)
-        frame = self._client.constants.WORLD_FRAME
-        self._client.applyExternalForce(self._id, _LINK_OF_BASE, force_n, position, frame)
 
     def _centre_in_world(self, pose: Pose) -> list[float]:
         if not any(self._centre):

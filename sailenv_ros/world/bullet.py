@@ -14,10 +14,13 @@ from typing import Any
 
 from sailenv_ros.errors import PhysicsError
 
-__all__ = ["STEPS_PER_SECOND", "BulletClient", "sim_time_ns"]
+__all__ = ["LINK_OF_BASE", "STEPS_PER_SECOND", "BulletClient", "sim_time_ns"]
 
 STEPS_PER_SECOND = 240
 """Physics steps per second of simulated time."""
+
+LINK_OF_BASE = -1
+"""PyBullet's number for a body without joints."""
 
 _import_lock = threading.Lock()
 

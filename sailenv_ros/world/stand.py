@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from sailenv_ros.geometry import Pose
-from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient
+from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
 from sailenv_ros.world.mover import Mover, turned
 
 __all__ = ["STAND_RADIUS_M", "Stand"]
@@ -20,7 +20,6 @@ STAND_RADIUS_M = 0.15
 
 STAND_MASS_KG = 1.0
 
-_LINK_OF_BASE = -1
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _STILL = (0.0, 0.0, 0.0)
 _NOTHING, _EVERYTHING = 0, -1
@@ -49,7 +48,7 @@ class Stand:
         # It slides along walls, does not roll, and bounces off nothing.
         client.changeDynamics(
             self._id,
-            _LINK_OF_BASE,
+            LINK_OF_BASE,
             lateralFriction=0.0,
             restitution=0.0,
             linearDamping=0.0,
@@ -67,7 +66,7 @@ class Stand:
         self._client.resetBasePositionAndOrientation(self._id, here.position_m, _UPRIGHT)
         self._client.resetBaseVelocity(self._id, _along(here, command.linear_m_s), _STILL)
         frame = self._client.constants.WORLD_FRAME
-        self._client.applyExternalForce(self._id, _LINK_OF_BASE, self._lift, here.position_m, frame)
+        self._client.applyExternalForce(self._id, LINK_OF_BASE, self._lift, here.position_m, frame)
         if not self._moves:
             self._meet(_EVERYTHING)
             self._moves = True
@@ -96,7 +95,7 @@ class Stand:
 
     def _meet(self, what: int) -> None:
         group = 1 if what else 0
-        self._client.setCollisionFilterGroupMask(self._id, _LINK_OF_BASE, group, what)
+        self._client.setCollisionFilterGroupMask(self._id, LINK_OF_BASE, group, what)
 
 
 def _along(here: Pose, linear_m_s: tuple[float, float, float]) -> list[float]:

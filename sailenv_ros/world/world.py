@@ -14,14 +14,15 @@ from types import MappingProxyType
 import numpy as np
 
 from sailenv_ros.baked_light import BakedLight
-from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
+from sailenv_ros.errors import UnknownName
 from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import MAX_INSTANCE_ID, CategoryTable, Instance
+from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, Confines, Placement
+from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.stand import Stand
@@ -80,26 +81,17 @@ class World:
         self._baked: BakedLight | None = None
         self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
-        self._bodies: dict[int, Body] = {}
         self._stands: dict[str, Stand] = {}
-        self._histories: dict[int, int] = {}
-        self._last_id = 0
-        self._last_history = 0
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self.confines: Confines = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
-            for placement in placements:
-                self._add(placement)
+            self._bodies = BodyTable(self._client, gravity, placements)
         except BaseException:
             self.close()
             raise
         self._contents = self._make_contents()
-        self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
-        self._room_parts = frozenset(
-            body.placement.name for body in self._bodies.values() if body.placement.entry is None
-        )
 
     # -- time ------------------------------------------------------------------------------
 
@@ -115,7 +107,7 @@ class World:
 
     def step(self, count: int = 1) -> None:
         """Advance by so many steps of 1/240 s."""
-        active = [body for body in self._bodies.values() if body.acts]
+        active = [body for body in self._bodies if body.acts]
         for _ in range(count):
             time_s = self._step / STEPS_PER_SECOND
             for body in active:
@@ -144,7 +136,7 @@ class World:
     @property
     def bodies(self) -> tuple[Body, ...]:
         """All bodies, in the order of their ids."""
-        return tuple(self._bodies.values())
+        return tuple(self._bodies)
 
     @property
     def movers(self) -> Mapping[str, Mover]:
@@ -154,13 +146,12 @@ class World:
     @property
     def missing_parts(self) -> frozenset[str]:
         """Names of the parts of the room that were there at the start and are no more."""
-        return self._room_parts.difference(body.placement.name for body in self._bodies.values())
+        return self._bodies.missing_room_parts
 
     @property
     def first_bodies(self) -> Mapping[str, Body]:
         """The bodies of the start that are still there, by the names that they had then."""
-        named = self._first_names.items()
-        return {name: self._bodies[id_] for id_, name in named if id_ in self._bodies}
+        return self._bodies.firsts
 
     @property
     def moving_ids(self) -> frozenset[int]:
@@ -170,13 +161,12 @@ class World:
     def snapshot(self) -> WorldSnapshot:
         """Copy the poses; the same object until something changes."""
         if self._snapshot is None:
-            rows = [body.world_from_body() for body in self._bodies.values()]
             self._snapshot = WorldSnapshot(
                 sim_time_ns=self.sim_time_ns,
                 step=self._step,
                 contents=self._contents,
-                world_from_body=np.stack(rows) if rows else np.zeros((0, 4, 4)),
-                histories=np.array([self._histories[i] for i in self._bodies], dtype=np.int64),
+                world_from_body=self._bodies.world_from_body(),
+                histories=self._bodies.histories(),
             )
         return self._snapshot
 
@@ -201,8 +191,6 @@ class World:
         InvalidRequest
             If no instance has that id now.
         """
-        if instance_id not in self._bodies:
-            raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
         return self._bodies[instance_id]
 
     def find(self, obj: int | str) -> int:
@@ -213,15 +201,7 @@ class World:
         UnknownName, InvalidRequest
             If there is no such object now.
         """
-        if isinstance(obj, int | np.integer) and not isinstance(obj, bool):
-            self.body(int(obj))
-            return int(obj)
-        if not isinstance(obj, str):
-            raise InvalidRequest("object", obj, "an instance id, or the name of an object")
-        ids = {body.placement.name: id_ for id_, body in self._bodies.items()}
-        if obj not in ids:
-            raise UnknownName("object", obj, ids)
-        return ids[obj]
+        return self._bodies.find(obj)
 
     def object_state(self, instance_id: int) -> ObjectState:
         """Say what and where an object is now; see `body` for errors."""
@@ -244,17 +224,13 @@ class World:
         NameTaken
             If an object of that name is there.
         """
-        instance_id = self._add(placement)
+        instance_id = self._bodies.add(placement)
         self._changed()
         return instance_id
 
     def despawn(self, instance_id: int) -> None:
         """Take an object out of the world; its id is not used again."""
-        gone = self.body(instance_id)
-        self._rouse(gone)
-        gone.remove()
-        del self._bodies[instance_id]
-        del self._histories[instance_id]
+        self._bodies.remove(instance_id)
         self._changed()
 
     def replace_body(self, instance_id: int, placement: Placement) -> None:
@@ -271,24 +247,19 @@ class World:
             If it cannot be such an object; it is as it was then.
         """
         old = self.body(instance_id)
-        if placement.name != old.placement.name:
-            self._require_free_name(placement.name)
-        new = old.rebuilt(placement, self._gravity)
-        self._rouse(old)
-        old.remove()
-        self._bodies[instance_id] = new
+        self._bodies.rebuild(instance_id, placement)
         if placement.scale != old.placement.scale:
-            self._histories[instance_id] = self._new_history()
+            self._bodies.cut_off_past(instance_id)
             self._forget_chart(instance_id)
         self._changed()
 
     def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:
         """Move an object and stop it; `teleport` cuts its past off, so flow does not see a jump."""
         moved = self.body(instance_id)
-        self._rouse(moved)
+        self._bodies.rouse_beside(moved)
         moved.put(pose)
         if teleport:
-            self._histories[instance_id] = self._new_history()
+            self._bodies.cut_off_past(instance_id)
         self._snapshot = None
 
     def drive(self, mover: str, command: MoverCommand) -> None:
@@ -332,40 +303,11 @@ class World:
         # Without it the order of contacts, and with it the result, may depend on addresses.
         client.setPhysicsEngineParameter(deterministicOverlappingPairs=1, numSolverIterations=50)
 
-    def _add(self, placement: Placement) -> int:
-        self._require_free_name(placement.name)
-        if self._last_id >= MAX_INSTANCE_ID:
-            raise InvalidRequest(
-                "number of objects",
-                self._last_id + 1,
-                f"at most {MAX_INSTANCE_ID} in a scene's life; reset the scene to begin anew",
-            )
-        body = Body(self._client, placement, self._gravity)
-        self._last_id += 1
-        self._bodies[self._last_id] = body
-        self._histories[self._last_id] = self._new_history()
-        return self._last_id
-
-    def _require_free_name(self, name: str) -> None:
-        if any(body.placement.name == name for body in self._bodies.values()):
-            raise NameTaken("object", name)
-
-    def _rouse(self, body: Body) -> None:
-        """Wake what sleeps beside or upon a body that is about to leave its place."""
-        touching = body.touching_ids()
-        for other in self._bodies.values():
-            if other is not body and other.bullet_id in touching:
-                other.wake()
-
     def _forget_chart(self, instance_id: int) -> None:
         """Take the baked light off an instance whose surface is another now."""
         if self._baked is not None and instance_id in self._baked.charts:
             charts = {id_: c for id_, c in self._baked.charts.items() if id_ != instance_id}
             self._baked = replace(self._baked, charts=charts)
-
-    def _new_history(self) -> int:
-        self._last_history += 1
-        return self._last_history
 
     def _changed(self) -> None:
         self._contents = self._make_contents()

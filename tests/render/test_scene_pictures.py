@@ -45,3 +45,17 @@ def test_a_viewpoint_can_be_given(tmp_path: Path) -> None:
     assert main(["scene", "render", "optical", "-o", str(out), *place]) == 0
     with Image.open(out) as sheet:
         assert np.asarray(sheet)[100:400, 100:500].std() == 0.0
+
+
+def test_a_view_alone_has_no_border(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The file has the view's size; of several views there is no such file."""
+    out = tmp_path / "plain.png"
+    plain = ["scene", "render", "optical", "-o", str(out), "--plain"]
+    size = ["--width", "64", "--height", "48"]
+    assert main([*plain, *size]) == 2
+    assert "one view of one time" in capsys.readouterr().err
+    assert not out.exists()
+    assert main([*plain, *size, "--views", "category"]) == 0
+    with Image.open(out) as picture:
+        assert picture.size == (64, 48)
+        assert np.asarray(picture)[0, 0].tolist() != [24, 24, 28]

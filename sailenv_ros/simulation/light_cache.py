@@ -12,15 +12,15 @@ from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.world.world import World
 
-__all__ = ["BAKE_COMMAND", "SceneLight"]
+__all__ = ["BAKE_COMMAND", "LightCache"]
 
 BAKE_COMMAND = "sailenv scene bake"
 
 _log = logging.getLogger(__name__)
 
 
-class SceneLight:
-    """Finds the baked light of worlds; keeps the last in mind, so that a reset loads nothing."""
+class LightCache:
+    """Finds the light that is baked already; keeps the last, so that a reset loads nothing."""
 
     def __init__(self) -> None:
         self._last: BakedLight | None = None

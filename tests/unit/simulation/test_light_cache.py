@@ -76,7 +76,7 @@ def test_a_room_without_light_is_told_how_to_get_it(
     cell: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """One sentence with the command; a scene without a room is not spoken of."""
-    caplog.set_level(logging.INFO, "sailenv_ros.simulation.scene_light")
+    caplog.set_level(logging.INFO, "sailenv_ros.simulation.light_cache")
     assert contents(SceneLibrary(), cell).baked is None
     assert [r.getMessage().endswith(f"sailenv scene bake {cell}") for r in caplog.records] == [True]
     caplog.clear()
