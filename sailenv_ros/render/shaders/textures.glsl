@@ -2,8 +2,6 @@
 // there are is known when the program is made: a software rasteriser runs all sides of a branch.
 #ifdef COLOUR_MAP
 uniform sampler2DArray colour_maps;
-// Mip-maps blur along a slanted surface as far as across it: half a level is given back.
-const float FINER = -0.5;
 #endif
 #if defined(FINISH_MAP) || defined(NORMAL_MAP)
 uniform sampler2DArray fine_maps;
@@ -12,7 +10,7 @@ uniform sampler2DArray fine_maps;
 // Square root of linear colour, and alpha: the roots of factor and texel multiply as these do.
 vec4 base_colour(vec2 uv) {
 #ifdef COLOUR_MAP
-    return MATERIAL_COLOUR * texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x), FINER);
+    return MATERIAL_COLOUR * texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x));
 #else
     return MATERIAL_COLOUR;
 #endif
@@ -22,8 +20,7 @@ vec4 base_colour(vec2 uv) {
 float cutoff(float nearby, vec2 uv) {
 #ifdef COLOUR_MAP
     vec2 falls = CUTOFF_BY_LEVEL;
-    float level = max(textureQueryLod(colour_maps, uv).x + FINER, 0.0);
-    return max(nearby - falls.x * level, min(nearby, falls.y));
+    return max(nearby - falls.x * textureQueryLod(colour_maps, uv).x, min(nearby, falls.y));
 #else
     return nearby;
 #endif
