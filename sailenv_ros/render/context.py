@@ -19,7 +19,7 @@ __all__ = ["DeviceReport", "create_context", "is_software", "probe_devices"]
 _log = logging.getLogger(__name__)
 
 REQUIRED_GL = 430
-"""OpenGL 4.3: shader storage buffers and indirect draws."""
+"""OpenGL 4.3: what the shaders are written in."""
 
 MAX_DEVICES = 16
 
