@@ -24,9 +24,9 @@ __all__ = ["ShadowPass"]
 
 SIZE_PX = 1024
 
-POSE_STEP = 2.0**-12
-"""Casters' poses are rounded to this (0.24 mm, and 0.24 mm at one metre from a body's origin), a
-fraction of a texel: what comes to rest creeps by less for seconds, and needs no new map."""
+STEADY_TEXELS = 0.125
+"""A caster that has moved by less since the map was drawn is taken to stand where it stood: what
+comes to rest creeps for seconds, by less than can be seen, and needs no new map."""
 
 
 class ShadowPass:
@@ -72,7 +72,7 @@ class ShadowPass:
             Which instances the map encloses; None for all. Things that move are better left out:
             a map that follows them changes its texels' places, and so every shadow's edge.
         """
-        poses = POSE_STEP * np.round(snapshot.world_from_body / POSE_STEP)
+        poses = self._steady(snapshot)
         snapshot = replace(snapshot, world_from_body=poses)
         everything = np.ones(len(poses), bool)
         casting = everything if casting is None else casting
@@ -103,6 +103,19 @@ class ShadowPass:
         self._context.copy_framebuffer(self._framebuffer, self._resting)
         self._framebuffer.use()
         self._issue(draws, geometry, casting & ~self._at_rest)
+
+    def _steady(self, snapshot: WorldSnapshot) -> NDArray[np.float64]:
+        """Give the poses of casters, as they were drawn last where that is near enough."""
+        poses = snapshot.world_from_body
+        known = bool(self._drawn) and self._drawn[0] is snapshot.contents
+        if not known or self._poses is None:
+            return poses
+        off = np.abs(poses - self._poses)
+        # No point of it has moved by more.
+        reach = self._spheres.reaches(snapshot.contents)
+        most = off[:, :3, 3].sum(axis=1) + reach * off[:, :3, :3].sum(axis=(1, 2))
+        near = most <= STEADY_TEXELS * self.texel_m
+        return np.where(near[:, None, None], self._poses, poses)
 
     def _fit(
         self,
@@ -202,22 +215,29 @@ class _Spheres:
 
     def of(self, snapshot: WorldSnapshot) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give centres in the world (N, 3) and radii (N,) [m]; 0 for what casts no shadow."""
-        if self._contents is not snapshot.contents:
-            self._contents = snapshot.contents
-            bounds = np.array(
-                [
-                    drawn.model.bounds() * np.asarray(drawn.scale)
-                    for drawn in snapshot.contents.instances
-                ]
-            ).reshape(-1, 2, 3)
-            casting = np.array([casts(drawn) for drawn in snapshot.contents.instances], bool)
-            self._middles = bounds.mean(axis=1)
-            self._radii = np.where(
-                casting, 0.5 * np.linalg.norm(bounds[:, 1] - bounds[:, 0], axis=1), 0.0
-            )
+        self._know(snapshot.contents)
         poses = snapshot.world_from_body
         centres = (poses[:, :3, :3] @ self._middles[:, :, None])[:, :, 0] + poses[:, :3, 3]
         return centres, self._radii
+
+    def reaches(self, contents: SceneContents) -> NDArray[np.float64]:
+        """Give (N,): how far spheres reach from their bodies' origins [m]."""
+        self._know(contents)
+        reaches: NDArray[np.float64] = np.linalg.norm(self._middles, axis=1) + self._radii
+        return reaches
+
+    def _know(self, contents: SceneContents) -> None:
+        if self._contents is contents:
+            return
+        self._contents = contents
+        bounds = np.array(
+            [drawn.model.bounds() * np.asarray(drawn.scale) for drawn in contents.instances]
+        ).reshape(-1, 2, 3)
+        casting = np.array([casts(drawn) for drawn in contents.instances], bool)
+        self._middles = bounds.mean(axis=1)
+        self._radii = np.where(
+            casting, 0.5 * np.linalg.norm(bounds[:, 1] - bounds[:, 0], axis=1), 0.0
+        )
 
 
 def _caster_bounds(

@@ -16,7 +16,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
-from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.describing import light_entry
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -138,8 +138,8 @@ def told(core: SimulationCore) -> dict[str, Any]:
 def poses(core: SimulationCore) -> dict[str, Pose]:
     """Poses of objects, waypoints, movers that are not led, and agents that do not follow."""
     found = {
-        # A light looks along x of its pose.
-        f"light {light.name}": look_at((0.0, 0.0, 0.0), light.direction)
+        # Told by the point that it looks at: straight down, every heading is the same.
+        f"light {light.name}": Pose(light.direction)
         for light in core.info.lights
         if light.type != "point"
     }
