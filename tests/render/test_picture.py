@@ -8,6 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import Environment, Light
@@ -22,6 +23,7 @@ from tests.support.tiny_scenes import (
     checker,
     contents_of,
     model_of,
+    moved,
     snapshot_of,
     wall_mesh,
 )
@@ -95,6 +97,31 @@ def test_a_body_casts_a_shadow_where_the_sun_is_hidden(render: Render) -> None:
     brightness = views["rgb"].astype(float).mean(axis=-1)
     assert deep.sum() > 100
     assert brightness[deep].max() < 0.8 * brightness[clear].min()
+
+
+def test_shadows_follow_what_creeps(renderer: Renderer) -> None:
+    """Steps too small to be seen add up: after many the picture is that of a new renderer."""
+    floor = Thing(model_of(wall_mesh(8, 8)), Pose.from_rpy_deg((4.0, 0, -1.0), (0, 90, 0)))
+    box = Thing(model_of(box_mesh(0.8)), Pose((4.0, 0.0, 0.4)))
+    sun = Light(name="sun", type="directional", direction=(0.0, 0.5, -1.0), intensity=1.5)
+    contents = contents_of([floor, box], lights=(sun,))
+    camera = camera_at(look_at((0.5, 0, 2.5), (4.0, 0, -1.0)), width=200, height=150)
+
+    def picture(by: Renderer, away_m: float) -> NDArray[np.int16]:
+        there = moved([floor, box], floor.pose, Pose((4.0, away_m, 0.4)))
+        snapshot = snapshot_of(there, contents=contents)
+        return by.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(np.int16)
+
+    first = picture(renderer, 0.0)
+    for step in range(1, 300):
+        last = picture(renderer, 1e-3 * step)
+    fresh = Renderer()
+    try:
+        wanted = picture(fresh, 0.299)
+    finally:
+        fresh.close()
+    assert (np.abs(first - wanted).max(axis=-1) > 20).mean() > 0.02
+    assert (np.abs(last - wanted).max(axis=-1) > 20).mean() < 0.002
 
 
 def test_a_texture_is_neither_mirrored_nor_upside_down(render: Render) -> None:
