@@ -1,0 +1,254 @@
+"""What lights a scene at one instant: shadow maps, baked light, reflections, brought up to date.
+
+A snapshot comes in, a LIGHT for the shading kernel goes out. Without baked light there is one
+shadow map of everything. With it there are two: what stands still is drawn into one of them once,
+and only what moves is drawn again.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.baked_light import ProbeGrid
+from sailenv_ros.camera import Camera
+from sailenv_ros.cpu_render.part_table import PartTable
+from sailenv_ros.lights import Light, SkyMap
+from sailenv_ros.native.drawing import ROW_PADDING, Drawing
+from sailenv_ros.native.light_maps import blur_directions, sum_texels
+from sailenv_ros.native.render_types import LAMP, LIGHT, address, record
+from sailenv_ros.render import reflection_map as reflections
+from sailenv_ros.render.baked_state import BakedState
+from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
+from sailenv_ros.render.lightmap_compositing import CompositedLight, main_light
+from sailenv_ros.render.shadow_plan import SIZE_PX, ShadowPlan
+from sailenv_ros.snapshot import WorldSnapshot
+
+__all__ = ["Radiance", "FrameLight", "with_exposure"]
+
+_log = logging.getLogger(__name__)
+
+Radiance = Callable[[Camera, NDArray[np.void], NDArray[np.bool_]], NDArray[np.float32]]
+"""``radiance(camera, light, only)`` returns (H, W, 3): a picture of some instances."""
+
+
+class ShadowMap:
+    """A shadow map and its plan.
+
+    Attributes
+    ----------
+    nearness : (SIZE_PX, SIZE_PX + ROW_PADDING) float32
+        1 - depth of the nearest caster, 0 where there is none.
+    """
+
+    def __init__(self, drawing: Drawing) -> None:
+        self._drawing = drawing
+        self._resting: NDArray[np.float32] | None = None
+        self._changed = np.ones((SIZE_PX + 15) // 16, np.uint8)
+        self.plan = ShadowPlan()
+        self.nearness: NDArray[np.float32] = _empty_map()
+
+    def draw(
+        self,
+        light: Light,
+        snapshot: WorldSnapshot,
+        table: PartTable,
+        *,
+        casting: NDArray[np.bool_] | None = None,
+        framed: NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Bring the map up to date; see `ShadowPlan.update`."""
+        redraw = self.plan.update(light, snapshot, casting=casting, framed=framed)
+        if redraw is None:
+            return
+        poses = np.ascontiguousarray(redraw.poses)
+        if redraw.resting is not None:
+            if self._resting is None:
+                self._resting = _empty_map()
+            self._changed[:] = 1
+            unused = np.ones_like(self._changed)
+            self._draw(poses, table, redraw.resting, self._resting, unused, resting=None)
+        begin = self._resting if redraw.from_resting else None
+        self._draw(poses, table, redraw.casters, self.nearness, self._changed, resting=begin)
+
+    def _draw(
+        self,
+        poses: NDArray[np.float64],
+        table: PartTable,
+        drawn: NDArray[np.bool_],
+        nearness: NDArray[np.float32],
+        changed: NDArray[np.uint8],
+        *,
+        resting: NDArray[np.float32] | None,
+    ) -> None:
+        # From the map's sides, 0 to 1, to texels whose centres are integers.
+        texels = np.diag([SIZE_PX, SIZE_PX, 1.0, 1.0])
+        texels[:2, 3] = -0.5
+        matrix = np.ascontiguousarray(texels @ self.plan.map_from_world)
+        instances = table.instances(poses, None, drawn)
+        self._drawing.shadow_map(
+            matrix, instances, table.casters, nearness, changed, resting=resting
+        )
+
+
+def _empty_map() -> NDArray[np.float32]:
+    return np.zeros((SIZE_PX, SIZE_PX + ROW_PADDING), np.float32)
+
+
+class FrameLight:
+    """The light of the scene that is shown."""
+
+    def __init__(self, drawing: Drawing, threads: int) -> None:
+        self._drawing = drawing
+        self._threads = threads
+        self._shadow = ShadowMap(drawing)
+        self._static_shadow: ShadowMap | None = None
+        self._baked = BakedState(partial(sum_texels, threads=threads))
+        self._sky: tuple[SkyMap, NDArray[np.float16]] | None = None
+        self._lamps = np.zeros(MAX_LIGHTS, LAMP)
+        self._warned_of: Sequence[Light] | None = None
+        self._layers: NDArray[np.float16] | None = None
+        self._room: dict[str, NDArray[np.float64]] = {}
+        self._reflected: CompositedLight | None = None
+
+    def at(self, snapshot: WorldSnapshot, table: PartTable, radiance: Radiance) -> NDArray[np.void]:
+        """Bring everything up to date for a snapshot.
+
+        Returns
+        -------
+        light : (1,) LIGHT
+            Points into arrays of this object; good until the next call.
+        """
+        contents = snapshot.contents
+        main = main_light(contents.lights)
+        light = self._surroundings(snapshot, main)
+        composited = self._baked.update(snapshot)
+        if composited is None or contents.baked is None:
+            if main is not None:
+                self._shadow.draw(main, snapshot, table)
+            self._set_shadows(light, self._shadow, self._shadow)
+            lamps = tuple(lamp for lamp in contents.lights if lamp is not main)
+            self._set_lamps(light, lamps)
+            return light
+        still = table.at_baked_pose(snapshot)
+        if self._static_shadow is None:
+            self._static_shadow = ShadowMap(self._drawing)
+        if main is not None:
+            self._static_shadow.draw(main, snapshot, table, casting=still, framed=still)
+            self._shadow.draw(main, snapshot, table, casting=~still, framed=still)
+        self._set_shadows(light, self._shadow, self._static_shadow)
+        self._set_lamps(light, composited.live)
+        self._set_baked(light, composited)
+        if self._reflected is not composited:
+            self._reflect(light, contents.baked.probes, radiance, still)
+            self._reflected = composited
+        self._set_reflections(light)
+        return light
+
+    def _surroundings(self, snapshot: WorldSnapshot, main: Light | None) -> NDArray[np.void]:
+        environment = snapshot.contents.environment
+        light = record(
+            LIGHT,
+            main_towards=(0.0, 0.0, 1.0),
+            ambient=environment.ambient,
+            sky_share=environment.sky_share,
+            sky_zenith=environment.sky_zenith,
+            sky_horizon=environment.sky_horizon,
+            sky_ground=environment.sky_ground,
+            background=environment.background_colour,
+            background_plain=environment.background == "colour",
+            exposure=2.0**environment.exposure,
+        )
+        if main is not None:
+            light["main_colour"][0] = lamp_power(main)
+            light["main_towards"][0] = -np.asarray(main.direction)
+        if environment.sky is not None:
+            if self._sky is None or self._sky[0] is not environment.sky:
+                self._sky = environment.sky, _sky_texels(environment.sky)
+            texels = self._sky[1]
+            light["sky_map_at"] = address(texels)
+            light["sky_height"], light["sky_width"] = len(texels), texels.shape[1] - 1
+        return light
+
+    def _set_shadows(self, light: NDArray[np.void], shadow: ShadowMap, static: ShadowMap) -> None:
+        light["map_from_world"][0] = shadow.plan.map_from_world[:3].reshape(-1)
+        light["texel_m"] = shadow.plan.texel_m
+        light["shadow_size"] = SIZE_PX
+        light["shadow_at"] = address(shadow.nearness)
+        light["static_shadow_at"] = address(static.nearness)
+
+    def _set_lamps(self, light: NDArray[np.void], lamps: Sequence[Light]) -> None:
+        shining = sum(lamp.intensity > 0.0 for lamp in lamps)
+        if shining > MAX_LIGHTS and self._warned_of != lamps:
+            self._warned_of = lamps
+            _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, shining)
+        chosen = strongest_lamps(lamps)
+        for row, lamp in zip(self._lamps, chosen, strict=False):
+            row["colour"], row["kind"] = lamp_power(lamp), LAMP_KINDS[lamp.type]
+            row["position"], row["range"] = lamp.position_m, max(lamp.range_m, 1e-3)
+            row["direction"] = lamp.direction
+            row["inner_cosine"] = np.cos(np.radians(lamp.inner_cone_deg))
+            row["outer_cosine"] = np.cos(np.radians(lamp.outer_cone_deg))
+        light["lamp_count"] = len(chosen)
+        light["lamps_at"] = address(self._lamps)
+
+    def _set_baked(self, light: NDArray[np.void], composited: CompositedLight) -> None:
+        light["baked"] = 1
+        light["light_map_at"] = address(composited.texels)
+        light["light_map_height"], light["light_map_width"] = composited.texels.shape[:2]
+        light["instance_light_at"] = address(self._baked.instances)
+        light["main_baked"] = float(composited.main_baked)
+        light["main_clear"] = composited.main_transmittance
+
+    def _set_reflections(self, light: NDArray[np.void]) -> None:
+        assert self._layers is not None
+        light["reflecting"] = 1
+        light["reflections_at"] = address(self._layers)
+        light["reflection_layers"], light["reflection_edge"] = self._layers.shape[:2]
+        light["reflection_scale"] = reflections.EDGE / self._layers.shape[1]
+        light["layers_per_roughness"] = reflections.layers_per_roughness()
+        for name, value in self._room.items():
+            light[name][0] = value
+
+    def _reflect(
+        self,
+        plain: NDArray[np.void],
+        probes: ProbeGrid,
+        radiance: Radiance,
+        still: NDArray[np.bool_],
+    ) -> None:
+        """Look around from the middle of the room, at what stands still."""
+        middle, (low, high) = reflections.view_point(probes)
+        cameras = reflections.cube_cameras(middle)
+        unexposed = with_exposure(plain, 1.0)
+        pictures = [radiance(camera, unexposed, still) for camera in cameras]
+        flat = reflections.flattened(cameras, pictures, reflections.EDGE)
+        blur = partial(blur_directions, threads=self._threads)
+        self._layers = np.ascontiguousarray(reflections.prefilter(flat, blur=blur))
+        seen = self._layers[0, 1:-1, 1:-1, :3].astype(np.float64)
+        self._room = {
+            "reflection_from": middle,
+            "room_low": low,
+            "room_high": high,
+            "room_light": reflections.light_from_around(seen),
+        }
+
+
+def with_exposure(light: NDArray[np.void], factor: float) -> NDArray[np.void]:
+    """Return the same light with another exposure."""
+    result = light.copy()
+    result["exposure"] = factor
+    return result
+
+
+def _sky_texels(sky: SkyMap) -> NDArray[np.float16]:
+    """Return (H, W + 1, 4): the first column is repeated behind the last."""
+    height, width, _ = sky.radiance.shape
+    texels = np.zeros((height, width + 1, 4), np.float16)
+    texels[:, :width, :3] = np.clip(sky.radiance, 0.0, 6e4)
+    texels[:, width] = texels[:, 0]
+    return texels

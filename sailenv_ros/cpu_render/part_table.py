@@ -1,0 +1,173 @@
+"""What is drawn of a scene, as tables that the native kernels read.
+
+Scene contents come in, tables of parts go out. Meshes, textures and the parts of models that are
+there already are used again: a scene that changes costs what has changed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.cpu_render.mesh_store import MeshStore
+from sailenv_ros.cpu_render.texture_store import TextureStore
+from sailenv_ros.model import Material, Model
+from sailenv_ros.native.render_types import (
+    INSTANCES,
+    PART,
+    PART_DOUBLE_SIDED,
+    PART_FINISH_MAP,
+    PART_MASKED,
+    PART_NORMAL_MAP,
+    address,
+    record,
+)
+from sailenv_ros.render.drawn_meshes import DrawnMesh, chart_table, drawn_meshes
+from sailenv_ros.render.material_factors import material_factors
+from sailenv_ros.render.shadow_plan import casts
+from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+
+__all__ = ["PartTable"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _ModelParts:
+    """The parts of a model, before they are some instance's; the model is kept."""
+
+    model: Model
+    meshes: list[DrawnMesh]
+    parts: NDArray[np.void]
+    see_through: NDArray[np.bool_]
+
+
+class PartTable:
+    """The parts of the contents that are shown.
+
+    Attributes
+    ----------
+    contents : SceneContents or None
+    opaque, glass, casters : (N,) PART
+        What covers what lies behind it; what does not; what casts shadows.
+    """
+
+    def __init__(self) -> None:
+        self._meshes = MeshStore()
+        self._textures = TextureStore()
+        self._models: dict[tuple[int, int], _ModelParts] = {}
+        self.contents: SceneContents | None = None
+        self.opaque = self.glass = self.casters = np.zeros(0, PART)
+        self._scales = np.zeros((0, 3))
+        self._baked_poses = np.zeros((0, 4, 4))
+        self._keys: list[tuple[object, ...]] = []
+        self._casting: dict[tuple[int, tuple[float, ...]], bool] = {}
+
+    def show(self, contents: SceneContents) -> None:
+        """Bring the tables up to date."""
+        if contents is self.contents:
+            return
+        before, self.contents = self.contents, contents
+        keys: list[tuple[object, ...]] = [
+            (drawn.instance.id, id(drawn.model), drawn.scale) for drawn in contents.instances
+        ]
+        same_bake = before is not None and before.baked is contents.baked
+        if same_bake and keys == self._keys:
+            return
+        self._keys = keys
+        charts, self._baked_poses = chart_table(contents)
+        self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
+        tables = [np.zeros(0, PART)]
+        see_through, casting = [np.zeros(0, bool)], [np.zeros(0, bool)]
+        models: dict[tuple[int, int], _ModelParts] = {}
+        casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
+        for row, (drawn, meshes) in enumerate(
+            zip(contents.instances, drawn_meshes(contents), strict=True)
+        ):
+            if not meshes:
+                continue
+            key = (id(drawn.model), id(meshes[0].unwrapping))
+            made = models.get(key) or self._models.get(key) or self._make(drawn.model, meshes)
+            models[key] = made
+            parts = made.parts.copy()
+            parts["instance"], parts["id"] = row, drawn.instance.id
+            parts["chart"] = charts[row]
+            parts["has_chart"] = bool(charts[row].any())
+            shape = (id(drawn.model), drawn.scale)
+            if shape not in casting_of:
+                known = self._casting.get(shape)
+                casting_of[shape] = casts(drawn) if known is None else known
+            tables.append(parts)
+            see_through.append(made.see_through)
+            casting.append(np.full(len(parts), casting_of[shape]))
+        self._models, self._casting = models, casting_of
+        table, glass = np.concatenate(tables), np.concatenate(see_through)
+        self.opaque, self.glass = table[~glass], table[glass]
+        self.casters = table[~glass & np.concatenate(casting)]
+        self._meshes.trim(mesh for made in models.values() for mesh in made.meshes)
+        self._textures.trim(part.material for made in models.values() for part in made.model.parts)
+
+    def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+        """Tell which instances have baked light: those that stand where they stood for it."""
+        same: NDArray[np.bool_] = (snapshot.world_from_body == self._baked_poses).all(axis=(1, 2))
+        return same
+
+    def instances(
+        self,
+        poses: NDArray[np.float64],
+        at_baked_pose: NDArray[np.bool_] | None,
+        drawn: NDArray[np.bool_] | None = None,
+    ) -> NDArray[np.void]:
+        """Return (1,) INSTANCES; the arrays must live as long as it.
+
+        Parameters
+        ----------
+        poses : (N, 4, 4) float64
+            In C order.
+        at_baked_pose : (N,) bool or None
+            None where nothing is shaded.
+        drawn : (N,) bool or None
+            Which instances are drawn; None for all.
+        """
+        return record(
+            INSTANCES,
+            world_from_body_at=address(poses),
+            scales_at=address(self._scales),
+            drawn_at=address(drawn),
+            at_baked_pose_at=address(at_baked_pose),
+            count=len(poses),
+        )
+
+    def _make(self, model: Model, meshes: list[DrawnMesh]) -> _ModelParts:
+        parts = np.zeros(len(model.parts), PART)
+        for row, part, drawn in zip(parts, model.parts, meshes, strict=True):
+            mesh = self._meshes.get(drawn)
+            for axis, name in enumerate(("corner_x_at", "corner_y_at", "corner_z_at")):
+                row[name] = address(mesh.corners[axis])
+            row["corner_indices_at"] = address(mesh.corner_indices)
+            row["vertex_indices_at"] = address(mesh.vertex_indices)
+            row["vertices_at"] = address(mesh.vertices)
+            row["clusters_at"] = address(mesh.clusters)
+            row["corner_count"] = mesh.corner_count
+            row["cluster_count"] = len(mesh.clusters)
+            row["sphere"] = mesh.sphere
+            row["colour_map_at"] = self._textures.colour_map(part.material)
+            row["detail_map_at"] = self._textures.detail_map(part.material)
+            _describe(row, part.material)
+        see_through = np.array([part.material.alpha == "blend" for part in model.parts], bool)
+        return _ModelParts(model, meshes, parts, see_through)
+
+
+def _describe(row: np.void, material: Material) -> None:
+    factors = material_factors(material)
+    row["colour"], row["base"] = factors.colour, factors.base
+    row["roughness"], row["metallic"] = factors.roughness, factors.metallic
+    row["alpha_cutoff"], row["emission"] = factors.alpha_cutoff, factors.emission
+    row["cutoff_fall"], row["least_cutoff"] = factors.cutoff_fall, factors.least_cutoff
+    flags = {
+        PART_DOUBLE_SIDED: material.double_sided,
+        PART_MASKED: material.alpha == "mask",
+        PART_FINISH_MAP: material.metallic_roughness_texture is not None,
+        PART_NORMAL_MAP: material.normal_texture is not None,
+    }
+    row["flags"] = sum(flag for flag, is_set in flags.items() if is_set)

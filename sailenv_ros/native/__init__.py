@@ -1,0 +1,1 @@
+"""Kernels in C++ that frames are made with, behind typed functions on NumPy arrays."""

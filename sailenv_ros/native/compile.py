@@ -1,0 +1,246 @@
+"""Compiles the native library; needs nothing but Python and a C++ compiler.
+
+The sources beside this file come in, one shared library goes out. Whatever lies in `src/kernels/`
+is compiled once for each instruction set, the rest once; the loader (`library.py`) takes the
+functions of the best set that the processor has. setup.py runs this file by its path, before
+anything is installed, and so does scripts/build-native: it imports nothing of the project.
+
+    python sailenv_ros/native/compile.py [--if-changed]
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import platform
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Collection, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+__all__ = ["LIBRARY_NAME", "SOURCES", "CompilerError", "compile_library", "source_hash"]
+
+SOURCES = Path(__file__).resolve().parent / "src"
+LIBRARY_NAME = "libsailenv_native.so"
+
+INSTRUCTION_SETS: dict[str, dict[str, tuple[str, ...]]] = {
+    "x86_64": {
+        "portable": (),
+        "avx2": ("-march=x86-64-v3",),
+        "avx512": ("-march=x86-64-v4", "-mprefer-vector-width=512"),
+    }
+}
+"""Flags of each instruction set, by machine; other machines have ``portable`` alone."""
+
+FLAGS = (
+    "-std=c++17",
+    "-O3",
+    "-fPIC",
+    "-pthread",
+    "-fvisibility=hidden",
+    # No fused multiply-add that the source does not ask for: the bytes of a frame are the same on
+    # every instruction set. For the same reason there is no -ffast-math.
+    "-ffp-contract=off",
+    # Neither changes a result: nobody reads errno or the floating-point flags.
+    "-fno-math-errno",
+    "-fno-trapping-math",
+    "-Wall",
+    "-Wextra",
+    "-Wshadow",
+    "-Wvla",
+    # Vectors are passed by value only to functions that are inlined.
+    "-Wno-psabi",
+)
+
+STRICT_VARIABLE = "SAILENV_NATIVE_STRICT"
+"""Where this environment variable is set, warnings are errors and no compiler is one too."""
+
+
+class CompilerError(RuntimeError):
+    """The library could not be compiled; the text says what failed."""
+
+
+def compile_library(
+    output: Path,
+    *,
+    objects: Path | None = None,
+    sources: Path = SOURCES,
+    sets: Collection[str] | None = None,
+    extra_flags: Sequence[str] = (),
+    strict: bool = False,
+) -> None:
+    """Compile all sources into one shared library.
+
+    Parameters
+    ----------
+    output : Path
+        The library. It is replaced when all else has succeeded, so that it is never half written.
+    objects : Path or None
+        Folder in which object files are kept for the next time; None keeps none.
+    sources : Path
+        Folder with ``*.cpp`` and ``kernels/*.cpp``.
+    sets : collection of str or None
+        Instruction sets to compile; None compiles all that this machine's processors may have.
+    extra_flags : sequence of str
+        For the compiler and the linker, after all others.
+    strict : bool
+        Treat warnings as errors.
+
+    Raises
+    ------
+    CompilerError
+        If there is no compiler, or it refuses a source.
+    """
+    compiler = find_compiler()
+    flags = (*FLAGS, *(("-Werror",) if strict else ()), *extra_flags)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="sailenv-native-") as name:
+        folder = Path(name)
+        kept = objects or folder
+        kept.mkdir(parents=True, exist_ok=True)
+        jobs: list[tuple[str, Path, tuple[str, ...]]] = []
+        flags_of = {
+            name: own for name, own in instruction_sets().items() if sets is None or name in sets
+        }
+        for path in sorted(sources.glob("*.cpp")):
+            define = (f'-DSAILENV_SOURCE_HASH="{source_hash(sources)}"',)
+            jobs.append(("", path, (*flags, *(define if path.stem == "abi" else ()))))
+        for isa, isa_flags in flags_of.items():
+            for path in sorted((sources / "kernels").glob("*.cpp")):
+                jobs.append((isa, path, (*flags, *isa_flags, f"-DSAILENV_ISA={isa}")))
+        headers = _hash_of(sorted([*sources.glob("*.h"), *sources.glob("kernels/*.h")]))
+        with ThreadPoolExecutor(max(1, len(os.sched_getaffinity(0)))) as pool:
+            made = list(
+                pool.map(lambda job: _compile(compiler, job[1], job[2], headers, kept), jobs)
+            )
+        linked = [path for (isa, _, _), path in zip(jobs, made, strict=True) if not isa]
+        for isa in flags_of:
+            of_set = [path for job, path in zip(jobs, made, strict=True) if job[0] == isa]
+            if of_set:
+                linked.append(_closed(isa, of_set, folder))
+        library = folder / LIBRARY_NAME
+        exports = folder / "exports.map"
+        exports.write_text("{ global: sailenv_*; local: *; };\n")
+        sanitized = [flag for flag in extra_flags if flag.startswith("-fsanitize")]
+        script = f"-Wl,--version-script={exports}"
+        _run(
+            [*compiler, "-shared", "-pthread", *sanitized, script, "-o", library, *linked, "-lm"],
+            "the linker",
+        )
+        # Beside its place first: a rename within a folder is one step.
+        beside = output.with_name(f".{output.name}.{os.getpid()}")
+        shutil.copy2(library, beside)
+        beside.replace(output)
+
+
+def find_compiler() -> list[str]:
+    """Find the C++ compiler: the environment's ``CXX``, else g++, c++ or clang++.
+
+    Raises
+    ------
+    CompilerError
+        If there is none.
+    """
+    asked = shlex.split(os.environ.get("CXX", ""))
+    for words in [asked] if asked else [["g++"], ["c++"], ["clang++"]]:
+        if shutil.which(words[0]):
+            return words
+    raise CompilerError(
+        f"there is no C++ compiler ({asked[0]})"
+        if asked
+        else "there is no C++ compiler (g++, c++, clang++)"
+    )
+
+
+def instruction_sets() -> dict[str, tuple[str, ...]]:
+    """Return the flags of each instruction set that is compiled for this machine."""
+    return INSTRUCTION_SETS.get(platform.machine(), {"portable": ()})
+
+
+def source_hash(sources: Path = SOURCES) -> str:
+    """Return a hash of all sources: a library knows those that it was made of."""
+    return _hash_of(sorted(path for path in sources.rglob("*") if path.suffix in (".cpp", ".h")))
+
+
+def compiled_hash(library: Path) -> str:
+    """Return the hash of the sources that a library was made of; "" if it tells none."""
+    try:
+        found = re.search(rb"sailenv-native-sources:([0-9a-f]{32})", library.read_bytes())
+    except OSError:
+        return ""
+    return found[1].decode() if found else ""
+
+
+def _closed(isa: str, objects: Sequence[Path], folder: Path) -> Path:
+    """Join the objects of one instruction set and hide all their functions but the kernels.
+
+    The linker keeps one copy of each inline function of the standard library. Without this the
+    copy with AVX-512 instructions could be the one that a processor without them runs.
+    """
+    joined, closed = folder / f"{isa}.joined.o", folder / f"{isa}.o"
+    _run(["ld", "-r", "--force-group-allocation", "-o", joined, *objects], "the linker")
+    keep = f"--keep-global-symbol=sailenv_*_{isa}"
+    _run(["objcopy", "--wildcard", keep, joined, closed], "objcopy")
+    return closed
+
+
+def _compile(
+    compiler: Sequence[str], source: Path, flags: Sequence[str], headers: str, folder: Path
+) -> Path:
+    """Compile one source, unless the folder has its object already."""
+    key = hashlib.sha256()
+    for text in (" ".join([*compiler, *flags]), headers, source.name):
+        key.update(text.encode() + b"\0")
+    key.update(source.read_bytes())
+    target = folder / f"{source.stem}-{key.hexdigest()[:24]}.o"
+    if target.exists():
+        return target
+    beside = target.with_suffix(f".{os.getpid()}.o")
+    _run([*compiler, *flags, "-c", source, "-o", beside], f"the compiler, for {source.name},")
+    beside.replace(target)
+    return target
+
+
+def _run(command: Iterable[str | Path], what: str) -> None:
+    words = [str(word) for word in command]
+    try:
+        done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    except OSError as problem:
+        raise CompilerError(f"{what} could not be started: {problem}") from problem
+    if done.returncode != 0:
+        raise CompilerError(f"{what} failed: {shlex.join(words)}\n{done.stdout}")
+
+
+def _hash_of(paths: Iterable[Path]) -> str:
+    digest = hashlib.sha256()
+    for path in paths:
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:32]
+
+
+def main() -> int:
+    """Compile the library in its place beside the sources."""
+    parser = argparse.ArgumentParser(description="compile the native library in its place")
+    parser.add_argument(
+        "--if-changed", action="store_true", help="do nothing where it fits the sources"
+    )
+    arguments = parser.parse_args()
+    output = SOURCES.parent / LIBRARY_NAME
+    if arguments.if_changed and compiled_hash(output) == source_hash():
+        return 0
+    try:
+        compile_library(output, objects=SOURCES.parents[2] / "build" / "native", strict=True)
+    except CompilerError as problem:
+        sys.stderr.write(f"the native library was not compiled: {problem}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,221 @@
+"""Pictures and shadow maps, drawn by the kernels of src/kernels/render.cpp.
+
+Structures of `render_types` come in; arrays of the caller are filled. One `Drawing` holds the
+memory that frames are drawn in.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.library import Kernel, checked
+from sailenv_ros.native.render_types import (
+    DRAW_LIST,
+    INSTANCES,
+    LIGHT,
+    OUTPUTS,
+    PART,
+    VIEW,
+    address,
+    record,
+)
+
+__all__ = ["ROW_PADDING", "Drawing", "mip_chain", "structure_sizes"]
+
+_MAKE = Kernel("make_scratch", "array")
+_FREE = Kernel("free_scratch", "array")
+_PICTURE = Kernel(
+    "draw_picture", "integer", "array", "array", "array", "array", "array", "array", "array"
+)
+_SHADOW = Kernel(
+    "draw_shadow_map",
+    "integer",
+    "array",
+    "array",
+    "array",
+    "array",
+    "integer",
+    "array",
+    "array",
+    "array",
+)
+_MIPS = Kernel("mip_chain", "array", "integer", "array")
+_STRUCTURES = Kernel("structure_sizes", "array")
+
+
+ROW_PADDING = 8
+"""Numbers behind each row of a shadow map: rows are drawn in steps of eight."""
+
+
+class Drawing:
+    """Draws; belongs to one thread at a time.
+
+    Parameters
+    ----------
+    threads : int
+        How many threads draw. The result does not depend on it.
+
+    Raises
+    ------
+    NativeLibraryError
+        If there is no native library.
+    """
+
+    def __init__(self, threads: int) -> None:
+        self._threads = threads
+        self._handle = np.zeros(1, np.uint64)
+        _MAKE(self._handle)
+
+    def picture(
+        self,
+        view: NDArray[np.void],
+        instances: NDArray[np.void],
+        parts: NDArray[np.void],
+        glass: NDArray[np.void],
+        light: NDArray[np.void] | None,
+        *,
+        surface: NDArray[np.float32] | None = None,
+        radiance: NDArray[np.float16] | None = None,
+        normals: NDArray[np.float32] | None = None,
+        albedo: NDArray[np.float32] | None = None,
+    ) -> None:
+        """Draw what a camera sees.
+
+        Parameters
+        ----------
+        view : (1,) VIEW
+        instances : (1,) INSTANCES
+        parts, glass : (N,) PART
+            What is opaque, and what is see-through.
+        light : (1,) LIGHT or None
+            Needed for radiance.
+        surface : (H, W, 2) float32 or None
+            Takes depth along the optical axis [m] (inf: nothing was hit) and the instance id.
+        radiance : (H, W, 4) float16 or None
+            Takes exposed linear radiance, and the share of it that came from around.
+        normals : (H, W, 3) float32 or None
+            Takes unit normals in the optical frame; 0 where nothing was hit.
+        albedo : (H, W, 3) float32 or None
+            Takes linear base colours; 0 where nothing was hit.
+        """
+        height, width = int(view["height"][0]), int(view["width"][0])
+        checked("view", view, VIEW, (1,))
+        checked("instances", instances, INSTANCES, (1,))
+        if light is not None:
+            checked("light", light, LIGHT, (1,))
+        for name, array, dtype, channels in (
+            ("surface", surface, np.float32, 2),
+            ("radiance", radiance, np.float16, 4),
+            ("normals", normals, np.float32, 3),
+            ("albedo", albedo, np.float32, 3),
+        ):
+            if array is not None:
+                checked(name, array, dtype, (height, width, channels))
+        outputs = record(
+            OUTPUTS,
+            surface_at=address(surface),
+            radiance_at=address(radiance),
+            normals_at=address(normals),
+            albedo_at=address(albedo),
+        )
+        _PICTURE(
+            self._threads,
+            self._handle,
+            view,
+            instances,
+            _listed(parts),
+            _listed(glass),
+            light,
+            outputs,
+        )
+
+    def shadow_map(
+        self,
+        map_from_world: NDArray[np.float64],
+        instances: NDArray[np.void],
+        casters: NDArray[np.void],
+        nearness: NDArray[np.float32],
+        changed: NDArray[np.uint8],
+        *,
+        resting: NDArray[np.float32] | None,
+    ) -> None:
+        """Draw what a directional light sees.
+
+        Parameters
+        ----------
+        map_from_world : (4, 4) float64
+            To texels (integers are their centres) and depth, 0 to 1.
+        casters : (N,) PART
+        nearness : (S, S + `ROW_PADDING`) float32
+            Takes 1 - depth of the nearest surface, 0 where there is none.
+        changed : (ceil(S / 16),) uint8
+            1 for each 16 rows in which the map may differ from `resting`; brought up to date.
+        resting : float32 array like `nearness`, or None
+            What the map begins as; None begins with an empty one.
+        """
+        checked("map_from_world", map_from_world, np.float64, (4, 4))
+        checked("instances", instances, INSTANCES, (1,))
+        size = len(nearness)
+        for name, array in (("nearness", nearness), ("resting", resting)):
+            if array is not None:
+                checked(name, array, np.float32, (size, size + ROW_PADDING))
+        checked("changed", changed, np.uint8, ((size + 15) // 16,))
+        _SHADOW(
+            self._threads,
+            self._handle,
+            map_from_world,
+            instances,
+            _listed(casters),
+            size,
+            resting,
+            changed,
+            nearness,
+        )
+
+    def close(self) -> None:
+        """Free the memory; a second call does nothing."""
+        if self._handle[0]:
+            _FREE(self._handle)
+
+
+def mip_chain(texels: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """Return a texture with all its levels, as kernels read it.
+
+    Parameters
+    ----------
+    texels : (N, N, 4) uint8
+        The finest level; N is a power of two from 1 to 4096.
+
+    Returns
+    -------
+    chain : (M,) uint32
+        Level by level from the finest; a row of n texels is followed by its first one. Each texel
+        is the mean of four of the level before, rounded.
+    """
+    edge = len(texels)
+    checked("texels", texels, np.uint8, (edge, edge, 4))
+    # Two neighbours of the last row are read in one step with the next ones.
+    chain = np.zeros(sum(s * (s + 1) for s in _edges(edge)) + 2, np.uint32)
+    _MIPS(texels, edge, chain)
+    return chain
+
+
+def structure_sizes() -> dict[str, tuple[int, int]]:
+    """Return the size of each structure [bytes]: the library's and NumPy's."""
+    ours = {"part": PART, "instances": INSTANCES, "light": LIGHT, "view": VIEW, "outputs": OUTPUTS}
+    sizes = np.zeros(len(ours), np.int64)
+    _STRUCTURES(sizes)
+    return {
+        name: (int(size), structure.itemsize)
+        for (name, structure), size in zip(ours.items(), sizes, strict=True)
+    }
+
+
+def _edges(edge: int) -> list[int]:
+    return [edge >> level for level in range(edge.bit_length())]
+
+
+def _listed(parts: NDArray[np.void]) -> NDArray[np.void]:
+    checked("parts", parts, PART, (None,))
+    return record(DRAW_LIST, parts_at=address(parts), count=len(parts))

@@ -1,0 +1,244 @@
+"""The native library: found, checked, loaded, and its kernels called with arrays.
+
+The only module that knows ctypes. A kernel's name and the types of its arguments come in, a
+function on arrays and numbers goes out. ctypes releases Python's lock while a kernel runs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import logging
+import os
+import threading
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from sailenv_ros.errors import InvalidRequest, NativeLibraryError, UnknownName
+from sailenv_ros.native import compile as native_compile
+
+__all__ = [
+    "ABI_VERSION",
+    "INSTRUCTION_SETS",
+    "Kernel",
+    "NativeLibrary",
+    "checked",
+    "load_library",
+    "native_is_usable",
+    "native_library",
+    "thread_count",
+    "using_instruction_set",
+]
+
+_log = logging.getLogger(__name__)
+
+ABI_VERSION = 1
+"""`SAILENV_ABI_VERSION` of src/abi.h."""
+
+INSTRUCTION_SETS = ("portable", "avx2", "avx512")
+"""From the one that every processor has to the best."""
+
+LIBRARY_VARIABLE = "SAILENV_NATIVE_LIBRARY"
+"""Path of another build of the same sources, e.g. one with sanitizers."""
+
+INSTRUCTION_SET_VARIABLE = "SAILENV_INSTRUCTION_SET"
+THREADS_VARIABLE = "SAILENV_THREADS"
+
+ArgumentType = Literal["array", "integer", "number"]
+
+_TYPES: dict[str, Any] = {
+    "array": ctypes.c_void_p,
+    "integer": ctypes.c_int64,
+    "number": ctypes.c_double,
+}
+_STATUS = {1: "refused its arguments", 2: "found no memory"}
+
+
+class NativeLibrary:
+    """The loaded library and the instruction set that is used of it.
+
+    Parameters
+    ----------
+    path : Path
+        The shared library.
+    instruction_set : str or None
+        One of `INSTRUCTION_SETS`; None takes the environment's ``SAILENV_INSTRUCTION_SET``, else
+        the best that both the processor and the library have.
+
+    Raises
+    ------
+    NativeLibraryError
+        If the library is missing, cannot be loaded, or was made of other sources than the code's.
+    UnknownName
+        If there is no such instruction set here.
+    """
+
+    def __init__(self, path: Path, instruction_set: str | None = None) -> None:
+        self.path = path
+        if not path.is_file():
+            raise NativeLibraryError(f"there is no {path}")
+        if native_compile.SOURCES.is_dir():
+            made_of = native_compile.compiled_hash(path)
+            if made_of != native_compile.source_hash():
+                raise NativeLibraryError(f"{path} was made of other sources")
+        try:
+            self._library = ctypes.CDLL(str(path))
+            version = int(self._library.sailenv_abi_version())
+            level = int(self._library.sailenv_instruction_set_level())
+        except (OSError, AttributeError) as problem:
+            raise NativeLibraryError(str(problem)) from problem
+        if version != ABI_VERSION:
+            raise NativeLibraryError(f"{path} is of version {version}, not {ABI_VERSION}")
+        self.instruction_sets: tuple[str, ...] = tuple(
+            name
+            for name in INSTRUCTION_SETS[: level + 1]
+            if hasattr(self._library, f"sailenv_self_test_{name}")
+        )
+        """Those that both the processor and the library have, the best one last."""
+        asked = instruction_set or os.environ.get(INSTRUCTION_SET_VARIABLE)
+        if asked and asked not in self.instruction_sets:
+            raise UnknownName("instruction set of this machine", asked, self.instruction_sets)
+        self.instruction_set: str = asked or self.instruction_sets[-1]
+
+    def function(self, name: str, types: tuple[ArgumentType, ...]) -> Any:
+        """Return the ctypes function of a kernel."""
+        function = getattr(self._library, f"sailenv_{name}_{self.instruction_set}")
+        function.argtypes = [_TYPES[kind] for kind in types]
+        function.restype = ctypes.c_int32
+        return function
+
+
+@lru_cache(maxsize=8)
+def load_library(instruction_set: str | None = None) -> NativeLibrary:
+    """Load the library that lies beside this module; see `NativeLibrary`."""
+    own = Path(__file__).resolve().parent / native_compile.LIBRARY_NAME
+    path = Path(os.environ.get(LIBRARY_VARIABLE) or own)
+    return NativeLibrary(path, instruction_set)
+
+
+_chosen = threading.local()
+
+
+def native_library() -> NativeLibrary:
+    """Return the library that kernels are called from; see `NativeLibrary` for errors."""
+    return load_library(getattr(_chosen, "instruction_set", None))
+
+
+@lru_cache(maxsize=1)
+def native_is_usable() -> bool:
+    """Tell whether the library can be loaded; the first time, log why not."""
+    try:
+        load_library()
+    except NativeLibraryError as problem:
+        _log.warning("plain NumPy makes the frames, slowly: %s", problem)
+        return False
+    return True
+
+
+@contextlib.contextmanager
+def using_instruction_set(name: str) -> Iterator[None]:
+    """Let this thread use another instruction set for a while: what tests compare."""
+    before = getattr(_chosen, "instruction_set", None)
+    load_library(name)
+    _chosen.instruction_set = name
+    try:
+        yield
+    finally:
+        _chosen.instruction_set = before
+
+
+class Kernel:
+    """One kernel of the library; calling it runs it.
+
+    Parameters
+    ----------
+    name : str
+        As in ``SAILENV_KERNEL(name)``.
+    *types : {'array', 'integer', 'number'}
+        Of each argument: an array (or None, where the kernel accepts a null pointer), an int64
+        number, a double. Check arrays with `checked` first: their memory is handed over as it is.
+
+    Raises
+    ------
+    NativeLibraryError
+        When it is called: if there is no library, or the kernel refuses what it was given.
+    """
+
+    def __init__(self, name: str, *types: ArgumentType) -> None:
+        self.name = name
+        self._types = types
+        self._arrays = tuple(number for number, kind in enumerate(types) if kind == "array")
+        self._functions: dict[int, Any] = {}
+
+    def __call__(self, *arguments: NDArray[Any] | float | None) -> None:
+        """Run the kernel."""
+        library = native_library()
+        function = self._functions.get(id(library))
+        if function is None:
+            function = library.function(self.name, self._types)
+            self._functions[id(library)] = function
+        # The arrays stay alive until the call returns: the caller's frame holds them.
+        words: list[Any] = list(arguments)
+        for number in self._arrays:
+            array = words[number]
+            words[number] = None if array is None else array.ctypes.data
+        status = function(*words)
+        if status:
+            raise NativeLibraryError(
+                f"the kernel {self.name} {_STATUS.get(status, f'failed with status {status}')}"
+            )
+
+
+def checked(
+    what: str, array: NDArray[Any], dtype: DTypeLike, shape: tuple[int | None, ...]
+) -> NDArray[Any]:
+    """Refuse an array that a kernel could not read or write as it lies in memory.
+
+    Parameters
+    ----------
+    what : str
+        Its name in the error.
+    array : array
+        In C order, without gaps.
+    dtype : dtype
+    shape : tuple of int or None
+        None accepts any size.
+
+    Raises
+    ------
+    InvalidRequest
+        If type or shape are others, or the array has gaps.
+    """
+    expected = np.dtype(dtype)
+    fits = array.ndim == len(shape) and all(
+        size is None or size == given for size, given in zip(shape, array.shape, strict=True)
+    )
+    if not fits or array.dtype != expected or not array.flags.c_contiguous:
+        sizes = ", ".join("any" if size is None else str(size) for size in shape)
+        raise InvalidRequest(
+            what,
+            f"{array.dtype} {array.shape}, strides {array.strides}",
+            f"a dense {expected} array of shape ({sizes})",
+        )
+    return array
+
+
+def thread_count() -> int:
+    """Return how many threads a kernel may use: ``SAILENV_THREADS``, else the processors it has.
+
+    Raises
+    ------
+    InvalidRequest
+        If the environment's ``SAILENV_THREADS`` is no number from 1 to 256.
+    """
+    asked = os.environ.get(THREADS_VARIABLE, "")
+    if not asked:
+        return len(os.sched_getaffinity(0))
+    if not asked.isdecimal() or not 1 <= int(asked) <= 256:
+        raise InvalidRequest(THREADS_VARIABLE, asked, "an integer from 1 to 256")
+    return int(asked)

@@ -1,0 +1,596 @@
+// Visibility: cull clusters, transform corners, set edge functions up, sort into bands, draw.
+#include "raster.h"
+
+#include <cmath>
+
+#include "../threads.h"
+#include "texture.h"
+
+namespace sailenv {
+namespace {
+
+constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; see render/clusters.py
+constexpr int64_t SEGMENT_CLUSTERS = 48;
+constexpr double MARGIN = 0.01;         // see render/cluster_culling.py
+constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no bounds on the screen
+
+LANES_INLINE float smaller(float a, float b) { return a < b ? a : b; }
+LANES_INLINE float larger(float a, float b) { return a > b ? a : b; }
+
+bool is_beyond(const double* centre, double radius, const double* sides) {
+    for (int s = 0; s < 4; s++) {
+        const double* p = sides + 4 * s;
+        if (p[0] * centre[0] + p[1] * centre[1] + p[2] * centre[2] + p[3] < -radius) return true;
+    }
+    return false;
+}
+
+// Tells if no triangle within the sphere, with a normal within the cone, can face the eye.
+bool faces_away(const Cluster& cluster, const double* eye) {
+    const double dx = cluster.centre[0] - eye[0], dy = cluster.centre[1] - eye[1],
+                 dz = cluster.centre[2] - eye[2];
+    const double along = cluster.axis[0] * dx + cluster.axis[1] * dy + cluster.axis[2] * dz;
+    if (!(cluster.cosine > 0.0) || !(along > 0.0)) return false;
+    const double square = dx * dx + dy * dy + dz * dz;
+    const double rest = square - along * along;
+    const double across = std::sqrt(rest > 0.0 ? rest : 0.0);
+    const double cosine = cluster.cosine < 1.0 ? cluster.cosine : 1.0;
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    return along * cluster.cosine - across * sine >= cluster.radius + MARGIN * std::sqrt(square);
+}
+
+// Eye from object, row by row, times a pose with a scale.
+void compose(const double* eye_from_world, const double* pose, const double* scale, double* out) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            double sum = j == 3 ? eye_from_world[4 * i + 3] : 0.0;
+            for (int k = 0; k < 3; k++) sum += eye_from_world[4 * i + k] * pose[4 * k + j];
+            out[4 * i + j] = j == 3 ? sum : sum * scale[j];
+        }
+    }
+}
+
+void set_sides(InstanceFrame& frame, const Projection& p) {
+    const double* m = frame.eye_from_object;
+    double wide[4];
+    if (p.perspective) {
+        // Symmetric about the axis, a hundredth wider than the picture.
+        const double across =
+            0.5 * p.width > p.width - 0.5 - p.cx ? 0.5 * p.width : p.width - 0.5 - p.cx;
+        const double down =
+            0.5 * p.height > p.height - 0.5 - p.cy ? 0.5 * p.height : p.height - 0.5 - p.cy;
+        wide[0] = wide[1] = (1.0 + MARGIN) * across / p.focal;
+        wide[2] = wide[3] = (1.0 + MARGIN) * down / p.focal;
+    }
+    for (int s = 0; s < 4; s++) {
+        const double sign = s % 2 ? -1.0 : 1.0;
+        double* plane = frame.sides + 4 * s;
+        for (int j = 0; j < 4; j++) {
+            const double at = sign * m[4 * (s / 2) + j];
+            if (p.perspective) {
+                plane[j] = wide[s] * m[8 + j] + at;
+            } else {
+                const double limit = s % 2 ? (s / 2 ? p.height : p.width) : 1.0;
+                plane[j] = at + (j == 3 ? limit : 0.0);
+            }
+        }
+        const double length =
+            std::sqrt(plane[0] * plane[0] + plane[1] * plane[1] + plane[2] * plane[2]);
+        for (int j = 0; j < 4; j++) plane[j] /= length;
+    }
+}
+
+// Where the eye is in the object's frame: what is no number culls nothing.
+void set_eye(InstanceFrame& frame) {
+    const double* m = frame.eye_from_object;
+    const double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9],
+                 i = m[10];
+    const double det = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
+    const double x = -m[3] / det, y = -m[7] / det, z = -m[11] / det;
+    frame.eye[0] = (e * i - f * h) * x + (c * h - b * i) * y + (b * f - c * e) * z;
+    frame.eye[1] = (f * g - d * i) * x + (a * i - c * g) * y + (c * d - a * f) * z;
+    frame.eye[2] = (d * h - e * g) * x + (b * g - a * h) * y + (a * e - b * d) * z;
+}
+
+LANES_INLINE d4 load_double(const float* p) {
+    const f4 r = *reinterpret_cast<const f4_any*>(p);
+    return __builtin_convertvector(r, d4);
+}
+LANES_INLINE void store_double(float* p, d4 x) {
+    *reinterpret_cast<f4_any*>(p) = __builtin_convertvector(x, f4);
+}
+
+// The numbers of a cluster's triangles, each in a row of its own.
+struct ClusterRows {
+    alignas(32) float corner[9][CLUSTER_TRIANGLES];  // x, y, z of three corners
+    alignas(32) float edge[9][CLUSTER_TRIANGLES];
+    alignas(32) float nearness[3][CLUSTER_TRIANGLES];
+    alignas(32) float inverse_det[CLUSTER_TRIANGLES];
+    alignas(32) float x0[CLUSTER_TRIANGLES], x1[CLUSTER_TRIANGLES];
+    alignas(32) float y0[CLUSTER_TRIANGLES], y1[CLUSTER_TRIANGLES];
+    int32_t back[CLUSTER_TRIANGLES];
+    int32_t vertex[3][CLUSTER_TRIANGLES];
+};
+
+// Edge functions and planes, in double precision. Two triangles that share an edge get the same
+// numbers for it with opposite signs, so no pixel between them is lost or drawn twice. Nothing is
+// snapped to a grid.
+template <bool PERSPECTIVE>
+void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
+    const double inverse_focal = 1.0 / p.focal;
+    for (int32_t k = 0; k < count; k += 4) {
+        const d4 one = {1.0, 1.0, 1.0, 1.0};
+        const d4 ax = load_double(r.corner[0] + k), ay = load_double(r.corner[1] + k);
+        const d4 bx = load_double(r.corner[3] + k), by = load_double(r.corner[4] + k);
+        const d4 cx = load_double(r.corner[6] + k), cy = load_double(r.corner[7] + k);
+        const d4 ad = load_double(r.corner[2] + k), bd = load_double(r.corner[5] + k),
+                 cd = load_double(r.corner[8] + k);
+        const d4 az = PERSPECTIVE ? ad : one, bz = PERSPECTIVE ? bd : one,
+                 cz = PERSPECTIVE ? cd : one;
+        const d4 e0x = by * cz - bz * cy, e0y = bz * cx - bx * cz, e0z = bx * cy - by * cx;
+        const d4 e1x = cy * az - cz * ay, e1y = cz * ax - cx * az, e1z = cx * ay - cy * ax;
+        const d4 e2x = ay * bz - az * by, e2y = az * bx - ax * bz, e2z = ax * by - ay * bx;
+        const d4 det = ax * e0x + ay * e0y + az * e0z;
+        // Corners run counter-clockwise as seen from in front; with y downwards that is det < 0.
+        const d4 sign = det < 0.0 ? -one : one;
+        const d4 size = det * sign;
+        const d4 inverse = 1.0 / size;
+        const l4 back = det < 0.0 ? l4{} : l4{1, 1, 1, 1};
+        // Without extent, or not a number: back is 2, nothing sees that.
+        const l4 state = (size > 1e-30) & (inverse < 1e30) ? back : l4{2, 2, 2, 2};
+        for (int j = 0; j < 4; j++) r.back[k + j] = static_cast<int32_t>(state[j]);
+        const d4 turn = sign * inverse_focal;
+        const d4 a0 = turn * e0x, b0 = turn * e0y, c0 = sign * e0z - a0 * p.cx - b0 * p.cy;
+        const d4 a1 = turn * e1x, b1 = turn * e1y, c1 = sign * e1z - a1 * p.cx - b1 * p.cy;
+        const d4 a2 = turn * e2x, b2 = turn * e2y, c2 = sign * e2z - a2 * p.cx - b2 * p.cy;
+        store_double(r.edge[0] + k, a0);
+        store_double(r.edge[1] + k, b0);
+        store_double(r.edge[2] + k, c0);
+        store_double(r.edge[3] + k, a1);
+        store_double(r.edge[4] + k, b1);
+        store_double(r.edge[5] + k, c1);
+        store_double(r.edge[6] + k, a2);
+        store_double(r.edge[7] + k, b2);
+        store_double(r.edge[8] + k, c2);
+        store_double(r.inverse_det + k, inverse);
+        if (PERSPECTIVE) {
+            store_double(r.nearness[0] + k, (a0 + a1 + a2) * inverse);
+            store_double(r.nearness[1] + k, (b0 + b1 + b2) * inverse);
+            store_double(r.nearness[2] + k, (c0 + c1 + c2) * inverse);
+        } else {
+            const d4 na = 1.0 - ad, nb = 1.0 - bd, nc = 1.0 - cd;
+            const d4 nx = (a0 * na + a1 * nb + a2 * nc) * inverse;
+            const d4 ny = (b0 * na + b1 * nb + b2 * nc) * inverse;
+            const d4 steep_x = nx < 0.0 ? -nx : nx, steep_y = ny < 0.0 ? -ny : ny;
+            // What shadow maps need so that surfaces do not shade themselves: as OpenGL's
+            // polygon offset of 1.5 slopes and 2 units of 24 bits.
+            const d4 offset = 1.5 * (steep_x > steep_y ? steep_x : steep_y) + 0x1p-23;
+            store_double(r.nearness[0] + k, nx);
+            store_double(r.nearness[1] + k, ny);
+            store_double(r.nearness[2] + k, (c0 * na + c1 * nb + c2 * nc) * inverse - offset);
+        }
+    }
+}
+
+// Which pixels a triangle can reach: bounds in pixels; x0 > x1 if there are none.
+template <bool PERSPECTIVE>
+void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
+    const float right = static_cast<float>(p.width - 1), bottom = static_cast<float>(p.height - 1);
+    const float focal = static_cast<float>(p.focal), cx = static_cast<float>(p.cx),
+                cy = static_cast<float>(p.cy);
+    for (int32_t k = 0; k < count; k += 8) {
+        f8 x[3], y[3], depth[3];
+        for (int j = 0; j < 3; j++) {
+            x[j] = load(r.corner[3 * j] + k);
+            y[j] = load(r.corner[3 * j + 1] + k);
+            depth[j] = load(r.corner[3 * j + 2] + k);
+            if (PERSPECTIVE) {
+                const f8 scale = focal / depth[j];
+                x[j] = cx + x[j] * scale;
+                y[j] = cy + y[j] * scale;
+            }
+        }
+        f8 x0 = min8(x[0], min8(x[1], x[2])) - 0.01f, x1 = max8(x[0], max8(x[1], x[2])) + 0.01f;
+        f8 y0 = min8(y[0], min8(y[1], y[2])) - 0.01f, y1 = max8(y[0], max8(y[1], y[2])) + 0.01f;
+        i8 behind = splat(0);
+        if (PERSPECTIVE) {
+            const f8 nearest = min8(depth[0], min8(depth[1], depth[2]));
+            const f8 farthest = max8(depth[0], max8(depth[1], depth[2]));
+            const i8 crosses = nearest < LEAST_DEPTH_M;
+            behind = farthest <= LEAST_DEPTH_M;
+            x0 = crosses ? splat(0.0f) : x0;
+            y0 = crosses ? splat(0.0f) : y0;
+            x1 = crosses ? splat(right) : x1;
+            y1 = crosses ? splat(bottom) : y1;
+        }
+        // Rounded inwards to pixel centres: upwards is the negative floor of the negative.
+        x0 = -floor8(-clamp8(x0, 0.0f, 1e5f));
+        y0 = -floor8(-clamp8(y0, 0.0f, 1e5f));
+        x1 = floor8(clamp8(x1, -1.0f, right));
+        y1 = floor8(clamp8(y1, -1.0f, bottom));
+        store(r.x0 + k, behind ? splat(1.0f) : x0);
+        store(r.x1 + k, behind ? splat(0.0f) : x1);
+        store(r.y0 + k, y0);
+        store(r.y1 + k, y1);
+    }
+}
+
+// Fills up to the next multiple of eight with triangles that are nowhere.
+void pad(ClusterRows& r, int32_t count) {
+    for (int32_t k = count; k < ((count + 7) & ~7); k++) {
+        for (int j = 0; j < 9; j++) r.corner[j][k] = 0.0f;
+    }
+}
+
+// Moves the triangles that reach a pixel's centre to the front; most small ones reach none.
+int32_t keep_reaching(ClusterRows& r, int32_t count) {
+    int32_t kept = 0;
+    for (int32_t k = 0; k < count; k++) {
+        if (!(r.x0[k] <= r.x1[k]) || !(r.y0[k] <= r.y1[k])) continue;
+        if (kept != k) {
+            for (int j = 0; j < 9; j++) r.corner[j][kept] = r.corner[j][k];
+            for (int j = 0; j < 3; j++) r.vertex[j][kept] = r.vertex[j][k];
+            r.x0[kept] = r.x0[k];
+            r.x1[kept] = r.x1[k];
+            r.y0[kept] = r.y0[k];
+            r.y1[kept] = r.y1[k];
+        }
+        kept++;
+    }
+    return kept;
+}
+
+template <bool PERSPECTIVE>
+int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corners_at,
+                       const TriangleSet& set, const Projection& p, ClusterRows& r, Triangle* out) {
+    const Cluster& cluster = part.clusters[seen.cluster];
+    const int32_t count = static_cast<int32_t>(cluster.index_count / 3);
+    const uint32_t* corners = part.corner_indices + cluster.first_index;
+    const uint32_t* vertices = part.vertex_indices + cluster.first_index;
+    const float *x = set.x.data() + corners_at, *y = set.y.data() + corners_at,
+                *z = set.z.data() + corners_at;
+    for (int32_t k = 0; k < count; k++) {
+        for (int j = 0; j < 3; j++) {
+            const uint32_t corner = corners[3 * k + j];
+            r.corner[3 * j][k] = x[corner];
+            r.corner[3 * j + 1][k] = y[corner];
+            r.corner[3 * j + 2][k] = z[corner];
+            r.vertex[j][k] = static_cast<int32_t>(vertices[3 * k + j]);
+        }
+    }
+    pad(r, count);
+    set_bounds<PERSPECTIVE>(r, (count + 7) & ~7, p);
+    const int32_t reaching = keep_reaching(r, count);
+    pad(r, reaching);
+    set_edges_up<PERSPECTIVE>(r, (reaching + 3) & ~3, p);
+    const bool two_sided = !PERSPECTIVE || (part.flags & PART_DOUBLE_SIDED);
+    const bool front = seen.facing != FACING_BACK;
+    const bool back = seen.facing == FACING_BACK || (seen.facing == FACING_BOTH && two_sided);
+    int64_t made = 0;
+    for (int32_t k = 0; k < reaching; k++) {
+        const bool faces = r.back[k] == 0 ? front : r.back[k] == 1 && back;
+        if (!faces) continue;
+        Triangle& t = out[made++];
+        for (int j = 0; j < 9; j++) t.edge[j] = r.edge[j][k];
+        for (int j = 0; j < 3; j++) t.nearness[j] = r.nearness[j][k];
+        for (int j = 0; j < 3; j++) t.vertex[j] = r.vertex[j][k];
+        t.inverse_det = r.inverse_det[k];
+        t.part = seen.part;
+        t.back = r.back[k];
+        t.x0 = static_cast<int16_t>(r.x0[k]);
+        t.x1 = static_cast<int16_t>(r.x1[k]);
+        t.y0 = static_cast<int16_t>(r.y0[k]);
+        t.y1 = static_cast<int16_t>(r.y1[k]);
+    }
+    return made;
+}
+
+void transform_corners(const Part& part, const double* m, float* x, float* y, float* z) {
+    for (int32_t k = 0; k < part.corner_count; k += 4) {
+        const d4 a = load_double(part.corner_x + k), b = load_double(part.corner_y + k),
+                 c = load_double(part.corner_z + k);
+        store_double(x + k, m[0] * a + m[1] * b + m[2] * c + m[3]);
+        store_double(y + k, m[4] * a + m[5] * b + m[6] * c + m[7]);
+        store_double(z + k, m[8] * a + m[9] * b + m[10] * c + m[11]);
+    }
+}
+
+// Lists, for each band, the triangles that reach into it.
+void sort_into_bands(Segment& segment, const Triangle* triangles, int32_t bands,
+                     int32_t band_rows) {
+    segment.starts.assign(static_cast<size_t>(bands) + 1, 0);
+    uint32_t* starts = segment.starts.data();
+    for (int64_t k = 0; k < segment.triangle_count; k++) {
+        const Triangle& t = triangles[segment.first_triangle + k];
+        for (int32_t b = t.y0 / band_rows; b <= t.y1 / band_rows; b++) starts[b + 1]++;
+    }
+    for (int32_t b = 0; b < bands; b++) starts[b + 1] += starts[b];
+    segment.entries.resize(starts[bands]);
+    for (int64_t k = 0; k < segment.triangle_count; k++) {
+        const int64_t number = segment.first_triangle + k;
+        const Triangle& t = triangles[number];
+        for (int32_t b = t.y0 / band_rows; b <= t.y1 / band_rows; b++) {
+            segment.entries[starts[b]++] = static_cast<uint32_t>(number);
+        }
+    }
+    // Each start has moved to the next one's place.
+    for (int32_t b = bands; b > 0; b--) starts[b] = starts[b - 1];
+    starts[0] = 0;
+}
+
+// What alpha testing needs of a triangle: planes of uv over depth.
+struct MaskedTriangle {
+    float u[3], v[3];
+    const uint32_t* texels;
+    int32_t log2_size;
+};
+
+MaskedTriangle masked_triangle(const Triangle& t, const Part& part) {
+    MaskedTriangle m{};
+    const bool textured = part.colour_map != nullptr;
+    m.texels = textured ? part.colour_map->texels : WHITE_TEXELS;
+    m.log2_size = textured ? static_cast<int32_t>(part.colour_map->log2_size) : 0;
+    for (int k = 0; k < 3; k++) {
+        const float* vertex = part.vertices + 8 * static_cast<int64_t>(t.vertex[k]);
+        for (int j = 0; j < 3; j++) {
+            const float share = t.edge[3 * k + j] * t.inverse_det;
+            m.u[j] += vertex[3] * share;
+            m.v[j] += vertex[4] * share;
+        }
+    }
+    return m;
+}
+
+// Which of eight pixels of a masked material are there.
+i8 opaque_pixels(const Triangle& t, const MaskedTriangle& m, const Part& part, f8 x, float y,
+                 f8 nearness, i8 wanted) {
+    const f8 depth = 1.0f / nearness;
+    const f8 u = (m.u[0] * x + (m.u[1] * y + m.u[2])) * depth;
+    const f8 v = (m.v[0] * x + (m.v[1] * y + m.v[2])) * depth;
+    const i8 size = splat(m.log2_size);
+    const f8 level = level_of_detail(
+        depth * (m.u[0] - u * t.nearness[0]), depth * (m.v[0] - v * t.nearness[0]),
+        depth * (m.u[1] - u * t.nearness[1]), depth * (m.v[1] - v * t.nearness[1]), size, 0.0f);
+    const i8 fine = truncated(level);
+    const i8 coarse = fine < size ? fine + 1 : fine;
+    const Taps near = texture_taps(u, v, size, fine), far = texture_taps(u, v, size, coarse);
+    const f8 share = level - as_float(fine);
+    f8 alpha = splat(0.0f);
+    for (int k = 0; k < 8; k++) {
+        if (!wanted[k]) continue;
+        const float a =
+            sample_bytes(m.texels, near.upper[k], near.lower[k], near.across[k], near.down[k])[3];
+        const float b =
+            sample_bytes(m.texels, far.upper[k], far.lower[k], far.across[k], far.down[k])[3];
+        alpha[k] = (a + (b - a) * share[k]) * (1.0f / 255.0f);
+    }
+    const float least = smaller(part.alpha_cutoff, part.least_cutoff);
+    const f8 cutoff = max8(part.alpha_cutoff - part.cutoff_fall * level, splat(least));
+    return wanted & (alpha * part.colour[3] >= cutoff);
+}
+
+// An edge belongs to one of the two triangles that share it: the one that lies to its right, or
+// below it if it runs along a row. A function that is not of this triangle must be above 0.
+LANES_INLINE float least_inside(const float* edge) {
+    const bool own = edge[0] > 0.0f || (edge[0] == 0.0f && edge[1] > 0.0f);
+    return own ? 0.0f : 1.1754944e-38f;
+}
+
+// Where a row of a wide triangle begins and ends, give or take a pixel.
+LANES_INLINE bool narrow(float slope, float offset, float inverse, float& low, float& high) {
+    const float at = offset * inverse;
+    if (slope > 0.0f) {
+        low = larger(at - 1.0f, low);
+    } else if (slope < 0.0f) {
+        high = smaller(at + 1.0f, high);
+    } else {
+        return offset >= 0.0f;
+    }
+    return true;
+}
+
+template <bool MASKED>
+void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const Projection& p,
+                   int32_t first_row, int32_t last_row, int64_t stride, uint32_t* visible,
+                   float* nearness) {
+    const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
+    const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
+    const float a0 = t.edge[0], a1 = t.edge[3], a2 = t.edge[6], an = t.nearness[0];
+    const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
+                least2 = least_inside(t.edge + 6);
+    const bool wide = t.x1 - t.x0 >= 16;
+    float inverse0 = 0.0f, inverse1 = 0.0f, inverse2 = 0.0f;
+    if (wide) {
+        inverse0 = -1.0f / a0;
+        inverse1 = -1.0f / a1;
+        inverse2 = -1.0f / a2;
+    }
+    const i8 tag = splat(static_cast<int32_t>(number));
+    MaskedTriangle masked;
+    if (MASKED) masked = masked_triangle(t, part);
+    for (int32_t row = y0; row <= y1; row++) {
+        const float y = static_cast<float>(row);
+        const float c0 = t.edge[1] * y + t.edge[2], c1 = t.edge[4] * y + t.edge[5],
+                    c2 = t.edge[7] * y + t.edge[8], cn = t.nearness[1] * y + t.nearness[2];
+        int32_t first = t.x0, last = t.x1;
+        if (wide) {
+            float low = static_cast<float>(first), high = static_cast<float>(last);
+            if (!narrow(a0, c0, inverse0, low, high) || !narrow(a1, c1, inverse1, low, high) ||
+                !narrow(a2, c2, inverse2, low, high) || !(low <= high)) {
+                continue;
+            }
+            first = static_cast<int32_t>(low);
+            last = static_cast<int32_t>(high);
+        }
+        float* near_row = nearness + row * stride;
+        int32_t* seen_row =
+            visible == nullptr ? nullptr : reinterpret_cast<int32_t*>(visible + row * stride);
+        for (int32_t x = first; x <= last; x += 8) {
+            const f8 at = counting() + static_cast<float>(x);
+            const f8 e0 = a0 * at + c0, e1 = a1 * at + c1, e2 = a2 * at + c2, n = an * at + cn;
+            const f8 before = load(near_row + x);
+            i8 drawn = (e0 >= least0) & (e1 >= least1) & (e2 >= least2) & (n > before) &
+                       (n <= p.greatest_nearness);
+            if (MASKED) {
+                if (!any(drawn)) continue;
+                drawn = opaque_pixels(t, masked, part, at, y, n, drawn);
+            }
+            store(near_row + x, drawn ? n : before);
+            if (seen_row != nullptr) {
+                const i8 old = load(seen_row + x);
+                store(seen_row + x, drawn ? tag : old);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void set_frames(Scratch& scratch, const Instances& instances, const double* eye_from_world,
+                const Projection& projection) {
+    scratch.frames.resize(static_cast<size_t>(instances.count));
+    for (int64_t k = 0; k < instances.count; k++) {
+        InstanceFrame& frame = scratch.frames[static_cast<size_t>(k)];
+        const double *pose = instances.world_from_body + 16 * k, *scale = instances.scales + 3 * k;
+        compose(eye_from_world, pose, scale, frame.eye_from_object);
+        set_sides(frame, projection);
+        set_eye(frame);
+        // Normals go by the inverse transpose: the rotation with the reciprocal scale.
+        for (int j = 0; j < 3; j++) {
+            for (int i = 0; i < 8; i++) {
+                frame.normal_columns[j][i] =
+                    i < 3 ? static_cast<float>(pose[4 * i + j] / scale[j]) : 0.0f;
+            }
+        }
+    }
+}
+
+void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& parts,
+                    const Instances& instances, const Projection& projection, const int32_t* order,
+                    int64_t order_count, bool back_first, TriangleSet& set) {
+    set.seen.clear();
+    set.parts_seen.clear();
+    set.corners_at.assign(static_cast<size_t>(parts.count), -1);
+    int64_t corners = 0, most_triangles = 0;
+    set.segment_count = 0;
+    auto end_segment = [&](int64_t first_cluster, int64_t first_triangle) {
+        if (set.segments.size() <= static_cast<size_t>(set.segment_count)) {
+            set.segments.emplace_back();
+        }
+        Segment& segment = set.segments[static_cast<size_t>(set.segment_count++)];
+        segment.first_cluster = first_cluster;
+        segment.last_cluster = static_cast<int64_t>(set.seen.size());
+        segment.first_triangle = first_triangle;
+        segment.triangle_count = 0;
+    };
+    int64_t first_cluster = 0, first_triangle = 0;
+    for (int64_t place = 0; place < order_count; place++) {
+        const int32_t number = order == nullptr ? static_cast<int32_t>(place) : order[place];
+        const Part& part = parts.parts[number];
+        if (instances.drawn != nullptr && !instances.drawn[part.instance]) continue;
+        const InstanceFrame& frame = scratch.frames[static_cast<size_t>(part.instance)];
+        const double centre[3] = {part.sphere[0], part.sphere[1], part.sphere[2]};
+        if (is_beyond(centre, part.sphere[3], frame.sides)) continue;
+        const bool two_sided = !projection.perspective || (part.flags & PART_DOUBLE_SIDED);
+        const int passes = back_first && two_sided ? 2 : 1;
+        for (int pass = 0; pass < passes; pass++) {
+            const Facing facing = passes == 1 ? FACING_BOTH
+                                  : pass == 0 ? FACING_BACK
+                                              : FACING_FRONT;
+            for (int32_t c = 0; c < part.cluster_count; c++) {
+                const Cluster& cluster = part.clusters[c];
+                if (is_beyond(cluster.centre, cluster.radius, frame.sides)) continue;
+                if (!two_sided && faces_away(cluster, frame.eye)) continue;
+                set.seen.push_back({number, c, facing});
+                most_triangles += cluster.index_count / 3;
+                if (static_cast<int64_t>(set.seen.size()) - first_cluster == SEGMENT_CLUSTERS) {
+                    end_segment(first_cluster, first_triangle);
+                    first_cluster = static_cast<int64_t>(set.seen.size());
+                    first_triangle = most_triangles;
+                }
+                if (set.corners_at[static_cast<size_t>(number)] < 0) {
+                    set.corners_at[static_cast<size_t>(number)] = corners;
+                    set.parts_seen.push_back(number);
+                    corners += (part.corner_count + 7) & ~7;
+                }
+            }
+        }
+    }
+    if (static_cast<int64_t>(set.seen.size()) > first_cluster)
+        end_segment(first_cluster, first_triangle);
+    if (set.x.size() < static_cast<size_t>(corners)) {
+        set.x.resize(static_cast<size_t>(corners));
+        set.y.resize(static_cast<size_t>(corners));
+        set.z.resize(static_cast<size_t>(corners));
+    }
+    if (set.triangles.size() < static_cast<size_t>(most_triangles)) {
+        set.triangles.resize(static_cast<size_t>(most_triangles));
+    }
+    parallel_for(threads, static_cast<int64_t>(set.parts_seen.size()), 1,
+                 [&](int64_t first, int64_t, int64_t) {
+                     const int32_t number = set.parts_seen[static_cast<size_t>(first)];
+                     const Part& part = parts.parts[number];
+                     const int64_t at = set.corners_at[static_cast<size_t>(number)];
+                     transform_corners(
+                         part, scratch.frames[static_cast<size_t>(part.instance)].eye_from_object,
+                         set.x.data() + at, set.y.data() + at, set.z.data() + at);
+                 });
+    const int32_t band_rows = scratch.band_rows;
+    const int32_t bands = (projection.height + band_rows - 1) / band_rows;
+    parallel_for(threads, set.segment_count, 1, [&](int64_t first, int64_t, int64_t) {
+        Segment& segment = set.segments[static_cast<size_t>(first)];
+        ClusterRows rows;
+        Triangle* out = set.triangles.data() + segment.first_triangle;
+        for (int64_t k = segment.first_cluster; k < segment.last_cluster; k++) {
+            const SeenCluster& seen = set.seen[static_cast<size_t>(k)];
+            const Part& part = parts.parts[seen.part];
+            const int64_t at = set.corners_at[static_cast<size_t>(seen.part)];
+            Triangle* next = out + segment.triangle_count;
+            segment.triangle_count +=
+                projection.perspective
+                    ? set_cluster_up<true>(seen, part, at, set, projection, rows, next)
+                    : set_cluster_up<false>(seen, part, at, set, projection, rows, next);
+        }
+        sort_into_bands(segment, set.triangles.data(), bands, band_rows);
+    });
+}
+
+void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
+                uint32_t* visible, float* nearness) {
+    const int64_t first = static_cast<int64_t>(band) * band_rows;
+    int64_t last = first + band_rows;
+    if (last > projection.height) last = projection.height;
+    for (int64_t k = first * stride; k < last * stride; k++) {
+        nearness[k] = projection.least_nearness;
+    }
+    if (visible != nullptr) {
+        memset(visible + first * stride, 0xff, static_cast<size_t>((last - first) * stride) * 4);
+    }
+}
+
+void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+               int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
+               float* nearness) {
+    const int32_t first_row = band * band_rows;
+    const int32_t last_row =
+        (first_row + band_rows < projection.height ? first_row + band_rows : projection.height) - 1;
+    for (int64_t s = 0; s < set.segment_count; s++) {
+        const Segment& segment = set.segments[static_cast<size_t>(s)];
+        const uint32_t begin = segment.starts[static_cast<size_t>(band)];
+        const uint32_t end = segment.starts[static_cast<size_t>(band) + 1];
+        for (uint32_t k = begin; k < end; k++) {
+            const uint32_t number = segment.entries[k];
+            const Triangle& t = set.triangles[number];
+            const Part& part = parts.parts[t.part];
+            if (projection.perspective && (part.flags & PART_MASKED)) {
+                draw_triangle<true>(t, number, part, projection, first_row, last_row, stride,
+                                    visible, nearness);
+            } else {
+                draw_triangle<false>(t, number, part, projection, first_row, last_row, stride,
+                                     visible, nearness);
+            }
+        }
+    }
+}
+
+}  // namespace sailenv

@@ -1,0 +1,98 @@
+// From parts to triangles in bands of a picture, and from those to the surface that each pixel
+// sees.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lanes.h"
+#include "render_types.h"
+
+namespace sailenv {
+
+// A triangle on the screen. `edge` holds a, b, c of three functions a x + b y + c of the pixel
+// (integers are pixel centres): each is 0 on the edge opposite to its corner, positive inside, and
+// together with `inverse_det` they are the corners' weights over depth. `nearness` is such a
+// function too: 1 / depth in perspective, 1 - depth in a shadow map.
+struct Triangle {
+    float edge[9];
+    float nearness[3];
+    float inverse_det;
+    int32_t vertex[3];
+    int32_t part;
+    int32_t back;  // 1: its back is seen
+    int16_t x0, x1, y0, y1;
+};
+
+constexpr uint32_t NOTHING = 0xffffffffu;
+
+// What a frame knows of an instance.
+struct InstanceFrame {
+    double eye_from_object[12];  // rows; in a shadow map: pixel, pixel, depth
+    double sides[16];            // four planes around the picture, in the object's frame
+    double eye[3];               // in the object's frame
+    alignas(32) float normal_columns[3][8];  // world normal from object normal; beyond are 0
+};
+
+struct Projection {
+    bool perspective;
+    double focal, cx, cy;  // 1, 0, 0 in a shadow map
+    int32_t width, height;
+    float least_nearness;  // what is not nearer is not drawn
+    float greatest_nearness;
+};
+
+enum Facing : int32_t { FACING_BOTH = 0, FACING_FRONT = 1, FACING_BACK = 2 };
+
+struct SeenCluster {
+    int32_t part, cluster;
+    Facing facing;
+};
+
+// Some of the triangles, in their order, and which of them reach into which band.
+struct Segment {
+    int64_t first_cluster, last_cluster;
+    int64_t first_triangle, triangle_count;
+    std::vector<uint32_t> starts, entries;
+};
+
+struct TriangleSet {
+    std::vector<SeenCluster> seen;
+    std::vector<Segment> segments;
+    int64_t segment_count = 0;
+    std::vector<Triangle> triangles;
+    std::vector<int64_t> corners_at;  // of each part in x, y, z; -1 where it is not seen
+    std::vector<int32_t> parts_seen;
+    std::vector<float> x, y, z;  // corners as the eye has them
+};
+
+// Memory that is used again from frame to frame.
+struct Scratch {
+    std::vector<InstanceFrame> frames;
+    TriangleSet opaque, glass;
+    std::vector<uint32_t> visible;  // number of the triangle that each pixel sees
+    std::vector<float> nearness;
+    int64_t stride = 0;  // numbers from row to row, of both
+    int32_t band_rows = 16;
+    std::vector<int32_t> order;
+    std::vector<double> distance;
+};
+
+void set_frames(Scratch& scratch, const Instances& instances, const double* eye_from_world,
+                const Projection& projection);
+
+// Makes the triangles that may be seen of some parts. `orders` lists numbers of parts in the order
+// in which they are wanted; in perspective with `back_first`, each two-sided part is listed twice:
+// its back and then its front.
+void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& parts,
+                    const Instances& instances, const Projection& projection, const int32_t* order,
+                    int64_t order_count, bool back_first, TriangleSet& set);
+
+// Draws one band: `visible` (may be null) and `nearness` begin at the picture's first row.
+void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+               int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible, float* nearness);
+
+void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
+                uint32_t* visible, float* nearness);
+
+}  // namespace sailenv

@@ -1,0 +1,188 @@
+// The border to Python of everything that draws: pictures and shadow maps.
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "../abi.h"
+#include "../threads.h"
+#include "shade.h"
+
+namespace sailenv {
+namespace {
+
+// Rows of a band: enough bands that threads finish together, few enough that triangles are not in
+// many of them.
+int32_t band_rows_of(int64_t height) { return height <= 256 ? 8 : 16; }
+
+void reserve_pixels(Scratch& scratch, int64_t width, int64_t height) {
+    // Rows are read and written in steps of eight pixels from any column.
+    scratch.stride = (width + 8 + 15) & ~static_cast<int64_t>(15);
+    const size_t count = static_cast<size_t>(scratch.stride * height + 16);
+    if (scratch.nearness.size() < count) {
+        scratch.nearness.resize(count);
+        scratch.visible.resize(count);
+    }
+}
+
+// Numbers of the parts, the most distant first: by the middle of their spheres.
+void sort_glass(Scratch& scratch, const DrawList& glass) {
+    scratch.order.resize(static_cast<size_t>(glass.count));
+    scratch.distance.resize(static_cast<size_t>(glass.count));
+    for (int64_t k = 0; k < glass.count; k++) {
+        const Part& part = glass.parts[k];
+        const double* m = scratch.frames[static_cast<size_t>(part.instance)].eye_from_object;
+        const double depth =
+            m[8] * part.sphere[0] + m[9] * part.sphere[1] + m[10] * part.sphere[2] + m[11];
+        scratch.distance[static_cast<size_t>(k)] = depth == depth ? depth : 0.0;
+        scratch.order[static_cast<size_t>(k)] = static_cast<int32_t>(k);
+    }
+    const std::vector<double>& distance = scratch.distance;
+    std::stable_sort(scratch.order.begin(), scratch.order.end(), [&](int32_t a, int32_t b) {
+        return distance[static_cast<size_t>(a)] > distance[static_cast<size_t>(b)];
+    });
+}
+
+void draw_picture(int64_t threads, Scratch& scratch, const View& view, const Instances& instances,
+                  const DrawList& parts, const DrawList& glass, const Light* light,
+                  const Outputs& outputs) {
+    Projection projection{};
+    projection.perspective = true;
+    projection.focal = view.focal;
+    projection.cx = view.cx;
+    projection.cy = view.cy;
+    projection.width = static_cast<int32_t>(view.width);
+    projection.height = static_cast<int32_t>(view.height);
+    // A little less: annotations compare depths with the far distance exactly.
+    projection.least_nearness = std::nextafter(static_cast<float>(1.0 / view.far_m), 0.0f);
+    projection.greatest_nearness = 3e38f;
+    reserve_pixels(scratch, view.width, view.height);
+    scratch.band_rows = band_rows_of(view.height);
+    set_frames(scratch, instances, view.camera_from_world, projection);
+    make_triangles(threads, scratch, parts, instances, projection, nullptr, parts.count, false,
+                   scratch.opaque);
+    const bool shaded = outputs.radiance != nullptr;
+    const bool glazed = shaded && glass.count > 0;
+    if (glazed) {
+        sort_glass(scratch, glass);
+        make_triangles(threads, scratch, glass, instances, projection, scratch.order.data(),
+                       glass.count, true, scratch.glass);
+    }
+    Shading shading{};
+    shading.set = &scratch.opaque;
+    shading.parts = &parts;
+    shading.frames = scratch.frames.data();
+    shading.at_baked_pose = instances.at_baked_pose;
+    shading.light = light;
+    shading.outputs = &outputs;
+    shading.width = view.width;
+    shading.stride = scratch.stride;
+    shading.visible = scratch.visible.data();
+    shading.focal = static_cast<float>(view.focal);
+    shading.cx = static_cast<float>(view.cx);
+    shading.cy = static_cast<float>(view.cy);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            shading.world_from_camera[3 * i + j] =
+                static_cast<float>(view.world_from_camera[4 * i + j]);
+            shading.camera_from_world[3 * i + j] =
+                static_cast<float>(view.camera_from_world[4 * i + j]);
+        }
+        shading.eye[i] = static_cast<float>(view.world_from_camera[4 * i + 3]);
+    }
+    const int32_t band_rows = scratch.band_rows;
+    parallel_for(threads, view.height, band_rows, [&](int64_t first, int64_t last, int64_t) {
+        const int32_t band = static_cast<int32_t>(first / band_rows);
+        uint32_t* visible = scratch.visible.data();
+        float* nearness = scratch.nearness.data();
+        clear_band(projection, band, band_rows, scratch.stride, visible, nearness);
+        draw_band(scratch.opaque, parts, projection, band, band_rows, scratch.stride, visible,
+                  nearness);
+        shade_band(shading, static_cast<int32_t>(first), static_cast<int32_t>(last));
+        if (glazed) {
+            draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows, nearness);
+        }
+    });
+}
+
+}  // namespace
+}  // namespace sailenv
+
+// Makes the memory that pictures are drawn in, and frees it. One drawing at a time may use it.
+SAILENV_KERNEL(make_scratch)(sailenv::Scratch** made) {
+    *made = new (std::nothrow) sailenv::Scratch;
+    return *made == nullptr ? sailenv::STATUS_OUT_OF_MEMORY : sailenv::STATUS_OK;
+}
+
+SAILENV_KERNEL(free_scratch)(sailenv::Scratch** made) {
+    delete *made;
+    *made = nullptr;
+    return sailenv::STATUS_OK;
+}
+
+// Draws what one camera sees. `light` may be null where no radiance is wanted.
+SAILENV_KERNEL(draw_picture)
+(int64_t threads, sailenv::Scratch** scratch, const sailenv::View* view,
+ const sailenv::Instances* instances, const sailenv::DrawList* parts,
+ const sailenv::DrawList* glass, const sailenv::Light* light, const sailenv::Outputs* outputs) {
+    using namespace sailenv;
+    const bool sized =
+        view->width > 0 && view->height > 0 && view->width <= 16384 && view->height <= 16384;
+    if (!sized || (outputs->radiance != nullptr && light == nullptr)) {
+        return STATUS_INVALID_ARGUMENT;
+    }
+    try {
+        draw_picture(threads, **scratch, *view, *instances, *parts, *glass, light, *outputs);
+    } catch (const std::bad_alloc&) {
+        return STATUS_OUT_OF_MEMORY;
+    }
+    return STATUS_OK;
+}
+
+// Draws what a directional light sees into a shadow map: 1 - depth of the nearest surface. Rows of
+// `nearness` and `resting` hold `size` + 8 numbers. `map_from_world` (4, 4) leads to pixels
+// (integers are centres) and depth, 0 to 1. Without `resting` the map is cleared first, else it
+// begins as a copy of that. `changed` has a number for each 16 rows: 1 where the map differs from
+// `resting`.
+SAILENV_KERNEL(draw_shadow_map)
+(int64_t threads, sailenv::Scratch** handle, const double* map_from_world,
+ const sailenv::Instances* instances, const sailenv::DrawList* parts, int64_t size,
+ const float* resting, uint8_t* changed, float* nearness) {
+    using namespace sailenv;
+    constexpr int32_t BAND_ROWS = 16;
+    if (size < 8 || size > 8192) return STATUS_INVALID_ARGUMENT;
+    try {
+        Scratch& scratch = **handle;
+        Projection projection{};
+        projection.focal = 1.0;
+        projection.width = projection.height = static_cast<int32_t>(size);
+        projection.greatest_nearness = 1.0f;
+        scratch.band_rows = BAND_ROWS;
+        set_frames(scratch, *instances, map_from_world, projection);
+        const TriangleSet& set = scratch.opaque;
+        make_triangles(threads, scratch, *parts, *instances, projection, nullptr, parts->count,
+                       false, scratch.opaque);
+        const int64_t stride = size + 8;
+        parallel_for(threads, size, BAND_ROWS, [&](int64_t first, int64_t last, int64_t) {
+            const int32_t band = static_cast<int32_t>(first / BAND_ROWS);
+            bool reached = false;
+            for (int64_t k = 0; k < set.segment_count; k++) {
+                const std::vector<uint32_t>& starts = set.segments[static_cast<size_t>(k)].starts;
+                reached |=
+                    starts[static_cast<size_t>(band)] < starts[static_cast<size_t>(band) + 1];
+            }
+            if (resting == nullptr) {
+                clear_band(projection, band, BAND_ROWS, stride, nullptr, nearness);
+            } else if (reached || changed[band]) {
+                memcpy(nearness + first * stride, resting + first * stride,
+                       static_cast<size_t>((last - first) * stride) * sizeof(float));
+            }
+            if (reached) {
+                draw_band(set, *parts, projection, band, BAND_ROWS, stride, nullptr, nearness);
+            }
+            changed[band] = resting == nullptr || reached;
+        });
+    } catch (const std::bad_alloc&) {
+        return STATUS_OUT_OF_MEMORY;
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,128 @@
+// What Python hands over for a picture: plain structures, mirrored in native/render_types.py.
+//
+// Pointers are addresses of arrays that Python keeps alive during the call.
+#pragma once
+
+#include <cstdint>
+
+namespace sailenv {
+
+// A group of neighbouring triangles that face alike; see render/clusters.py.
+struct Cluster {
+    int64_t first_index, index_count;
+    double centre[3], radius;
+    double axis[3], cosine;
+};
+
+// A mip chain of a square texture: level by level from the finest, rows from the bottom up, four
+// bytes a texel. A row of n texels holds n + 1: the first is repeated at its end, so that two
+// neighbours are always one load.
+struct Texture {
+    const uint32_t* texels;
+    int64_t log2_size;
+};
+
+enum PartFlag : int32_t {
+    PART_DOUBLE_SIDED = 1,
+    PART_MASKED = 2,
+    PART_FINISH_MAP = 4,  // the detail map holds roughness and metallic
+    PART_NORMAL_MAP = 8,  // the detail map holds normals
+};
+
+// A mesh with a material, of one instance.
+struct Part {
+    const float* corner_x;  // positions, each once; readable up to 8 numbers beyond the last
+    const float* corner_y;
+    const float* corner_z;
+    const uint32_t* corner_indices;  // three per triangle
+    const uint32_t* vertex_indices;
+    const float* vertices;  // (V, 8): normal, uv, light uv, 0
+    const Cluster* clusters;
+    const Texture* colour_map;  // square root of linear colour, alpha; null for none
+    const Texture* detail_map;  // normal x and y, roughness, metallic; null for none
+    int32_t corner_count, cluster_count;
+    float sphere[4];  // around the mesh: centre, radius
+    float colour[4];  // square root of linear colour, or of the glow's where there is one; alpha
+    float base[3];    // square root of linear base colour
+    float roughness, metallic, alpha_cutoff, emission;  // emission: radiance over colour
+    float cutoff_fall, least_cutoff;  // how the cut-off falls from level to level, and where to
+    float chart[4];                   // offset and scale in the light map
+    int32_t flags, instance, id;
+    int32_t has_chart;
+};
+
+struct Instances {
+    const double* world_from_body;  // (N, 4, 4)
+    const double* scales;           // (N, 3)
+    const uint8_t* drawn;           // (N,), or null: all are
+    const uint8_t* at_baked_pose;   // (N,)
+    int64_t count;
+};
+
+struct DrawList {
+    const Part* parts;
+    int64_t count;
+};
+
+enum LightKind : int32_t { LIGHT_DIRECTIONAL = 0, LIGHT_POINT = 1, LIGHT_SPOT = 2, LIGHT_AREA = 3 };
+
+struct Lamp {
+    float colour[3];     // linear colour times intensity
+    float kind;          // LightKind
+    float position[3];   // world [m]
+    float range;         // [m]
+    float direction[3];  // where it travels to, world
+    float inner_cosine, outer_cosine;
+};
+
+// A shadow map: 1 - depth as the light sees it, the nearest surface, 0 where there is none.
+struct ShadowMap {
+    const float* nearness;  // (size, size + 8)
+};
+
+// Everything that lights a picture; all vectors in the world frame.
+struct Light {
+    float main_colour[3];
+    float main_towards[3];
+    float map_from_world[12];  // first three rows; the map's sides are 0 and 1
+    float texel_m;
+    int32_t shadow_size;
+    ShadowMap shadow, static_shadow;
+    float ambient[3], sky_share;
+    float sky_zenith[3], sky_horizon[3], sky_ground[3];
+    float background[3];
+    int32_t background_plain;  // 1: the background is a colour
+    const uint16_t* sky_map;   // halves (height, width, 4), or null
+    int32_t sky_width, sky_height;
+    float exposure;  // factor
+    int32_t lamp_count;
+    const Lamp* lamps;
+    int32_t baked;              // 1: what follows counts
+    int32_t reflecting;         // 1: there is a reflection map
+    const uint16_t* light_map;  // halves (height, width, 4): irradiance / pi, share of main light
+    int32_t light_map_width, light_map_height;
+    const float* instance_light;  // (ids, 3, 4): c0, cx, cy, cz of red, green, blue
+    float main_baked, main_clear;
+    const uint16_t* reflections;  // halves (layers, edge, edge, 4)
+    int32_t reflection_edge, reflection_layers;
+    float reflection_scale;  // share of the square without its border
+    float layers_per_roughness;
+    float reflection_from[3], room_low[3], room_high[3];
+    float room_light[4];
+};
+
+struct View {
+    double camera_from_world[16], world_from_camera[16];
+    double focal, cx, cy, far_m;
+    int64_t width, height;
+};
+
+// What is wanted; null pointers for what is not.
+struct Outputs {
+    float* surface;      // (height, width, 2): depth [m], instance id
+    uint16_t* radiance;  // halves (height, width, 4): exposed radiance, share from around
+    float* normals;      // (height, width, 3): optical frame
+    float* albedo;       // (height, width, 3): linear base colour
+};
+
+}  // namespace sailenv

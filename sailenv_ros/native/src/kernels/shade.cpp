@@ -1,0 +1,876 @@
+// Light of opaque surfaces and of the sky: the same model as shaders/lighting.frag and sky.frag.
+//
+// A band is walked down in chunks of 64 pixels of a row. A chunk's numbers lie in arrays, one for
+// each quantity, and each stage goes over them eight at a time.
+#include "shade.h"
+
+#include "texture.h"
+
+namespace sailenv {
+namespace {
+
+constexpr int32_t CHUNK = 64;
+constexpr float PI = 3.14159265f;
+
+struct Chunk {
+    int32_t x, y, count, padded;
+    bool hit, missed, coloured, detailed;  // what there is among the pixels
+    alignas(32) float depth[CHUNK], nx[CHUNK], ny[CHUNK], nz[CHUNK];  // normal: world frame
+    alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
+    // Changes of uv / depth and of 1 / depth from pixel to pixel.
+    alignas(32) float ux[CHUNK], vx[CHUNK], uy[CHUNK], vy[CHUNK], nearness_x[CHUNK],
+        nearness_y[CHUNK];
+    alignas(32) float red[CHUNK], green[CHUNK], blue[CHUNK];  // base colour
+    alignas(32) float roughness[CHUNK], metallic[CHUNK], emission[CHUNK];
+    alignas(32) float colour_log2[CHUNK], detail_log2[CHUNK], finish[CHUNK], relief[CHUNK];
+    const uint32_t* colour_texels[CHUNK];
+    const uint32_t* detail_texels[CHUNK];
+    alignas(32) int32_t id[CHUNK], empty[CHUNK];                 // empty: all bits where nothing is
+    alignas(32) float ray_x[CHUNK], ray_y[CHUNK], ray_z[CHUNK];  // world frame, depth 1
+    alignas(32) float px[CHUNK], py[CHUNK], pz[CHUNK];           // world [m]
+    alignas(32) float around_r[CHUNK], around_g[CHUNK], around_b[CHUNK];
+    alignas(32) float mirrored_r[CHUNK], mirrored_g[CHUNK], mirrored_b[CHUNK];
+    alignas(32) float arrives[CHUNK];  // share of the main light
+    alignas(32) float light_r[CHUNK], light_g[CHUNK], light_b[CHUNK], from_around[CHUNK];
+};
+
+LANES_INLINE f8 joined(const float* a, const float* b) {
+    f8 r;
+    memcpy(&r, a, 16);
+    memcpy(reinterpret_cast<char*>(&r) + 16, b, 16);
+    return r;
+}
+
+void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count) {
+    const uint32_t* visible = s.visible + y * s.stride + x;
+    float* surface = s.outputs->surface + 2 * (y * s.width + x);
+    for (int32_t i = 0; i < count;) {
+        const uint32_t tag = visible[i];
+        int32_t end = i + 1;
+        while (end < count && visible[end] == tag) end++;
+        if (tag == NOTHING) {
+            for (; i < end; i++) {
+                surface[2 * i] = __builtin_inff();
+                surface[2 * i + 1] = 0.0f;
+            }
+            continue;
+        }
+        const Triangle& t = s.set->triangles[tag];
+        const float offset = t.nearness[1] * static_cast<float>(y) + t.nearness[2];
+        const float id = static_cast<float>(s.parts->parts[t.part].id);
+        for (; i < end; i++) {
+            surface[2 * i] = 1.0f / (t.nearness[0] * static_cast<float>(x + i) + offset);
+            surface[2 * i + 1] = id;
+        }
+    }
+}
+
+// Interpolates what the triangles' corners know, and notes the materials.
+void gather(const Shading& s, Chunk& c) {
+    const uint32_t* visible = s.visible + c.y * s.stride + c.x;
+    alignas(32) float attributes[8 * CHUNK], material[8 * CHUNK], maps[8 * CHUNK];
+    const float y = static_cast<float>(c.y);
+    int16_t begins[CHUNK + 1];
+    const Triangle* triangles[CHUNK];
+    int32_t runs = 0;
+    for (int32_t i = 0; i < c.count;) {
+        const uint32_t tag = visible[i];
+        begins[runs] = static_cast<int16_t>(i);
+        const Triangle* t = tag == NOTHING ? nullptr : s.set->triangles.data() + tag;
+        if (t != nullptr) {
+            __builtin_prefetch(t);
+            __builtin_prefetch(reinterpret_cast<const char*>(t) + 64);
+        }
+        triangles[runs++] = t;
+        do i++;
+        while (i < c.count && visible[i] == tag);
+    }
+    begins[runs] = static_cast<int16_t>(c.count);
+    for (int32_t r = 0; r < runs; r++) {
+        const Triangle* t = triangles[r];
+        if (t == nullptr) continue;
+        const float* vertices = s.parts->parts[t->part].vertices;
+        for (int k = 0; k < 3; k++) {
+            __builtin_prefetch(vertices + 8 * static_cast<int64_t>(t->vertex[k]));
+        }
+    }
+    c.hit = c.missed = c.coloured = c.detailed = false;
+    const f8 nothing_there = {1, 0, 0, 0, 0, 0, 0, 1}, plain = {0, 0, 0, 0, 1, 0, 0, 0};
+    for (int32_t r = 0; r < runs; r++) {
+        int32_t i = begins[r];
+        const int32_t end = begins[r + 1];
+        if (triangles[r] == nullptr) {
+            c.missed = true;
+            for (; i < end; i++) {
+                store(attributes + 8 * i, nothing_there);
+                store(material + 8 * i, plain);
+                store(maps + 8 * i, splat(0.0f));
+                c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
+                c.id[i] = 0;
+                c.empty[i] = -1;
+            }
+            continue;
+        }
+        c.hit = true;
+        const Triangle& t = *triangles[r];
+        const Part& part = s.parts->parts[t.part];
+        const InstanceFrame& frame = s.frames[part.instance];
+        const float* vertex = part.vertices;
+        const f8 a0 = load(vertex + 8 * static_cast<int64_t>(t.vertex[0]));
+        const f8 a1 = load(vertex + 8 * static_cast<int64_t>(t.vertex[1]));
+        const f8 a2 = load(vertex + 8 * static_cast<int64_t>(t.vertex[2]));
+        const float q = t.inverse_det;
+        const f8 object_x = a0 * (t.edge[0] * q) + a1 * (t.edge[3] * q) + a2 * (t.edge[6] * q);
+        const f8 object_0 = a0 * ((t.edge[1] * y + t.edge[2]) * q) +
+                            a1 * ((t.edge[4] * y + t.edge[5]) * q) +
+                            a2 * ((t.edge[7] * y + t.edge[8]) * q);
+        const bool charted = part.has_chart && s.at_baked_pose[part.instance];
+        const f8 kept = {
+            0, 0, 0, 1, 1, charted ? part.chart[2] : 0.0f, charted ? part.chart[3] : 0.0f, 0};
+        const f8 moved = {
+            0, 0, 0, 0, 0, charted ? part.chart[0] : 0.0f, charted ? part.chart[1] : 0.0f, 0};
+        const float turned = t.back ? -1.0f : 1.0f;
+        const f8 n0 = load(frame.normal_columns[0]) * turned,
+                 n1 = load(frame.normal_columns[1]) * turned,
+                 n2 = load(frame.normal_columns[2]) * turned;
+        const f8 at_x = object_x * kept + n0 * object_x[0] + n1 * object_x[1] + n2 * object_x[2];
+        const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, 1};
+        const f8 at_0 =
+            object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
+        const f8 look = {part.colour[0], part.colour[1], part.colour[2], t.nearness[0],
+                         part.roughness, part.metallic,  part.emission,  t.nearness[1]};
+        const bool coloured = part.colour_map != nullptr, detailed = part.detail_map != nullptr;
+        f8 map = splat(0.0f);
+        const uint32_t *colour_texels = WHITE_TEXELS, *detail_texels = WHITE_TEXELS;
+        if (coloured || detailed) {
+            const f8 at_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
+            map = f8{object_x[3],
+                     object_x[4],
+                     at_y[3],
+                     at_y[4],
+                     coloured ? static_cast<float>(part.colour_map->log2_size) : 0.0f,
+                     detailed ? static_cast<float>(part.detail_map->log2_size) : 0.0f,
+                     part.flags & PART_FINISH_MAP ? 1.0f : 0.0f,
+                     part.flags & PART_NORMAL_MAP ? 1.0f : 0.0f};
+            if (coloured) colour_texels = part.colour_map->texels;
+            if (detailed) detail_texels = part.detail_map->texels;
+            c.coloured |= coloured;
+            c.detailed |= detailed;
+        }
+        const float offset = t.nearness[1] * y + t.nearness[2];
+        for (; i < end; i++) {
+            const float x = static_cast<float>(c.x + i);
+            const float depth = 1.0f / (t.nearness[0] * x + offset);
+            store(attributes + 8 * i, (at_x * x + at_0) * depth + moved);
+            store(material + 8 * i, look);
+            store(maps + 8 * i, map);
+            c.colour_texels[i] = colour_texels;
+            c.detail_texels[i] = detail_texels;
+            c.id[i] = part.id;
+            c.empty[i] = 0;
+        }
+    }
+    for (int32_t i = c.count; i < c.padded; i++) {
+        store(attributes + 8 * i, nothing_there);
+        store(material + 8 * i, plain);
+        store(maps + 8 * i, splat(0.0f));
+        c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
+        c.id[i] = 0;
+        c.empty[i] = -1;
+    }
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        f8 r[8];
+        for (int k = 0; k < 8; k++) r[k] = load(attributes + 8 * (i + k));
+        transpose(r);
+        store(c.nx + i, r[0]);
+        store(c.ny + i, r[1]);
+        store(c.nz + i, r[2]);
+        store(c.u + i, r[3]);
+        store(c.v + i, r[4]);
+        store(c.light_u + i, r[5]);
+        store(c.light_v + i, r[6]);
+        store(c.depth + i, r[7]);
+        for (int k = 0; k < 8; k++) r[k] = load(material + 8 * (i + k));
+        transpose(r);
+        store(c.red + i, r[0]);
+        store(c.green + i, r[1]);
+        store(c.blue + i, r[2]);
+        store(c.nearness_x + i, r[3]);
+        store(c.roughness + i, r[4]);
+        store(c.metallic + i, r[5]);
+        store(c.emission + i, r[6]);
+        store(c.nearness_y + i, r[7]);
+        if (!c.coloured && !c.detailed) continue;
+        for (int k = 0; k < 8; k++) r[k] = load(maps + 8 * (i + k));
+        transpose(r);
+        store(c.ux + i, r[0]);
+        store(c.vx + i, r[1]);
+        store(c.uy + i, r[2]);
+        store(c.vy + i, r[3]);
+        store(c.colour_log2 + i, r[4]);
+        store(c.detail_log2 + i, r[5]);
+        store(c.finish + i, r[6]);
+        store(c.relief + i, r[7]);
+    }
+}
+
+void set_rays(const Shading& s, Chunk& c) {
+    const float* m = s.world_from_camera;
+    const float y = (static_cast<float>(c.y) - s.cy) / s.focal, inverse = 1.0f / s.focal;
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 x = (counting() + static_cast<float>(c.x + i) - s.cx) * inverse;
+        store(c.ray_x + i, m[0] * x + (m[1] * y + m[2]));
+        store(c.ray_y + i, m[3] * x + (m[4] * y + m[5]));
+        store(c.ray_z + i, m[6] * x + (m[7] * y + m[8]));
+        const f8 nx = load(c.nx + i), ny = load(c.ny + i), nz = load(c.nz + i);
+        const f8 scale = inverse_length(nx, ny, nz);
+        store(c.nx + i, nx * scale);
+        store(c.ny + i, ny * scale);
+        store(c.nz + i, nz * scale);
+    }
+}
+
+void write_normals(const Shading& s, const Chunk& c) {
+    const float* m = s.camera_from_world;
+    float* out = s.outputs->normals + 3 * (c.y * s.width + c.x);
+    alignas(32) float x[CHUNK], y[CHUNK], z[CHUNK];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 nx = load(c.nx + i), ny = load(c.ny + i), nz = load(c.nz + i);
+        const i8 there = ~load(c.empty + i);
+        store(x + i, number(bits(m[0] * nx + m[1] * ny + m[2] * nz) & there));
+        store(y + i, number(bits(m[3] * nx + m[4] * ny + m[5] * nz) & there));
+        store(z + i, number(bits(m[6] * nx + m[7] * ny + m[8] * nz) & there));
+    }
+    for (int32_t i = 0; i < c.count; i++) {
+        out[3 * i] = x[i];
+        out[3 * i + 1] = y[i];
+        out[3 * i + 2] = z[i];
+    }
+}
+
+// Changes of uv from pixel to pixel, of eight pixels.
+struct Slopes {
+    f8 ux, vx, uy, vy;
+};
+
+LANES_INLINE Slopes uv_slopes(const Chunk& c, int32_t i) {
+    const f8 depth = load(c.depth + i), u = load(c.u + i), v = load(c.v + i);
+    const f8 nx = load(c.nearness_x + i), ny = load(c.nearness_y + i);
+    return {depth * (load(c.ux + i) - u * nx), depth * (load(c.vx + i) - v * nx),
+            depth * (load(c.uy + i) - u * ny), depth * (load(c.vy + i) - v * ny)};
+}
+
+// Addresses and shares of a chunk's look-ups.
+struct TapRows {
+    alignas(32) int32_t upper[CHUNK], lower[CHUNK];
+    alignas(32) float across[CHUNK], down[CHUNK];
+};
+LANES_INLINE void store_taps(TapRows& rows, int32_t i, const Taps& taps) {
+    store(rows.upper + i, taps.upper);
+    store(rows.lower + i, taps.lower);
+    store(rows.across + i, taps.across);
+    store(rows.down + i, taps.down);
+}
+
+void colour(Chunk& c) {
+    TapRows fine, coarse;
+    alignas(32) float share[CHUNK];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const Slopes d = uv_slopes(c, i);
+        const i8 size = truncated(load(c.colour_log2 + i));
+        const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.0f);
+        const i8 whole = truncated(level);
+        const i8 next = whole < size ? whole + 1 : whole;
+        const f8 u = load(c.u + i), v = load(c.v + i);
+        store_taps(fine, i, texture_taps(u, v, size, whole));
+        store_taps(coarse, i, texture_taps(u, v, size, next));
+        store(share + i, level - as_float(whole));
+    }
+    alignas(32) float texels[4 * 8];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        for (int k = 0; k < 8; k++) {
+            const int32_t at = i + k;
+            const f4 near = sample_bytes(c.colour_texels[at], fine.upper[at], fine.lower[at],
+                                         fine.across[at], fine.down[at]);
+            const f4 far = sample_bytes(c.colour_texels[at], coarse.upper[at], coarse.lower[at],
+                                        coarse.across[at], coarse.down[at]);
+            *reinterpret_cast<f4_any*>(texels + 4 * k) = near + (far - near) * share[at];
+        }
+        f8 r, g, b, a;
+        transpose4(texels, r, g, b, a);
+        store(c.red + i, load(c.red + i) * (r * (1.0f / 255.0f)));
+        store(c.green + i, load(c.green + i) * (g * (1.0f / 255.0f)));
+        store(c.blue + i, load(c.blue + i) * (b * (1.0f / 255.0f)));
+    }
+}
+
+// Linear base colour. What glows is shaded in the glow's colour, so its own is looked up here.
+void write_albedo(const Shading& s, Chunk& c) {
+    alignas(32) float shaded[3][CHUNK];
+    float* const channels[3] = {c.red, c.green, c.blue};
+    for (int k = 0; k < 3; k++) {
+        memcpy(shaded[k], channels[k], sizeof(shaded[k]));
+        for (int32_t i = 0; i < c.padded; i += 8) store(channels[k] + i, splat(1.0f));
+    }
+    if (c.coloured) colour(c);
+    const uint32_t* visible = s.visible + c.y * s.stride + c.x;
+    float* out = s.outputs->albedo + 3 * (c.y * s.width + c.x);
+    for (int32_t i = 0; i < c.count; i++) {
+        const uint32_t tag = visible[i];
+        const float* base =
+            tag == NOTHING ? nullptr : s.parts->parts[s.set->triangles[tag].part].base;
+        for (int k = 0; k < 3; k++) {
+            const float root = base == nullptr ? 0.0f : base[k] * channels[k][i];
+            out[3 * i + k] = root * root;
+        }
+    }
+    for (int k = 0; k < 3; k++) memcpy(channels[k], shaded[k], sizeof(shaded[k]));
+}
+
+// Normal, roughness and metallic as the detail map has them; see shaders/textures.glsl.
+void detail(const Shading& s, Chunk& c) {
+    TapRows taps;
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const Slopes d = uv_slopes(c, i);
+        const i8 size = truncated(load(c.detail_log2 + i));
+        const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.5f);
+        store_taps(taps, i, texture_taps(load(c.u + i), load(c.v + i), size, truncated(level)));
+    }
+    const float* m = s.world_from_camera;
+    const float inverse = 1.0f / s.focal;
+    alignas(32) float texels[4 * 8];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 relief = load(c.relief + i), finish = load(c.finish + i);
+        if (!any((relief > 0.0f) | (finish > 0.0f))) continue;
+        for (int k = 0; k < 8; k++) {
+            const int32_t at = i + k;
+            *reinterpret_cast<f4_any*>(texels + 4 * k) =
+                sample_bytes(c.detail_texels[at], taps.upper[at], taps.lower[at], taps.across[at],
+                             taps.down[at]);
+        }
+        f8 tx, ty, rough, metal;
+        transpose4(texels, tx, ty, rough, metal);
+        const f8 with_finish = 1.0f / 255.0f * finish;
+        store(c.roughness + i, load(c.roughness + i) * (1.0f - finish + rough * with_finish));
+        store(c.metallic + i, load(c.metallic + i) * (1.0f - finish + metal * with_finish));
+        if (!any(relief > 0.0f)) continue;
+        const Slopes d = uv_slopes(c, i);
+        // How the point moves from pixel to pixel, over its depth.
+        const f8 depth = load(c.depth + i);
+        const f8 zx = -depth * load(c.nearness_x + i), zy = -depth * load(c.nearness_y + i);
+        const f8 rx = load(c.ray_x + i), ry = load(c.ray_y + i), rz = load(c.ray_z + i);
+        const f8 ax = m[0] * inverse + rx * zx, ay = m[3] * inverse + ry * zx,
+                 az = m[6] * inverse + rz * zx;
+        const f8 bx = m[1] * inverse + rx * zy, by = m[4] * inverse + ry * zy,
+                 bz = m[7] * inverse + rz * zy;
+        const f8 nx = load(c.nx + i), ny = load(c.ny + i), nz = load(c.nz + i);
+        const f8 across_yx = by * nz - bz * ny, across_yy = bz * nx - bx * nz,
+                 across_yz = bx * ny - by * nx;
+        const f8 across_xx = ny * az - nz * ay, across_xy = nz * ax - nx * az,
+                 across_xz = nx * ay - ny * ax;
+        const f8 tangent_x = across_yx * d.ux + across_xx * d.uy,
+                 tangent_y = across_yy * d.ux + across_xy * d.uy,
+                 tangent_z = across_yz * d.ux + across_xz * d.uy;
+        const f8 bitangent_x = across_yx * d.vx + across_xx * d.vy,
+                 bitangent_y = across_yy * d.vx + across_xy * d.vy,
+                 bitangent_z = across_yz * d.vx + across_xz * d.vy;
+        const f8 longest =
+            max8(tangent_x * tangent_x + tangent_y * tangent_y + tangent_z * tangent_z,
+                 bitangent_x * bitangent_x + bitangent_y * bitangent_y + bitangent_z * bitangent_z);
+        const f8 scale = 1.0f / sqrt8(max8(longest, splat(1e-30f)));
+        const f8 lx = tx * (2.0f / 255.0f) - 1.0f, ly = ty * (2.0f / 255.0f) - 1.0f;
+        const f8 upright = sqrt8(max8(1.0f - lx * lx - ly * ly, splat(0.0f)));
+        const f8 sx = -lx * scale, sy = -ly * scale;
+        const f8 x = tangent_x * sx + bitangent_x * sy + nx * upright;
+        const f8 y = tangent_y * sx + bitangent_y * sy + ny * upright;
+        const f8 z = tangent_z * sx + bitangent_z * sy + nz * upright;
+        const f8 unit = inverse_length(x, y, z);
+        const i8 there = (relief > 0.0f) & (longest >= 1e-30f);
+        store(c.nx + i, there ? x * unit : nx);
+        store(c.ny + i, there ? y * unit : ny);
+        store(c.nz + i, there ? z * unit : nz);
+    }
+}
+
+// Share of the main light that a shadow map lets through, bilinear between four texels.
+f8 lit_share(const float* nearness, int32_t size, f8 x, f8 y, f8 near) {
+    const float last = static_cast<float>(size) - 1.001f;
+    const f8 tx = clamp8(x * static_cast<float>(size) - 0.5f, 0.0f, last);
+    const f8 ty = clamp8(y * static_cast<float>(size) - 0.5f, 0.0f, last);
+    const i8 ix = truncated(tx), iy = truncated(ty);
+    const f8 across = tx - as_float(ix), down = ty - as_float(iy);
+    const int32_t stride = size + 8;
+    const i8 at = iy * stride + ix;
+    alignas(32) float corner[4][8];
+    for (int k = 0; k < 8; k++) {
+        const float* p = nearness + at[k];
+        corner[0][k] = p[0];
+        corner[1][k] = p[1];
+        corner[2][k] = p[stride];
+        corner[3][k] = p[stride + 1];
+    }
+    f8 lit[4];
+    for (int k = 0; k < 4; k++) {
+        lit[k] = near >= load(corner[k]) ? splat(1.0f) : splat(0.0f);
+    }
+    const f8 upper = lit[0] + (lit[1] - lit[0]) * across;
+    const f8 lower = lit[2] + (lit[3] - lit[2]) * across;
+    return upper + (lower - upper) * down;
+}
+
+struct MapPlace {
+    f8 x, y, near;  // in the shadow map, 0 to 1; 1 - depth
+};
+
+LANES_INLINE MapPlace in_shadow_map(const Light& light, const Chunk& c, int32_t i, f8 facing) {
+    const float* m = light.map_from_world;
+    const f8 lift = light.texel_m * (1.0f + 2.0f * (1.0f - facing));
+    const f8 x = load(c.px + i) + load(c.nx + i) * lift, y = load(c.py + i) + load(c.ny + i) * lift,
+             z = load(c.pz + i) + load(c.nz + i) * lift;
+    return {m[0] * x + m[1] * y + m[2] * z + m[3], m[4] * x + m[5] * y + m[6] * z + m[7],
+            1.0f - clamp8(m[8] * x + m[9] * y + m[10] * z + m[11], 0.0f, 1.0f)};
+}
+
+// The light around each point and the share of the main light that arrives, from baked light.
+void baked_light(const Shading& s, Chunk& c) {
+    const Light& light = *s.light;
+    const int32_t width = light.light_map_width, height = light.light_map_height;
+    alignas(32) int32_t at[CHUNK];
+    alignas(32) float across[CHUNK], down[CHUNK];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 x = clamp8(load(c.light_u + i) * static_cast<float>(width) - 0.5f, 0.0f,
+                            static_cast<float>(width) - 1.001f);
+        const f8 y = clamp8(load(c.light_v + i) * static_cast<float>(height) - 0.5f, 0.0f,
+                            static_cast<float>(height) - 1.001f);
+        const i8 ix = truncated(x), iy = truncated(y);
+        store(across + i, x - as_float(ix));
+        store(down + i, y - as_float(iy));
+        store(at + i, iy * width + ix);
+    }
+    const float* main = light.main_towards;
+    const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
+    const int64_t row = 4 * static_cast<int64_t>(width);
+    alignas(32) float texels[4 * 8];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        for (int k = 0; k < 8; k++) {
+            const uint16_t* p = light.light_map + 4 * static_cast<int64_t>(at[i + k]);
+            *reinterpret_cast<f4_any*>(texels + 4 * k) =
+                sample_halves(p, p + row, across[i + k], down[i + k]);
+        }
+        f8 r, g, b, share;
+        transpose4(texels, r, g, b, share);
+        const i8 charted = load(c.light_u + i) > 0.0f;
+        const i8 there = ~load(c.empty + i);
+        if (any(~charted & there)) {
+            alignas(32) float probed[3][8];
+            for (int k = 0; k < 8; k++) {
+                const float* p = light.instance_light + 12 * static_cast<int64_t>(c.id[i + k]);
+                for (int j = 0; j < 3; j++) {
+                    probed[j][k] = p[4 * j] + p[4 * j + 1] * c.nx[i + k] +
+                                   p[4 * j + 2] * c.ny[i + k] + p[4 * j + 3] * c.nz[i + k];
+                }
+            }
+            r = charted ? r : max8(load(probed[0]), splat(0.0f));
+            g = charted ? g : max8(load(probed[1]), splat(0.0f));
+            b = charted ? b : max8(load(probed[2]), splat(0.0f));
+        }
+        store(c.around_r + i, r);
+        store(c.around_g + i, g);
+        store(c.around_b + i, b);
+        const f8 facing =
+            load(c.nx + i) * main[0] + load(c.ny + i) * main[1] + load(c.nz + i) * main[2];
+        const i8 mapped = light.main_baked > 0.0f ? charted : splat(0);
+        const i8 asked = there & (facing > 0.0f) & (~mapped | (share > 0.0f));
+        f8 arrives = splat(0.0f);
+        if (has_main && any(asked)) {
+            const MapPlace place = in_shadow_map(light, c, i, facing);
+            f8 past = share;
+            if (any(asked & ~mapped)) {
+                const f8 standing = lit_share(light.static_shadow.nearness, light.shadow_size,
+                                              place.x, place.y, place.near);
+                past = mapped ? share : light.main_clear * standing;
+            }
+            arrives = past * lit_share(light.shadow.nearness, light.shadow_size, place.x, place.y,
+                                       place.near);
+        }
+        store(c.arrives + i, arrives);
+    }
+}
+
+// The same where nothing is baked: an analytic sky, and the shadow map alone.
+void live_light(const Shading& s, Chunk& c) {
+    const Light& light = *s.light;
+    const float* main = light.main_towards;
+    const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
+    const Colour8 horizon = splat3(light.sky_horizon), ground = splat3(light.sky_ground);
+    const Colour8 dome = mix3(horizon, splat3(light.sky_zenith), splat(0.55f));
+    const float step = 1.6f / static_cast<float>(light.shadow_size);
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 nz = load(c.nz + i);
+        const Colour8 above = mix3(horizon, dome, max8(nz, splat(0.0f)));
+        const Colour8 sky = mix3(ground, above, 0.5f + 0.5f * nz);
+        store(c.around_r + i, light.ambient[0] + light.sky_share * sky.r);
+        store(c.around_g + i, light.ambient[1] + light.sky_share * sky.g);
+        store(c.around_b + i, light.ambient[2] + light.sky_share * sky.b);
+        const f8 facing =
+            load(c.nx + i) * main[0] + load(c.ny + i) * main[1] + load(c.nz + i) * main[2];
+        f8 arrives = splat(0.0f);
+        if (has_main && any(~load(c.empty + i) & (facing > 0.0f))) {
+            const MapPlace p = in_shadow_map(light, c, i, facing);
+            const float across[4] = {0.94f, -0.34f, -0.94f, 0.34f},
+                        down[4] = {0.34f, 0.94f, -0.34f, -0.94f};
+            for (int k = 0; k < 4; k++) {
+                arrives = arrives + lit_share(light.shadow.nearness, light.shadow_size,
+                                              p.x + across[k] * step, p.y + down[k] * step, p.near);
+            }
+            arrives = arrives * 0.25f;
+            const i8 outside = (p.x < 0.0f) | (p.x > 1.0f) | (p.y < 0.0f) | (p.y > 1.0f) |
+                               (p.near <= 0.0f) | (p.near >= 1.0f);
+            arrives = outside ? splat(1.0f) : arrives;
+        }
+        store(c.arrives + i, arrives);
+    }
+}
+
+// The direction from which a surface mirrors light to the eye.
+struct Direction8 {
+    f8 x, y, z;
+};
+LANES_INLINE Direction8 mirrored_ray(const Chunk& c, int32_t i) {
+    const f8 rx = load(c.ray_x + i), ry = load(c.ray_y + i), rz = load(c.ray_z + i);
+    const f8 nx = load(c.nx + i), ny = load(c.ny + i), nz = load(c.nz + i);
+    const f8 scale = inverse_length(rx, ry, rz);
+    const f8 twice = 2.0f * (rx * nx + ry * ny + rz * nz) * scale;
+    return {rx * scale - twice * nx, ry * scale - twice * ny, rz * scale - twice * nz};
+}
+
+void mirrored_light(const Shading& s, Chunk& c) {
+    const Light& light = *s.light;
+    const float* open = light.room_light;
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const Colour8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
+        const f8 roughness = load(c.roughness + i);
+        Colour8 seen = around;
+        if (!light.baked) {
+            const Direction8 d = mirrored_ray(c, i);
+            const Colour8 horizon = splat3(light.sky_horizon);
+            const Colour8 dome = mix3(horizon, splat3(light.sky_zenith), splat(0.55f));
+            const Colour8 above = mix3(horizon, dome, max8(d.z, splat(0.0f)));
+            const Colour8 soft = mix3(splat3(light.sky_ground), above, 0.5f + 0.5f * d.z);
+            const Colour8 sky =
+                mix3(analytic_sky(light, d.z), soft, min8(roughness * 1.4f, splat(1.0f)));
+            seen = {light.ambient[0] + light.sky_share * sky.r,
+                    light.ambient[1] + light.sky_share * sky.g,
+                    light.ambient[2] + light.sky_share * sky.b};
+        } else if (light.reflecting && any((roughness < 0.7f) & ~load(c.empty + i))) {
+            const Direction8 d = mirrored_ray(c, i);
+            const Colour8 room = mirrored_room(light, load(c.px + i), load(c.py + i),
+                                               load(c.pz + i), d.x, d.y, d.z, roughness);
+            // Where less light arrives than in the middle of the room, less of the room is seen.
+            const f8 there = open[0] + open[1] * load(c.nx + i) + open[2] * load(c.ny + i) +
+                             open[3] * load(c.nz + i);
+            const f8 share = clamp8(luma8(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
+            const Colour8 dimmed = {room.r * share, room.g * share, room.b * share};
+            // The rougher, the more of the half space it mirrors: that is the light around.
+            seen = mix3(dimmed, around, smoothstep8(splat(0.25f), splat(0.7f), roughness));
+        }
+        store(c.mirrored_r + i, seen.r);
+        store(c.mirrored_g + i, seen.g);
+        store(c.mirrored_b + i, seen.b);
+    }
+}
+
+// A surface of eight pixels, as the light from one direction meets it.
+struct Surface8 {
+    f8 nx, ny, nz, vx, vy, vz;  // normal, and direction to the eye
+    Colour8 diffuse, f0;
+    f8 a2, nv;  // roughness to the fourth power, cosine of the viewing angle
+};
+
+// GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
+LANES_INLINE void add_reflected(const Surface8& s, f8 lx, f8 ly, f8 lz, const Colour8& power,
+                                Colour8& sum) {
+    const f8 nl = clamp8(s.nx * lx + s.ny * ly + s.nz * lz, 0.0f, 1.0f);
+    f8 hx = lx + s.vx, hy = ly + s.vy, hz = lz + s.vz;
+    const f8 scale = inverse_length(hx, hy, hz);
+    hx *= scale;
+    hy *= scale;
+    hz *= scale;
+    const f8 nh = clamp8(s.nx * hx + s.ny * hy + s.nz * hz, 0.0f, 1.0f);
+    const f8 vh = clamp8(s.vx * hx + s.vy * hy + s.vz * hz, 0.0f, 1.0f);
+    const f8 rest = 1.0f - s.a2;
+    const f8 spread = 1.0f - nh * nh * rest;
+    const f8 smith = nl * sqrt8(s.nv * s.nv * rest + s.a2) + s.nv * sqrt8(nl * nl * rest + s.a2);
+    // Distribution times visibility.
+    const f8 lobe = 0.5f * s.a2 / (PI * spread * spread * smith);
+    const f8 grazing = 1.0f - vh, g2 = grazing * grazing, g5 = g2 * g2 * grazing;
+    const f8 fr = s.f0.r + (1.0f - s.f0.r) * g5, fg = s.f0.g + (1.0f - s.f0.g) * g5,
+             fb = s.f0.b + (1.0f - s.f0.b) * g5;
+    const float over_pi = 1.0f / PI;
+    sum.r = sum.r + power.r * nl * (s.diffuse.r * (1.0f - fr) * over_pi + fr * lobe);
+    sum.g = sum.g + power.g * nl * (s.diffuse.g * (1.0f - fg) * over_pi + fg * lobe);
+    sum.b = sum.b + power.b * nl * (s.diffuse.b * (1.0f - fb) * over_pi + fb * lobe);
+}
+
+void add_lamp(const Lamp& lamp, const Chunk& c, int32_t i, const Surface8& s, Colour8& sum) {
+    f8 lx = splat(-lamp.direction[0]), ly = splat(-lamp.direction[1]),
+       lz = splat(-lamp.direction[2]);
+    Colour8 power = splat3(lamp.colour);
+    if (lamp.kind > 0.5f) {
+        const f8 x = lamp.position[0] - load(c.px + i), y = lamp.position[1] - load(c.py + i),
+                 z = lamp.position[2] - load(c.pz + i);
+        const f8 square = max8(x * x + y * y + z * z, splat(1e-4f));
+        const f8 inverse = 1.0f / sqrt8(square);
+        lx = x * inverse;
+        ly = y * inverse;
+        lz = z * inverse;
+        const f8 reach = square / (lamp.range * lamp.range);
+        const f8 window = clamp8(1.0f - reach * reach, 0.0f, 1.0f);
+        f8 share = window * window / square;
+        const f8 along =
+            -(lx * lamp.direction[0] + ly * lamp.direction[1] + lz * lamp.direction[2]);
+        if (lamp.kind > 2.5f) {
+            share = share * max8(along, splat(0.0f));
+        } else if (lamp.kind > 1.5f) {
+            share = share * smoothstep8(splat(lamp.outer_cosine), splat(lamp.inner_cosine), along);
+        }
+        // A cone without a soft edge divides by 0 at its very edge: nothing arrives there.
+        share = max8(share, splat(0.0f));
+        power = {power.r * share, power.g * share, power.b * share};
+        if (!any((share > 0.0f) & (s.nx * lx + s.ny * ly + s.nz * lz > 0.0f))) return;
+    }
+    add_reflected(s, lx, ly, lz, power, sum);
+}
+
+void combine(const Shading& s, Chunk& c) {
+    const Light& light = *s.light;
+    const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 rx = load(c.ray_x + i), ry = load(c.ray_y + i), rz = load(c.ray_z + i);
+        const f8 scale = -inverse_length(rx, ry, rz);
+        Surface8 here;
+        here.vx = rx * scale;
+        here.vy = ry * scale;
+        here.vz = rz * scale;
+        here.nx = load(c.nx + i);
+        here.ny = load(c.ny + i);
+        here.nz = load(c.nz + i);
+        const Colour8 base = {load(c.red + i), load(c.green + i), load(c.blue + i)};
+        const f8 metallic = load(c.metallic + i), roughness = load(c.roughness + i);
+        const f8 matt = 1.0f - metallic;
+        here.f0 = mix3({splat(0.04f), splat(0.04f), splat(0.04f)}, base, metallic);
+        here.diffuse = {base.r * matt, base.g * matt, base.b * matt};
+        const f8 square = roughness * roughness;
+        here.a2 = square * square;
+        here.nv = abs8(here.nx * here.vx + here.ny * here.vy + here.nz * here.vz) + 1e-4f;
+        // Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on
+        // mobile").
+        const f8 nv = min8(here.nv, splat(1.0f));
+        const f8 q0 = 1.0f - roughness, q1 = 0.0425f - 0.0275f * roughness,
+                 q2 = 1.04f - 0.572f * roughness, q3 = 0.022f * roughness - 0.04f;
+        const f8 a = min8(q0 * q0, exp2_8(-9.28f * nv)) * q0 + q1;
+        const f8 term_x = -1.04f * a + q2, term_y = 1.04f * a + q3;
+        const f8 lost = 1.0f - (term_x + term_y);
+        const Colour8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
+        const Colour8 seen = {load(c.mirrored_r + i), load(c.mirrored_g + i),
+                              load(c.mirrored_b + i)};
+        // Single bounces in the microfacets, and what comes back from further ones (Fdez-Aguera
+        // 2019, "A multiple-scattering microfacet model").
+        auto of_environment = [&](f8 f0, f8 diffuse, f8 mirrored, f8 from_around) {
+            const f8 once = f0 * term_x + term_y;
+            const f8 mean = f0 + (1.0f - f0) * (1.0f / 21.0f);
+            const f8 again = lost * once * mean / (1.0f - mean * lost);
+            return once * mirrored + (again + diffuse * (1.0f - once - again)) * from_around;
+        };
+        Colour8 sum = {of_environment(here.f0.r, here.diffuse.r, seen.r, around.r),
+                       of_environment(here.f0.g, here.diffuse.g, seen.g, around.g),
+                       of_environment(here.f0.b, here.diffuse.b, seen.b, around.b)};
+        store(c.from_around + i, luma8(sum));
+        const f8 glow = load(c.emission + i);
+        sum = {sum.r + base.r * glow, sum.g + base.g * glow, sum.b + base.b * glow};
+        const f8 arrives = load(c.arrives + i);
+        if (has_main && any(arrives > 0.0f)) {
+            const Colour8 power = {light.main_colour[0] * arrives, light.main_colour[1] * arrives,
+                                   light.main_colour[2] * arrives};
+            add_reflected(here, splat(light.main_towards[0]), splat(light.main_towards[1]),
+                          splat(light.main_towards[2]), power, sum);
+        }
+        for (int32_t k = 0; k < light.lamp_count; k++) add_lamp(light.lamps[k], c, i, here, sum);
+        store(c.light_r + i, sum.r);
+        store(c.light_g + i, sum.g);
+        store(c.light_b + i, sum.b);
+    }
+}
+
+// The angle whose tangent is y / x, to 1e-6 (Abramowitz and Stegun 4.4.49).
+f8 arc_tangent(f8 y, f8 x) {
+    const f8 ax = abs8(x), ay = abs8(y);
+    const f8 a = min8(ax, ay) / max8(max8(ax, ay), splat(1e-20f)), q = a * a;
+    f8 r = a *
+           (0.9999993329f +
+            q * (-0.3332985605f +
+                 q * (0.1994653599f +
+                      q * (-0.1390853351f +
+                           q * (0.0964200441f + q * (-0.0559098861f +
+                                                     q * (0.0218612288f + q * -0.0040540580f)))))));
+    r = ay > ax ? 0.5f * PI - r : r;
+    r = x < 0.0f ? PI - r : r;
+    return negated_if(r, bits(y) >> 31);
+}
+
+// What is seen where nothing was hit; see shaders/sky.frag.
+Colour8 background(const Light& light, f8 dx, f8 dy, f8 dz) {
+    if (light.background_plain) return splat3(light.background);
+    if (light.sky_map == nullptr) return analytic_sky(light, dz * inverse_length(dx, dy, dz));
+    const f8 across = 0.5f - arc_tangent(dy, dx) * (0.5f / PI);
+    const f8 down = arc_tangent(sqrt8(dx * dx + dy * dy), dz) * (1.0f / PI);
+    const float width = static_cast<float>(light.sky_width);
+    f8 x = across * width - 0.5f;
+    // The first column is repeated behind the last.
+    x = x < 0.0f ? x + width : x;
+    x = clamp8(x, 0.0f, width - 0.001f);
+    const f8 y = clamp8(down * static_cast<float>(light.sky_height) - 0.5f, 0.0f,
+                        static_cast<float>(light.sky_height) - 1.001f);
+    const f8 left = floor8(x), top = floor8(y);
+    const i8 ix = truncated(left), iy = truncated(top);
+    const f8 share_x = x - left, share_y = y - top;
+    const int64_t row = 4 * (static_cast<int64_t>(light.sky_width) + 1);
+    alignas(32) float texels[4 * 8];
+    for (int k = 0; k < 8; k++) {
+        const uint16_t* p = light.sky_map + row * iy[k] + 4 * static_cast<int64_t>(ix[k]);
+        *reinterpret_cast<f4_any*>(texels + 4 * k) =
+            sample_halves(p, p + row, share_x[k], share_y[k]);
+    }
+    Colour8 seen;
+    f8 unused;
+    transpose4(texels, seen.r, seen.g, seen.b, unused);
+    return seen;
+}
+
+// Exposed radiance and the share of it that came from around, as halves.
+void finish(const Shading& s, const Chunk& c) {
+    const Light& light = *s.light;
+    alignas(32) int32_t out[2 * CHUNK];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        Colour8 sum = {load(c.light_r + i), load(c.light_g + i), load(c.light_b + i)};
+        f8 share = load(c.from_around + i) / max8(luma8(sum), splat(1e-6f));
+        const i8 empty = load(c.empty + i);
+        if (c.missed && any(empty)) {
+            const Colour8 sky =
+                background(light, load(c.ray_x + i), load(c.ray_y + i), load(c.ray_z + i));
+            sum = {empty ? sky.r : sum.r, empty ? sky.g : sum.g, empty ? sky.b : sum.b};
+            share = empty ? splat(0.0f) : share;
+        }
+        // Half precision ends at 65504.
+        const i8 r = to_half(clamp8(sum.r * light.exposure, 0.0f, 6e4f));
+        const i8 g = to_half(clamp8(sum.g * light.exposure, 0.0f, 6e4f));
+        const i8 b = to_half(clamp8(sum.b * light.exposure, 0.0f, 6e4f));
+        const i8 a = to_half(clamp8(share, 0.0f, 1.0f));
+        const i8 rg = r | (g << 16), ba = b | (a << 16);
+        store(out + 2 * i, (i8)SHUFFLE(rg, ba, 0, 8, 1, 9, 2, 10, 3, 11));
+        store(out + 2 * i + 8, (i8)SHUFFLE(rg, ba, 4, 12, 5, 13, 6, 14, 7, 15));
+    }
+    memcpy(s.outputs->radiance + 4 * (c.y * s.width + c.x), out, static_cast<size_t>(c.count) * 8);
+}
+
+void place_points(const Shading& s, Chunk& c) {
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 depth = load(c.depth + i);
+        store(c.px + i, s.eye[0] + load(c.ray_x + i) * depth);
+        store(c.py + i, s.eye[1] + load(c.ray_y + i) * depth);
+        store(c.pz + i, s.eye[2] + load(c.ray_z + i) * depth);
+        store(c.roughness + i, clamp8(load(c.roughness + i), 0.045f, 1.0f));
+        store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
+        const f8 r = load(c.red + i), g = load(c.green + i), b = load(c.blue + i);
+        store(c.red + i, r * r);
+        store(c.green + i, g * g);
+        store(c.blue + i, b * b);
+    }
+}
+
+void shade_chunk(const Shading& s, Chunk& c) {
+    if (s.outputs->surface != nullptr) write_surface(s, c.x, c.y, c.count);
+    const Outputs& wanted = *s.outputs;
+    if (!wanted.radiance && !wanted.normals && !wanted.albedo) return;
+    gather(s, c);
+    set_rays(s, c);
+    if (wanted.normals != nullptr) write_normals(s, c);
+    if (wanted.albedo != nullptr) write_albedo(s, c);
+    if (s.outputs->radiance == nullptr) return;
+    if (c.hit) {
+        if (c.coloured) colour(c);
+        if (c.detailed) detail(s, c);
+        place_points(s, c);
+        if (s.light->baked) {
+            baked_light(s, c);
+        } else {
+            live_light(s, c);
+        }
+        mirrored_light(s, c);
+        combine(s, c);
+    } else {
+        for (int32_t i = 0; i < c.padded; i += 8) {
+            store(c.light_r + i, splat(0.0f));
+            store(c.light_g + i, splat(0.0f));
+            store(c.light_b + i, splat(0.0f));
+            store(c.from_around + i, splat(0.0f));
+        }
+    }
+    finish(s, c);
+}
+
+}  // namespace
+
+Colour8 mirrored_room(const Light& light, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz, f8 roughness) {
+    const f8 ix = 1.0f / (dx + 1e-6f), iy = 1.0f / (dy + 1e-6f), iz = 1.0f / (dz + 1e-6f);
+    const float *low = light.room_low, *high = light.room_high, *from = light.reflection_from;
+    const f8 end_x = max8((low[0] - x) * ix, (high[0] - x) * ix);
+    const f8 end_y = max8((low[1] - y) * iy, (high[1] - y) * iy);
+    const f8 end_z = max8((low[2] - z) * iz, (high[2] - z) * iz);
+    const f8 reach = max8(min8(end_x, min8(end_y, end_z)), splat(0.05f));
+    const f8 tx = x + dx * reach - from[0], ty = y + dy * reach - from[1],
+             tz = z + dz * reach - from[2];
+    const f8 inverse = 1.0f / max8(abs8(tx) + abs8(ty) + abs8(tz), splat(1e-20f));
+    f8 nx = tx * inverse, ny = ty * inverse;
+    const f8 fold = max8(-tz * inverse, splat(0.0f));
+    nx = nx >= 0.0f ? nx - fold : nx + fold;
+    ny = ny >= 0.0f ? ny - fold : ny + fold;
+    const float edge = static_cast<float>(light.reflection_edge);
+    const float half = 0.5f * light.reflection_scale * edge, middle = 0.5f * edge - 0.5f;
+    const f8 u = clamp8(nx * half + middle, 0.0f, edge - 1.001f);
+    const f8 v = clamp8(ny * half + middle, 0.0f, edge - 1.001f);
+    const f8 layer = clamp8(roughness * light.layers_per_roughness, 0.0f,
+                            static_cast<float>(light.reflection_layers) - 1.001f);
+    const i8 iu = truncated(u), iv = truncated(v), il = truncated(layer);
+    const f8 across = u - as_float(iu), down = v - as_float(iv), share = layer - as_float(il);
+    const i8 at = (il * light.reflection_edge + iv) * light.reflection_edge + iu;
+    const int64_t row = 4 * static_cast<int64_t>(light.reflection_edge);
+    const int64_t next = row * light.reflection_edge;
+    alignas(32) float texels[4 * 8];
+    for (int k = 0; k < 8; k++) {
+        const uint16_t* p = light.reflections + 4 * static_cast<int64_t>(at[k]);
+        const f4 near = sample_halves(p, p + row, across[k], down[k]);
+        const f4 far = sample_halves(p + next, p + next + row, across[k], down[k]);
+        *reinterpret_cast<f4_any*>(texels + 4 * k) = near + (far - near) * share[k];
+    }
+    Colour8 seen;
+    f8 unused;
+    transpose4(texels, seen.r, seen.g, seen.b, unused);
+    return seen;
+}
+
+void shade_band(const Shading& s, int32_t first_row, int32_t last_row) {
+    Chunk chunk;
+    for (int32_t x = 0; x < s.width; x += CHUNK) {
+        const int64_t rest = s.width - x;
+        chunk.x = x;
+        chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
+        chunk.padded = (chunk.count + 7) & ~7;
+        for (int32_t y = first_row; y < last_row; y++) {
+            chunk.y = y;
+            shade_chunk(s, chunk);
+        }
+    }
+}
+
+}  // namespace sailenv

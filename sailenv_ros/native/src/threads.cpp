@@ -1,0 +1,155 @@
+#include "threads.h"
+
+#include <pthread.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace sailenv {
+namespace {
+
+constexpr int64_t MOST_WORKERS = 255;
+
+// Rounding to nearest with denormals, whatever the program around has set: the bytes of a result
+// must not depend on the thread that makes it.
+class FloatEnvironment {
+public:
+#if defined(__x86_64__)
+    FloatEnvironment() : before_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
+    ~FloatEnvironment() { _mm_setcsr(before_); }
+
+private:
+    unsigned before_;
+#endif
+};
+
+struct Job {
+    TileFunction function;
+    void* context;
+    int64_t tiles;
+    std::atomic<int64_t> next_tile{0};
+    // The others are guarded by the pool's mutex.
+    int64_t free_slots;
+    int64_t next_slot = 1;
+    int64_t helpers = 0;
+    std::condition_variable done{};
+
+    void work(int64_t slot) {
+        for (;;) {
+            const int64_t tile = next_tile.fetch_add(1, std::memory_order_relaxed);
+            if (tile >= tiles) return;
+            function(context, tile, slot);
+        }
+    }
+};
+
+class Pool {
+public:
+    void run(int64_t threads, int64_t tiles, TileFunction function, void* context) {
+        Job job{function, context, tiles, {}, std::min(threads, tiles) - 1};
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            start_workers(job.free_slots);
+            jobs_.push_back(&job);
+        }
+        if (job.free_slots == 1) {
+            work_.notify_one();
+        } else {
+            work_.notify_all();
+        }
+        {
+            const FloatEnvironment environment;
+            job.work(0);
+        }
+        std::unique_lock<std::mutex> lock(mutex_);
+        jobs_.erase(std::find(jobs_.begin(), jobs_.end(), &job));
+        job.done.wait(lock, [&job] { return job.helpers == 0; });
+    }
+
+private:
+    void start_workers(int64_t wanted) {
+        while (workers_ < std::min(wanted, MOST_WORKERS)) {
+            // Signals are for the threads of the program.
+            sigset_t all, before;
+            sigfillset(&all);
+            pthread_sigmask(SIG_SETMASK, &all, &before);
+            bool started = true;
+            try {
+                std::thread([this] { serve(); }).detach();
+            } catch (const std::system_error&) {
+                started = false;
+            }
+            pthread_sigmask(SIG_SETMASK, &before, nullptr);
+            // The calling thread does the work of those that the system does not grant.
+            if (!started) return;
+            workers_++;
+        }
+    }
+
+    void serve() {
+        const FloatEnvironment environment;
+        std::unique_lock<std::mutex> lock(mutex_);
+        for (;;) {
+            const auto found = std::find_if(jobs_.begin(), jobs_.end(),
+                                            [](const Job* job) { return job->free_slots > 0; });
+            if (found == jobs_.end()) {
+                work_.wait(lock);
+                continue;
+            }
+            Job& job = **found;
+            job.free_slots--;
+            job.helpers++;
+            const int64_t slot = job.next_slot++;
+            lock.unlock();
+            job.work(slot);
+            lock.lock();
+            if (--job.helpers == 0) job.done.notify_one();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable work_;
+    std::vector<Job*> jobs_;
+    int64_t workers_ = 0;
+};
+
+// Never destroyed: its threads may still wait when the process ends.
+std::atomic<Pool*> the_pool{nullptr};
+
+// A forked child has none of the threads, and a mutex may be held for good: it makes its own pool.
+void forget_pool() { the_pool.store(nullptr); }
+
+Pool& pool() {
+    Pool* found = the_pool.load(std::memory_order_acquire);
+    if (found != nullptr) return *found;
+    static const int registered = pthread_atfork(nullptr, nullptr, forget_pool);
+    (void)registered;
+    Pool* made = new Pool;
+    if (the_pool.compare_exchange_strong(found, made)) return *made;
+    delete made;
+    return *found;
+}
+
+}  // namespace
+
+void run_tiles(int64_t threads, int64_t tiles, TileFunction function, void* context) {
+    if (tiles <= 0) return;
+    if (threads <= 1 || tiles == 1) {
+        const FloatEnvironment environment;
+        for (int64_t tile = 0; tile < tiles; tile++) function(context, tile, 0);
+        return;
+    }
+    pool().run(threads, tiles, function, context);
+}
+
+}  // namespace sailenv
