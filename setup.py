@@ -1,26 +1,29 @@
 """What the distribution is and what it installs, for pip and for colcon alike."""
 
+import importlib.util
+import os
 import sys
 from glob import glob
 from pathlib import Path
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
+
+try:
+    from setuptools.command.bdist_wheel import bdist_wheel
+except ImportError:  # setuptools before 70.1, with which colcon installs and nobody makes wheels
+    bdist_wheel = object
 
 PACKAGE = "sailenv_ros"
 
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
     "aiohttp>=3.9",
-    "coacd>=1.0.7",
-    "embreex>=4.4.0",
     "glcontext>=3.0",
     # Compresses what clients of the gateway want gzipped, many times faster than zlib.
     "isal>=1.6",
     "lz4>=4.3",
     "mapbox-earcut>=1.0.3",
-    "OpenEXR>=3.3",
-    # Has no final release yet; compiled where it is installed, in some seconds.
-    "meshoptimizer>=0.2.30a0",
     "mcap>=1.2",
     "moderngl>=5.10",
     "numba>=0.59",
@@ -35,7 +38,6 @@ REQUIREMENTS = [
     "rich>=13.0",
     "scipy>=1.11",
     "trimesh>=4.5",
-    "xatlas>=0.0.9",
     "zstandard>=0.22",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.
@@ -52,11 +54,28 @@ ROS = [
     "ros-jazzy-std-msgs",
     "ros-jazzy-std-srvs",
 ]
+# What only importing models and building the furniture pack need; reading packs does without.
+ASSETS = [
+    "coacd>=1.0.7",
+    # Has no final release yet; compiled where it is installed, in some seconds.
+    "meshoptimizer>=0.2.30a0",
+    "OpenEXR>=3.3",
+]
+# What only baking light needs; light that was baked before is read without.
+BAKE = ["embreex>=4.4.0", "xatlas>=0.0.9"]
 # What the experiments compare with and draw with: `sailenv bench`, `report`, and `sailenv eval`.
-# The original's client, which is timed at the gateway and tested there, declares no dependencies.
+# The SAILenv client, which is timed at the gateway and tested there, declares no dependencies.
 BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
 DEV = [
+    # The notebook among the examples is executed by a test.
+    "ipykernel>=6.29",
+    "nbclient>=0.10",
+    "nbformat>=5.10",
+    # The documentation, with an API reference from the docstrings.
+    "mkdocs-material>=9.5",
+    "mkdocstrings[python]>=0.26",
+    "clang-format>=18",
     "colcon-common-extensions",
     "hypothesis",
     "import-linter",
@@ -65,7 +84,7 @@ DEV = [
     "mcap-ros2-support",
     "mypy",
     "onnxruntime>=1.17",
-    # Drives Debian's Chromium, for the tests of the window.
+    # Drives Debian's Chromium, for the tests of the web viewer.
     "playwright>=1.40",
     "pycocotools",
     "pytest>=8.0",
@@ -73,7 +92,7 @@ DEV = [
     "pytest-xdist",
     "rosbags",
     "ruff",
-    # The original's client, which the gateway's tests drive; it declares no dependencies.
+    # The SAILenv client, which the gateway's tests drive; it declares no dependencies.
     "sailenv==0.5b0",
     "types-jsonschema",
     "types-PyYAML",
@@ -98,26 +117,94 @@ def data_files() -> list[tuple[str, list[str]]]:
     return files
 
 
+def load_native_compile():
+    """Load the module that compiles the native library, without importing the package."""
+    path = Path(__file__).resolve().parent / PACKAGE / "native" / "compile.py"
+    spec = importlib.util.spec_from_file_location("native_compile", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+class BuildNativeLibrary(build_ext):
+    """Compiles the native library where other packages compile modules for one Python.
+
+    Without a compiler the rest is installed all the same: see docs/architecture.md.
+    """
+
+    def get_ext_filename(self, fullname):
+        # A plain library for ctypes: its name says nothing about a Python.
+        return str(Path(*fullname.split(".")).with_suffix(".so"))
+
+    def build_extension(self, extension):
+        native_compile = load_native_compile()
+        strict = bool(os.environ.get(native_compile.STRICT_VARIABLE))
+        output = Path(self.get_ext_fullpath(extension.name))
+        objects = Path(self.build_temp) / "native"
+        try:
+            native_compile.compile_library(output, objects=objects, strict=strict)
+        except native_compile.CompilerError as problem:
+            if strict:
+                raise
+            output.unlink(missing_ok=True)
+            self.warn(f"without the native library, frames take longer: {problem}")
+
+    def copy_extensions_to_source(self):
+        # Of an editable install; there is nothing to copy if it could not be compiled.
+        self.extensions = [
+            extension
+            for extension in self.extensions
+            if Path(self.build_lib, self.get_ext_filename(extension.name)).exists()
+        ]
+        super().copy_extensions_to_source()
+
+    def get_outputs(self):
+        return [path for path in super().get_outputs() if Path(path).exists()]
+
+
+class BuildWheel(bdist_wheel):
+    """Names the machine in the wheel's tag, and no Python: ctypes loads it in any of them."""
+
+    def get_tag(self):
+        return ("py3", "none", super().get_tag()[2])
+
+
 setup(
     name=PACKAGE,
-    version="0.1.0",
+    version="0.2.0",
     description="A virtual visual environment: simulated rooms with exact per-pixel ground truth",
     long_description=Path("README.md").read_text(encoding="utf-8"),
     long_description_content_type="text/markdown",
     license="Apache-2.0",
     maintainer="sailenv_ros maintainers",
     maintainer_email="maintainers@users.noreply.github.com",
-    packages=find_packages(include=["sailenv_ros", "sailenv_ros.*", "sailenv_msgs_py"]),
+    packages=find_packages(
+        include=["sailenv_ros", "sailenv_ros.*", "sailenv_msgs_py", "sailenv_msgs_py.*"]
+    ),
     package_data={
         "sailenv_ros": ["py.typed"],
         "sailenv_ros.render": ["shaders/*"],
         "sailenv_ros.viewer": ["page/*"],
         "sailenv_msgs_py": ["py.typed"],
     },
+    ext_modules=[Extension("sailenv_ros.native.libsailenv_native", sources=[])],
+    cmdclass={
+        "build_ext": BuildNativeLibrary,
+        **({} if bdist_wheel is object else {"bdist_wheel": BuildWheel}),
+    },
     data_files=data_files(),
     python_requires=">=3.10",
     install_requires=REQUIREMENTS,
-    extras_require={"ros": ROS, "bench": BENCH, "eval": EVAL, "dev": DEV},
+    extras_require={
+        "ros": ROS,
+        "assets": ASSETS,
+        "bake": BAKE,
+        "bench": BENCH,
+        "eval": EVAL,
+        # Everything but ROS, which may be there already, and the tools for developers.
+        "all": sorted({*ASSETS, *BAKE, *BENCH, *EVAL}),
+        "dev": DEV,
+    },
     entry_points={
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",

@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agent.frame_dict import frame_dict
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.pictures.frame_dict import frame_dict
 
 NAMESPACE = f"/delivery_{os.getpid()}"
 STEPS = 8
@@ -33,14 +33,14 @@ WARM_UP = 10
 
 
 def percentiles(times_s: Iterable[float]) -> dict[str, float]:
-    """Give median, 90th and 99th percentile and maximum [ms]."""
+    """Return median, 90th and 99th percentile and maximum [ms]."""
     values = 1e3 * np.asarray(list(times_s))
     p50, p90, p99 = np.percentile(values, (50, 90, 99))
     return {"p50": p50, "p90": p90, "p99": p99, "max": values.max()}
 
 
 def timed(work: Callable[[], Any]) -> tuple[float, Any]:
-    """Do something; give how long it took [s], and its result."""
+    """Do something; return how long it took [s], and its result."""
     began = time.perf_counter()
     result = work()
     return time.perf_counter() - began, result
@@ -70,8 +70,8 @@ def on_request(size: tuple[int, int], frames: int, scene: str) -> dict[str, dict
 
 
 def in_process(simulation: Simulation) -> float:
-    """Make the same dict as an Agent's without any transport; give the time of rendering [s]."""
-    frame = simulation.capture("bench")
+    """Make the same dict as an Agent's without any transport; return the time of rendering [s]."""
+    frame = simulation.capture(agent="bench")
     frame_dict(
         {view: values.copy() for view, values in frame.views.items()},
         camera=frame.camera,

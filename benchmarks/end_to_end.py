@@ -35,7 +35,7 @@ from sailenv_ros import Agent, Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.frame import FIVE_VIEWS, Frame
-from sailenv_ros.transport import use_shared_memory_profile
+from sailenv_ros.system.transport import use_shared_memory_profile
 
 SIZES = ((240, 180), (320, 240), (640, 480), (800, 600), (1024, 768), (1280, 960))
 STEPS = 8
@@ -80,7 +80,7 @@ class Stopwatch:
         self.times[stage].append((time.perf_counter() - began) * 1e3)
 
     def summary(self) -> dict[str, dict[str, float]]:
-        """Give median and 90th percentile of each stage, without the warm-up."""
+        """Return median and 90th percentile of each stage, without the warm-up."""
         result = {}
         for stage, times in self.times.items():
             kept = sorted(times[WARM_UP:])
@@ -143,11 +143,11 @@ def measure(size: tuple[int, int], frames: int, scene: str, topics: Topics) -> d
             simulation.step(STEPS - 1)
             agent.step(STEPS)
             with watch("render, in process"):
-                frame = simulation.capture("bench")
+                frame = simulation.capture(agent="bench")
             with watch("get_frame, end to end"):
                 received = agent.get_frame()
             with watch("fill messages"):
-                images = filled(frame)
+                images = dilated(frame)
             # Last of the round: its reader takes these images while physics goes on.
             with watch("publish"):
                 topics.publish(images)
@@ -164,7 +164,7 @@ def measure(size: tuple[int, int], frames: int, scene: str, topics: Topics) -> d
         }
 
 
-def filled(frame: Frame) -> dict[str, Image]:
+def dilated(frame: Frame) -> dict[str, Image]:
     """Make the image messages of a frame."""
     header = header_of_frame(frame)
     return {
@@ -174,7 +174,7 @@ def filled(frame: Frame) -> dict[str, Image]:
 
 
 def resident_mib(pid: int | None) -> float | None:
-    """Give the resident memory of a process."""
+    """Return the resident memory of a process."""
     if pid is None:
         return None
     status = Path(f"/proc/{pid}/status").read_text()

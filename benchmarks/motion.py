@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.agents import AgentSpec
+from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.simulation.backends import make_backend
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
 
@@ -90,12 +90,12 @@ def time_agents(agents: int, frames: int, folder: Path) -> None:
     lens = CameraIntrinsics(width=320, height=240)
     for number in range(agents):
         core.register_agent(AgentSpec(name=f"agent_{number}", intrinsics=lens))
-        core.capture(f"agent_{number}")
+        core.capture(agent=f"agent_{number}")
     began = time.perf_counter()
     for _ in range(max(1, frames // agents)):
         core.step(8)
         for number in range(agents):
-            core.capture(f"agent_{number}")
+            core.capture(agent=f"agent_{number}")
     wall_s = time.perf_counter() - began
     core.close()
     print(f"{agents} agents at 320x240: {max(1, frames // agents) * agents / wall_s:.1f} frames/s")

@@ -64,7 +64,7 @@ def _frames(scene: str) -> list[Frame]:
         frames = []
         for _ in range(SOURCE_FRAMES):
             simulation.step(8)
-            frames.append(simulation.capture(name))
+            frames.append(simulation.capture(agent=name))
         return frames
 
 
@@ -142,7 +142,7 @@ def _publish(scene: str, count: int) -> None:
     from sailenv_msgs_py.images import image_from_view
     from sailenv_ros.frame import FIVE_VIEWS
     from sailenv_ros.nodes.qos import frame_qos
-    from sailenv_ros.transport import use_shared_memory_profile
+    from sailenv_ros.system.transport import use_shared_memory_profile
 
     frames = _frames(scene)
     use_shared_memory_profile()
@@ -155,7 +155,7 @@ def _publish(scene: str, count: int) -> None:
     deadline = time.monotonic() + 30.0
     while not all(p.get_subscription_count() for p in everything):
         if time.monotonic() > deadline:
-            raise SystemExit("waited 30 s for the recorder's subscriptions, in vain")
+            raise SystemExit("timed out after 30 s while waiting for the recorder's subscriptions")
         time.sleep(0.05)
     began = time.monotonic()
     for number in range(count):

@@ -28,7 +28,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.frame import FIVE_VIEWS, VIEWS
 from sailenv_ros.render.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import Observation, WorldSnapshot
@@ -43,7 +43,7 @@ SETS = {
     "without flow": tuple(view for view in FIVE_VIEWS if view != "flow"),
     "annotations": tuple(view for view in FIVE_VIEWS if view != "rgb"),
     "rgb": ("rgb",),
-    "every view": (*FIVE_VIEWS, "flow_valid", "occlusion", "normals"),
+    "every view": tuple(VIEWS),
 }
 
 STEPS = 8
@@ -127,7 +127,7 @@ def measure(
 
 
 def world_maker(scene: str, skip_steps: int) -> Callable[[], World]:
-    """Give what builds a scene's world, as a simulator does, and lets it run for so many steps."""
+    """Return what builds a scene's world, as a simulator does, and lets it run for some steps."""
     library, next_revision = SceneLibrary(), itertools.count(1).__next__
 
     def make() -> World:

@@ -1,7 +1,7 @@
 """Hello, frame: one camera in the simulator, all its views, and a picture of them.
 
-Joins a running simulator or starts one. Prints shape, type and range of every view, and writes
-them as one PNG file, whose name may be given on the command line.
+Connects to the running simulator, or starts one. Prints shape, type and range of every view, and
+writes all views to one PNG file, whose name may be given on the command line.
 """
 
 import sys
@@ -11,7 +11,7 @@ import numpy as np
 from sailenv_ros import Agent
 
 with Agent(width=640, height=480) as agent:
-    agent.get_frame()  # flow is the motion since the frame before, so there must be one
+    agent.get_frame()  # flow is measured from one frame to the next
     frame = agent.get_frame()
     print(f"{agent.id} in scene {agent.scene!r}, t = {frame['stamp_ns'] * 1e-9:.3f} s")
     for name, view in frame.items():

@@ -1,7 +1,7 @@
-"""A camera that its user drives: a circle around the scene, looking at its middle.
+"""A camera that moves in a circle around the scene and looks at its middle.
 
 Writes a contact sheet of the last frame, whose name may be given on the command line. The flow of
-a frame is the motion since the frame before, that of the camera included.
+a frame is the motion since the frame before, including the motion of the camera.
 """
 
 import math
@@ -19,7 +19,7 @@ with Agent(width=320, height=240, following=False, namespace="/example", simulat
     for count in range(10):
         angle = math.radians(3.0 * count)
         place = (5.0 * math.cos(angle), 5.0 * math.sin(angle), 2.0)
-        # Without teleport a set pose is motion; before the first frame there is nothing to show.
+        # Without teleport, a set pose is motion; before the first frame there is none.
         eye.set_pose(look_at(place, (0.0, 0.0, 0.5)), teleport=count == 0)
         frame = eye.get_frame()
         speed = np.hypot(frame["flow"][..., 0], frame["flow"][..., 1])

@@ -1,7 +1,7 @@
-"""Boxes around everything that is seen, with names and categories, as a detector is taught them.
+"""Bounding boxes of all visible objects, with names and categories, as used to train a detector.
 
-Prints each object's box and how many of its pixels are seen, and writes the picture with the boxes
-drawn in, whose name may be given on the command line.
+Prints the box of each object and the number of its visible pixels. Writes the picture with the
+boxes, to a file whose name may be given on the command line.
 """
 
 import sys

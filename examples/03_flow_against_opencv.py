@@ -1,4 +1,4 @@
-"""The simulator's exact flow beside what OpenCV estimates from two pictures.
+"""The simulator's exact flow compared with OpenCV's estimate from two pictures.
 
 Prints the mean end-point error of Farneback's method, and writes both flows as one picture, whose
 name may be given on the command line.
@@ -18,8 +18,8 @@ with Agent(width=320, height=240, namespace="/example", simulator=LOCKSTEP) as a
     agent.step(8)
     frame = agent.get_frame()
 
-    # Ours is the velocity that each pixel's surface point arrived with [px/s]; over dt it is the
-    # way back from this picture to the one before, with its sign turned round.
+    # The exact flow is the velocity of each pixel's surface point [px/s]. Times -dt, it is the
+    # displacement from this picture back to the one before, as OpenCV estimates it.
     exact = -frame["flow"] * frame["dt"]
     grey, grey_before = (cv2.cvtColor(f["main"], cv2.COLOR_BGR2GRAY) for f in (frame, before))
     estimated = cv2.calcOpticalFlowFarneback(grey, grey_before, None, 0.5, 4, 21, 5, 7, 1.5, 0)

@@ -1,4 +1,4 @@
-"""Objects that come, fall, turn, are moved by hand and go again; their ids are pixel values."""
+"""Objects that are spawned, fall, turn, are moved and removed; their ids are pixel values."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ with Agent(width=320, height=240, following=False, namespace="/example", simulat
     names = eye.spawnable_objects_names
     print(f"{len(names)} assets: {', '.join(names[:6])} …")
 
-    # Static unless told otherwise, as in the original client.
+    # Static unless told otherwise, as in the SAILenv client.
     shelf = eye.spawn_object("cube", (-2.0, 0.0, 0.8), scale=(0.5, 2.0, 0.1), object_name="shelf")
     ball = eye.spawn_object("sphere", (-2.0, 0.5, 2.0), remove_dynamics=False, scale=0.3)
     turning = {"type": "rotate_rigidbody", "angular_velocity": [0, 0, 90]}

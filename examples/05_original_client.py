@@ -1,7 +1,7 @@
-"""The original client: scripts written for SAILenv run on this simulator as they are.
+"""The SAILenv client: scripts written for SAILenv run with this simulator without changes.
 
-Needs the client (`pip install --no-deps sailenv==0.5b0`, Python up to 3.12) and a simulator, which
-may be one without ROS: `sailenv run room_01 --no-ros`. Everything below is the original's.
+Needs the client (`pip install --no-deps sailenv==0.5b0`, Python up to 3.12) and a simulator that
+runs, with or without ROS: `sailenv run room_01 --no-ros`. The program uses only the client.
 """
 
 import sys

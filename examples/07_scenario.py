@@ -1,4 +1,4 @@
-"""A scenario: a scene with more objects than its own, as text; the answer is their ids."""
+"""A scenario: a scene with additional objects, as text; the response contains their ids."""
 
 from sailenv_ros import Agent
 

@@ -1,6 +1,6 @@
-"""Several cameras in one simulator: each has a size, a place and views of its own.
+"""Several cameras in one simulator, each with its own size, pose and views.
 
-All frames of one instant of simulated time belong together, whichever camera they are of.
+Frames with the same stamp show the same instant of simulated time.
 """
 
 import math

@@ -1,7 +1,7 @@
-"""A model that learns from the stream, frame by frame: from colour and place to category.
+"""A model that learns from the stream, frame by frame: from colour and position to category.
 
-Softmax regression by gradient descent in NumPy, on 512 pixels of each frame, which are seen once
-and never again. Prints how many of a frame's pixels it gets right before it has learnt from them.
+Softmax regression by gradient descent in NumPy, on 512 pixels of each frame, each used only once.
+Prints the share of correct pixels of a frame before the model has learned from them.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ rng = np.random.default_rng(0)
 
 
 def features(frame: dict, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Give colour, place, their products and 1 of some pixels."""
+    """Return colour, place, their products and 1 of some pixels."""
     height, width = frame["category"].shape
     colour = frame["main"][rows, columns] / 127.5 - 1.0
     place = np.stack([2.0 * rows / height - 1.0, 2.0 * columns / width - 1.0], axis=-1)

@@ -1,7 +1,7 @@
-"""Frames as a PyTorch IterableDataset, with workers: each worker process has a camera of its own.
+"""Frames as a PyTorch IterableDataset: each worker process has its own camera.
 
-An Agent does not go through a fork or into a pickle, so each worker makes one where it iterates.
-Without PyTorch the same dataset is iterated in this process.
+An Agent cannot be used in a forked process and cannot be pickled, so each worker makes its own.
+Without PyTorch the same data set is iterated in this process.
 """
 
 from collections.abc import Iterator

@@ -11,7 +11,7 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Give one node; its arguments override the file of parameters."""
+    """Return one node; its arguments override the file of parameters."""
     own_parameters = PathJoinSubstitution(
         [FindPackageShare("sailenv_ros"), "config", "sim_node.yaml"]
     )

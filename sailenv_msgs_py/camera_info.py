@@ -56,7 +56,8 @@ def intrinsics_from_camera_info(
     return CameraIntrinsics(
         width=msg.width,
         height=msg.height,
-        vertical_fov_deg=math.degrees(2.0 * math.atan(0.5 * msg.height / fy)),
+        # Its last bits come from rounding, which must not push 1 degree below the least angle.
+        vertical_fov_deg=round(math.degrees(2.0 * math.atan(0.5 * msg.height / fy)), 12),
         near_m=near_m,
         far_m=far_m,
     )

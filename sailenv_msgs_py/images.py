@@ -17,7 +17,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import VIEWS, ViewSpec
+from sailenv_ros.frame import ViewSpec, view_spec
 
 __all__ = ["image_from_view", "picture_to_image", "view_from_image"]
 
@@ -30,7 +30,7 @@ def image_from_view(view: str, values: NDArray[Any], header: Header, *, copy: bo
     Parameters
     ----------
     view : str
-        A name in `VIEWS`.
+        A name in `sailenv_ros.frame.VIEWS`.
     values : (H, W) or (H, W, C) array
         Of the view's own dtype and channels.
     header : Header
@@ -46,10 +46,12 @@ def image_from_view(view: str, values: NDArray[Any], header: Header, *, copy: bo
 
     Raises
     ------
+    UnknownName
+        If there is no such view.
     InvalidRequest
         If the array is not of the view's dtype and shape.
     """
-    spec = VIEWS[view]
+    spec = view_spec(view)
     fits = values.ndim >= 2 and values.shape == spec.shape(*values.shape[:2])
     if values.dtype != spec.dtype or not fits:
         wanted = f"an array {_shape_of(spec)} of {spec.dtype}"
@@ -72,15 +74,17 @@ def view_from_image(view: str, image: Image) -> NDArray[Any]:
     Returns
     -------
     values : (H, W) or (H, W, C) array
-        As `VIEWS` says. It shares the message's bytes (truth values are a copy); write to it only
-        if nobody else has the message.
+        As `sailenv_ros.frame.VIEWS` says. It shares the message's bytes (truth values are a
+        copy); write to it only if nobody else has the message.
 
     Raises
     ------
+    UnknownName
+        If there is no such view.
     InvalidRequest
         If encoding, byte order, step or size do not fit.
     """
-    spec = VIEWS[view]
+    spec = view_spec(view)
     stored = np.dtype(np.uint8) if spec.dtype == np.bool_ else spec.dtype
     row_bytes = image.width * spec.channels * stored.itemsize
     _require(view, "encoding", image.encoding, spec.encoding)

@@ -28,5 +28,5 @@ def stamp_from_ns(time_ns: int) -> Time:
 
 
 def ns_from_stamp(stamp: Time) -> int:
-    """Give a stamp's time [ns]."""
+    """Return a stamp's time [ns]."""
     return int(stamp.sec) * NS_PER_S + int(stamp.nanosec)

@@ -1,7 +1,7 @@
 """Poses, points and vectors of the world frame to and from `geometry_msgs`.
 
-A `Pose` noun checks itself, so a message with NaN, an infinite coordinate or a quaternion that
-is not of unit length raises `InvalidRequest` on the way in.
+A `Pose` checks itself, so a message with NaN, an infinite coordinate or a quaternion that is not
+of unit length raises `InvalidRequest` on the way in.
 """
 
 from __future__ import annotations
@@ -18,6 +18,8 @@ __all__ = [
     "pose_from_msg",
     "pose_stamped_to_msg",
     "pose_to_msg",
+    "twist_from_msg",
+    "twist_to_msg",
     "vector_to_msg",
     "xyz_from_msg",
 ]
@@ -67,6 +69,17 @@ def vector_to_msg(xyz: Triple) -> geometry.Vector3:
     """Make a vector."""
     x, y, z = xyz
     return geometry.Vector3(x=float(x), y=float(y), z=float(z))
+
+
+def twist_to_msg(velocities: tuple[Triple, Triple]) -> geometry.Twist:
+    """Make the message of a linear [m/s] and an angular velocity [rad/s]."""
+    linear, angular = velocities
+    return geometry.Twist(linear=vector_to_msg(linear), angular=vector_to_msg(angular))
+
+
+def twist_from_msg(msg: geometry.Twist) -> tuple[Triple, Triple]:
+    """Read a linear [m/s] and an angular velocity [rad/s]."""
+    return xyz_from_msg(msg.linear), xyz_from_msg(msg.angular)
 
 
 def xyz_from_msg(msg: geometry.Point | geometry.Vector3) -> Triple:

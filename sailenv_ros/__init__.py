@@ -1,8 +1,8 @@
 """A virtual visual environment: furnished, simulated rooms with exact per-pixel ground truth.
 
-`Agent` is the way in for people who know no ROS, `Simulation` is the simulator in this process
-and without ROS, `load_scene` reads a scene file. They are imported when they are first used, so
-that importing the package imports neither ROS nor OpenGL.
+`Simulation` is the simulator in this process, without ROS. `Agent` is a camera in a simulator that
+runs as a ROS 2 node. `load_scene` reads a scene file, `show` shows a frame. They are imported when
+they are first used, so importing the package imports neither ROS nor OpenGL.
 """
 
 from __future__ import annotations
@@ -12,17 +12,19 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sailenv_ros.agent.agent import Agent
+    from sailenv_ros.notebook import show
     from sailenv_ros.scene.loader import load_scene
     from sailenv_ros.simulation import Simulation
 
-__all__ = ["Agent", "Simulation", "__version__", "load_scene"]
+__all__ = ["Agent", "Simulation", "__version__", "load_scene", "show"]
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOMES = {
     "Agent": "sailenv_ros.agent.agent",
     "Simulation": "sailenv_ros.simulation",
     "load_scene": "sailenv_ros.scene.loader",
+    "show": "sailenv_ros.notebook",
 }
 
 

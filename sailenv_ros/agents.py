@@ -6,8 +6,6 @@ an agent is. Both travel between `simulation.py` and every client of it.
 
 from __future__ import annotations
 
-import math
-import re
 from dataclasses import dataclass, field
 
 from sailenv_ros.camera import CameraIntrinsics, require_drawable
@@ -15,13 +13,30 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import FIVE_VIEWS, checked_views
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.validation import IDENTIFIER, checked_number, is_finite_number, is_number
 
 __all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "AgentPose", "AgentSpec"]
 
 MAX_AGENTS = 16
 MAX_RATE_HZ = 240.0
 
-_NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
+
+def checked_rate(what: str, value: object) -> float:
+    """Return a rate of streamed frames, 0 to `MAX_RATE_HZ`; see `validation.checked_number`."""
+    return checked_number(what, value, 0.0, MAX_RATE_HZ, unit="Hz")
+
+
+def check_frame_rate(rate_hz: object) -> None:
+    """Check a rate of frames that somebody waits for.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is no number above 0 and at most `MAX_RATE_HZ`.
+    """
+    if not is_number(rate_hz) or not 0.0 < rate_hz <= MAX_RATE_HZ:
+        accepted = f"a number above 0 and at most {MAX_RATE_HZ:g} [Hz]"
+        raise InvalidRequest("rate_hz", rate_hz, accepted)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,26 +75,20 @@ class AgentSpec:
     picture: PictureSettings = field(default_factory=PictureSettings)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
+        if not isinstance(self.name, str) or not IDENTIFIER.fullmatch(self.name):
             raise InvalidRequest(
                 "name of the agent",
                 self.name,
                 "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
             )
         object.__setattr__(self, "views", checked_views(self.views))
-        rate_hz: object = self.rate_hz
-        if not isinstance(rate_hz, int | float) or not 0.0 <= rate_hz <= MAX_RATE_HZ:
-            raise InvalidRequest(
-                "rate_hz", self.rate_hz, f"a number from 0 to {MAX_RATE_HZ:g} [Hz]"
-            )
+        checked_rate("rate_hz", self.rate_hz)
         near = self.intrinsics.near_m
-        if not (math.isfinite(self.depth_range_m) and self.depth_range_m > near):
+        if not (is_finite_number(self.depth_range_m) and self.depth_range_m > near):
             raise InvalidRequest(
                 "depth_range_m", self.depth_range_m, f"a number above near_m = {near:g} [m]"
             )
-        picture: object = self.picture
-        if not isinstance(picture, PictureSettings):
-            raise InvalidRequest("picture", picture, "an object of PictureSettings")
+        PictureSettings.checked("picture", self.picture)
         require_drawable(self.intrinsics, self.picture)
 
 

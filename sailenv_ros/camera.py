@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.validation import checked_integer, checked_number
 
 __all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics", "require_drawable"]
 
@@ -51,20 +52,11 @@ class CameraIntrinsics:
 
     def __post_init__(self) -> None:
         for name in ("width", "height"):
-            size = getattr(self, name)
-            # Integers of NumPy count as integers; booleans do not.
-            if isinstance(size, bool) or not isinstance(size, int | np.integer):
-                raise InvalidRequest(
-                    name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]"
-                )
-            if not MIN_SIZE_PX <= size <= MAX_SIZE_PX:
-                raise InvalidRequest(
-                    name, size, f"an integer from {MIN_SIZE_PX} to {MAX_SIZE_PX} [px]"
-                )
-            object.__setattr__(self, name, int(size))
-        _check_range("vertical_fov_deg", self.vertical_fov_deg, 1.0, 170.0, "deg")
-        _check_range("near_m", self.near_m, 1e-3, 1e4, "m")
-        _check_range("far_m", self.far_m, 1e-3, 1e4, "m")
+            size = checked_integer(name, getattr(self, name), MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
+            object.__setattr__(self, name, size)
+        checked_number("vertical_fov_deg", self.vertical_fov_deg, 1.0, 170.0, unit="deg")
+        checked_number("near_m", self.near_m, 1e-3, 1e4, unit="m")
+        checked_number("far_m", self.far_m, 1e-3, 1e4, unit="m")
         if self.near_m >= self.far_m:
             raise InvalidRequest("near_m", self.near_m, f"less than far_m = {self.far_m:g} [m]")
 
@@ -94,7 +86,7 @@ class CameraIntrinsics:
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
     def clip_from_optical(self) -> NDArray[np.float64]:
-        """Give the (4, 4) OpenGL projection of points in the optical frame.
+        """Return the (4, 4) OpenGL projection of points in the optical frame.
 
         Clip w is the depth z; window row 0 of OpenGL is the picture's bottom row.
         """
@@ -127,7 +119,7 @@ class CameraIntrinsics:
         return np.stack([u, v], axis=-1)
 
     def rays(self) -> NDArray[np.float64]:
-        """Give (H, W, 3) the point at depth 1 m that each pixel's centre sees (optical frame)."""
+        """Return (H, W, 3) the point at depth 1 m that each pixel's centre sees (optical frame)."""
         x = (np.arange(self.width) - self.cx) / self.fx
         y = (np.arange(self.height) - self.cy) / self.fy
         result = np.ones((self.height, self.width, 3))
@@ -182,7 +174,7 @@ class Camera:
         require_drawable(self.intrinsics, self.picture)
 
     def of_samples(self) -> Camera:
-        """Give the camera whose pixels are the samples of this one's picture."""
+        """Return the camera whose pixels are the samples of this one's picture."""
         times, lens = self.picture.supersampling, self.intrinsics
         return replace(
             self,
@@ -220,11 +212,3 @@ def require_drawable(intrinsics: CameraIntrinsics, picture: PictureSettings) -> 
             f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
         )
         raise InvalidRequest("supersampling", times, accepted)
-
-
-def _check_range(name: str, value: float, low: float, high: float, unit: str) -> None:
-    accepted = f"a number from {low:g} to {high:g} [{unit}]"
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-        raise InvalidRequest(name, value, accepted)
-    if not low <= value <= high:
-        raise InvalidRequest(name, value, accepted)

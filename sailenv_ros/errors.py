@@ -1,56 +1,78 @@
-"""The one tree of errors; each takes typed arguments and builds its own sentence.
+"""All exceptions of the package; each takes typed arguments and builds its own sentence.
 
-Every sentence says what was wrong and what would be accepted, in the user's own names.
+Every sentence says what was wrong and what is accepted, with the names that the user wrote.
 
     SailenvError
     ├── InvalidRequest          an argument that cannot be accepted
     │   ├── UnknownName         a name that is not in a list of names
     │   ├── NameTaken           a name that must be unique is in use
     │   └── InvalidEntry        something described by several values, some of them wrong
-    ├── SceneError              one or more faults in a scene file, each with file:line:column
+    ├── InvalidState            something that is not possible as things are now
+    ├── AddressInUse            a port that another program listens on
+    ├── InternalFault           a fault of the simulator's own
+    ├── SceneError              one or more errors in a scene file, each with file:line:column
     ├── AssetError              a model, texture or pack that cannot be used
-    ├── PhysicsError            the physics engine refused or diverged
-    ├── RenderError             a picture could not be made
-    │   └── ContextError        no OpenGL context could be created
-    ├── SimulationClosed        the simulation has ended, or ended while it was asked
+    ├── PhysicsError            the physics engine refused a call or diverged
+    ├── RenderError             a picture could not be rendered
+    │   ├── ContextError        no OpenGL context could be created
+    │   └── NativeLibraryError  the native library is missing, or refused its arguments
+    ├── SimulationClosed        the simulation has ended, before or during a request
     ├── DeadlineExceeded        something did not happen in time
-    │   └── SimulatorLost       a simulator that answered before does so no more
-    ├── RequestRefused          the simulator refused a request, in its own words
-    ├── ProtocolError           bytes of a peer that break the protocol
+    │   └── SimulatorLost       the simulator no longer answers
+    ├── ProtocolError           bytes of a client that violate the protocol
     ├── RecordingError          a recording that cannot be written or read
+    ├── StorageError            a file that cannot be written, e.g. because the disk is full
     └── MissingPackage          an optional package that is not installed
 """
 
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypeVar
 
 __all__ = [
+    "AddressInUse",
     "AssetError",
     "ContextError",
     "DeadlineExceeded",
+    "InternalFault",
     "InvalidEntry",
     "InvalidRequest",
+    "InvalidState",
     "MissingPackage",
     "NameTaken",
+    "NativeLibraryError",
     "PhysicsError",
     "ProtocolError",
     "RecordingError",
     "RenderError",
-    "RequestRefused",
     "SailenvError",
     "SceneError",
-    "SceneFault",
+    "SceneDiagnostic",
     "SimulationClosed",
     "SimulatorLost",
+    "StorageError",
     "UnknownName",
+    "address_error",
 ]
 
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+E = TypeVar("E", bound="SailenvError")
+
+
 class SailenvError(Exception):
-    """Root of every error that this package raises on purpose."""
+    """Base class of all exceptions that this package raises on purpose."""
+
+    @classmethod
+    def from_sentence(cls: type[E], sentence: str) -> E:
+        """Return an error of this type that another process has put into words."""
+        error = cls.__new__(cls)
+        Exception.__init__(error, sentence)
+        return error
 
 
 class InvalidRequest(SailenvError, ValueError):
@@ -90,7 +112,7 @@ class UnknownName(InvalidRequest):
         names = [str(k) for k in known]
         near = difflib.get_close_matches(str(name), names, n=1, cutoff=0.6)
         shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
-        accepted = f"one of: {shown}" if names else f"the name of a {kind}, and there is none"
+        accepted = f"one of: {shown}" if names else f"the name of a {kind}, but there is none"
         if near:
             accepted = f"one of: {shown} (did you mean {near[0]!r}?)"
         self.kind = kind
@@ -100,7 +122,7 @@ class UnknownName(InvalidRequest):
 
 
 class NameTaken(InvalidRequest):
-    """A name that must be unique is in use already."""
+    """A name that must be unique is already in use."""
 
     def __init__(self, kind: str, name: str) -> None:
         self.kind = kind
@@ -117,28 +139,81 @@ class InvalidEntry(InvalidRequest):
         What was described, e.g. ``"object 'chair_1'"``.
     got : object
         The description.
-    faults : iterable of (str, str)
+    diagnostics : iterable of (str, str)
         The name of each value that is wrong, with what is wrong and what is accepted.
     """
 
-    def __init__(self, what: str, got: object, faults: Iterable[tuple[str, str]]) -> None:
+    def __init__(self, what: str, got: object, diagnostics: Iterable[tuple[str, str]]) -> None:
         self.what = what
         self.got = got
-        self.faults = tuple(faults)
-        self.accepted = "; ".join(f"{field} {fault}".strip() for field, fault in self.faults)
+        self.diagnostics = tuple(diagnostics)
+        self.accepted = "; ".join(
+            f"{field} {diagnostic}".strip() for field, diagnostic in self.diagnostics
+        )
         SailenvError.__init__(self, f"{what}: {self.accepted}")
 
 
+class InvalidState(SailenvError):
+    """Something that is not possible as things are now; nothing was changed.
+
+    Parameters
+    ----------
+    why : str
+        A sentence: what stands against it, and what would make it possible.
+    """
+
+
+class AddressInUse(SailenvError, OSError):
+    """A port that another program listens on.
+
+    Parameters
+    ----------
+    what : str
+        Who wanted to listen, e.g. ``"the gateway"``.
+    host : str
+    port : int
+    """
+
+    def __init__(self, what: str, host: str, port: int) -> None:
+        self.host = host
+        self.port = port
+        super().__init__(
+            f"{what} cannot listen on {host}:{port}: another program does; choose another port"
+        )
+
+
+def address_error(what: str, host: str, port: int, problem: OSError) -> SailenvError:
+    """Return the error of a server that cannot listen on an address.
+
+    Parameters
+    ----------
+    what : str
+        The server, e.g. ``"the gateway"``.
+    host : str
+    port : int
+    problem : OSError
+        What the system said.
+    """
+    if problem.errno == errno.EADDRINUSE:
+        return AddressInUse(what, host, port)
+    accepted = f"one that can be listened on ({problem.strerror or problem})"
+    return InvalidRequest(f"address of {what}", f"{host}:{port}", accepted)
+
+
+class InternalFault(SailenvError):
+    """A fault of the simulator's own; its log says more."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SceneFault:
-    """One fault of a scene file.
+class SceneDiagnostic:
+    """One error of a scene file.
 
     Attributes
     ----------
     path : str
         The file as its user named it.
     line, column : int
-        Where the fault stands, counted from 1; 0 where it has no place in the text.
+        Where the error stands, counted from 1; 0 where it has no place in the text.
     field : str
         The dotted path of the entry, e.g. ``"objects[2].mass"``.
     message : str
@@ -159,11 +234,11 @@ class SceneFault:
 
 
 class SceneError(SailenvError):
-    """A scene file with faults: all of them, in the order of the file."""
+    """A scene file with errors: all of them, in the order of the file."""
 
-    def __init__(self, faults: Iterable[SceneFault]) -> None:
-        self.faults = tuple(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
+    def __init__(self, diagnostics: Iterable[SceneDiagnostic]) -> None:
+        self.diagnostics = tuple(diagnostics)
+        super().__init__("\n".join(str(diagnostic) for diagnostic in self.diagnostics))
 
 
 class AssetError(SailenvError):
@@ -180,7 +255,7 @@ class PhysicsError(SailenvError):
 
 
 class RenderError(SailenvError):
-    """A picture could not be made."""
+    """A picture could not be rendered."""
 
 
 class ContextError(RenderError):
@@ -198,8 +273,20 @@ class ContextError(RenderError):
         super().__init__(f"no OpenGL context could be created ({tried})")
 
 
+class NativeLibraryError(RenderError):
+    """The native library cannot be used; `reason` says why."""
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(
+            f"the native library cannot be used: {reason}; "
+            "scripts/build-native makes it anew, and so does installing the package where there "
+            "is a C++ compiler"
+        )
+
+
 class SimulationClosed(SailenvError):
-    """The simulation has ended, or ended while it was asked something."""
+    """The simulation has ended, before or during a request."""
 
     def __init__(self, why: str = "it was closed") -> None:
         self.why = why
@@ -220,28 +307,50 @@ class DeadlineExceeded(SailenvError, TimeoutError):
     def __init__(self, waited_for: str, timeout_s: float) -> None:
         self.waited_for = waited_for
         self.timeout_s = timeout_s
-        super().__init__(f"waited {timeout_s:g} s for {waited_for}, in vain")
+        super().__init__(f"timed out after {timeout_s:g} s while waiting for {waited_for}")
 
 
 class SimulatorLost(DeadlineExceeded):
-    """A simulator that answered before does so no more."""
+    """A simulator that answered before no longer answers.
 
+    Parameters
+    ----------
+    waited_for : str
+        What was waited for when that was noticed.
+    waited_s : float
+        How long it had been waited for [s].
+    """
 
-class RequestRefused(SailenvError):
-    """The simulator refused a request; its sentence says why and what it would accept."""
-
-    def __init__(self, request: str, message: str) -> None:
-        self.request = request
-        self.message = message
-        super().__init__(f"{request}: {message}")
+    def __init__(self, waited_for: str, waited_s: float) -> None:
+        super().__init__(waited_for, waited_s)
+        self.args = (f"the simulator has ended; {waited_for} did not come ({waited_s:.3g} s)",)
 
 
 class ProtocolError(SailenvError):
-    """Bytes of a peer that break the protocol."""
+    """Bytes of a client that violate the protocol."""
 
 
 class RecordingError(SailenvError):
     """A recording that cannot be written or read."""
+
+
+class StorageError(SailenvError):
+    """A file of ours that cannot be written; what was there before is there.
+
+    Parameters
+    ----------
+    what : str
+        What was being written, e.g. ``"the baked light"``.
+    path : str
+    problem : OSError
+    """
+
+    def __init__(self, what: str, path: str, problem: OSError) -> None:
+        self.what = what
+        self.path = path
+        self.errno = problem.errno
+        why = "the disk is full" if problem.errno in _FULL else problem.strerror or str(problem)
+        super().__init__(f"{what} cannot be written to {path}: {why}")
 
 
 class MissingPackage(SailenvError, ImportError):

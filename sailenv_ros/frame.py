@@ -1,16 +1,16 @@
 """A frame: the bundle of views that one camera sees at one instant, and what each view is.
 
 Comes from `render/` by way of `simulation.py`, goes to messages, sockets, files and windows.
-`VIEWS` is the one vocabulary of views: whoever needs a shape, a type, a unit or an encoding
-reads it there.
+`VIEWS` says once what a view is: whoever makes, shows, sends, stores or documents views reads it
+there and names none of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +18,36 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidRequest, UnknownName
 
-__all__ = ["FIVE_VIEWS", "VIEWS", "Frame", "ViewSpec", "checked_views"]
+__all__ = [
+    "ALWAYS_MADE",
+    "FIVE_VIEWS",
+    "VIEWS",
+    "Frame",
+    "ImageCodec",
+    "ViewDisplay",
+    "ViewSource",
+    "ViewSpec",
+    "checked_views",
+    "view_spec",
+    "views_of",
+]
+
+
+ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry"]
+"""What makes a view: the lit picture; arithmetic on depth and instance id, which all back ends
+share; or an attribute of the surface, which the geometry pass writes as it is."""
+
+ViewDisplay: TypeAlias = Literal[
+    "colour", "depth", "category", "instance", "flow", "direction", "mask"
+]
+"""How a view is shown as a picture; `pictures.colours` has a function for each."""
+
+ImageCodec: TypeAlias = Literal["jpeg", "png"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewSpec:
-    """What one view is.
+    """What one view is, how it is made, shown and sent.
 
     Attributes
     ----------
@@ -34,107 +58,223 @@ class ViewSpec:
     encoding : str
         Encoding on a ROS topic (`sensor_msgs/image_encodings`).
     meaning : str
-        One line: meaning, unit, special values.
+        One line: what a value is, in which unit and frame.
+    unit : str
+        Of the values, as it is shown to people; empty for none.
+    invalid : str
+        Values that stand for something else than a measurement; empty if there are none.
+    source : {'lighting', 'annotation', 'geometry'}
+        What makes it. A view of 'geometry' is an output of the geometry pass of the same name.
     needs_past : bool
         True if the view refers to an earlier frame of the same camera.
+    needs_past_depth : bool
+        True if the depth of that earlier frame is needed too.
+    by_default : bool
+        True if an agent gets it without asking.
+    display : str
+        How it is shown as a picture.
+    color_topic : bool
+        True if it has a topic `<view>/color` with that picture.
+    compressed_topic : {'jpeg', 'png'} or None
+        Codec of the topic `<view>/compressed`; None if there is no such topic. A picture may lose
+        something, labels may not.
+    png_per_unit : float or None
+        Steps per unit of its 16-bit PNG files; None if files hold the values themselves, or the
+        picture of values that are no integers.
+    validity_of : str
+        The view whose values it says to exist; empty for others.
     """
 
     name: str
     dtype: np.dtype[Any]
-    channels: int
+    channels: int = 1
     encoding: str
     meaning: str
+    display: ViewDisplay
+    source: ViewSource
+    unit: str = ""
+    invalid: str = ""
     needs_past: bool = False
+    needs_past_depth: bool = False
+    by_default: bool = False
+    color_topic: bool = False
+    compressed_topic: ImageCodec | None = None
+    png_per_unit: float | None = None
+    validity_of: str = ""
+
+    @property
+    def is_label(self) -> bool:
+        """True if values are ids or truth values: between two of them there is nothing."""
+        return self.display in ("category", "instance", "mask")
 
     def shape(self, height: int, width: int) -> tuple[int, ...]:
-        """Give the shape of this view's array for a picture of that size."""
+        """Return the shape of this view's array for a picture of that size."""
         return (height, width) if self.channels == 1 else (height, width, self.channels)
 
 
-def _spec(
-    name: str, dtype: type, channels: int, encoding: str, meaning: str, *, past: bool = False
-) -> ViewSpec:
-    return ViewSpec(
-        name=name,
-        dtype=np.dtype(dtype),
-        channels=channels,
-        encoding=encoding,
-        meaning=meaning,
-        needs_past=past,
-    )
-
-
-VIEWS: Mapping[str, ViewSpec] = MappingProxyType(
-    {
-        spec.name: spec
-        for spec in (
-            _spec("rgb", np.uint8, 3, "rgb8", "the picture: red, green, blue (sRGB)"),
-            _spec(
-                "depth",
-                np.float32,
-                1,
-                "32FC1",
-                "depth along the optical axis [m]; +inf nothing hit, NaN nearer than near_m",
-            ),
-            _spec("category", np.uint8, 1, "8UC1", "category id; 0 background, 255 unlabelled"),
-            _spec("instance", np.uint16, 1, "16UC1", "instance id; 0 background"),
-            _spec(
-                "flow",
-                np.float32,
-                2,
-                "32FC2",
-                "velocity in the image [px/s], u right, v down; NaN where flow_valid is False",
-                past=True,
-            ),
-            _spec(
-                "flow_valid",
-                np.bool_,
-                1,
-                "8UC1",
-                "True where the surface point had a place in the previous frame's image plane",
-                past=True,
-            ),
-            _spec(
-                "occlusion",
-                np.bool_,
-                1,
-                "8UC1",
-                "True where the surface point was not visible in the previous frame",
-                past=True,
-            ),
-            _spec(
-                "normals",
-                np.float32,
-                3,
-                "32FC3",
-                "unit surface normal in the optical frame; 0 nothing hit",
-            ),
-        )
-    }
+_SPECS = (
+    ViewSpec(
+        name="rgb",
+        dtype=np.dtype(np.uint8),
+        channels=3,
+        encoding="rgb8",
+        meaning="the picture: red, green, blue (sRGB)",
+        display="colour",
+        source="lighting",
+        by_default=True,
+        compressed_topic="jpeg",
+    ),
+    ViewSpec(
+        name="depth",
+        dtype=np.dtype(np.float32),
+        encoding="32FC1",
+        meaning="depth along the optical axis",
+        unit="m",
+        invalid="+inf nothing hit, NaN nearer than the near plane",
+        display="depth",
+        source="annotation",
+        by_default=True,
+        color_topic=True,
+        png_per_unit=1000.0,
+    ),
+    ViewSpec(
+        name="category",
+        dtype=np.dtype(np.uint8),
+        encoding="8UC1",
+        meaning="category id",
+        invalid="0 background, 255 unlabelled",
+        display="category",
+        source="annotation",
+        by_default=True,
+        color_topic=True,
+        compressed_topic="png",
+    ),
+    ViewSpec(
+        name="instance",
+        dtype=np.dtype(np.uint16),
+        encoding="16UC1",
+        meaning="instance id",
+        invalid="0 background",
+        display="instance",
+        source="annotation",
+        by_default=True,
+        color_topic=True,
+        compressed_topic="png",
+    ),
+    ViewSpec(
+        name="flow",
+        dtype=np.dtype(np.float32),
+        channels=2,
+        encoding="32FC2",
+        meaning="velocity in the image, u right, v down",
+        unit="px/s",
+        invalid="NaN where it does not exist",
+        display="flow",
+        source="annotation",
+        needs_past=True,
+        by_default=True,
+        color_topic=True,
+    ),
+    ViewSpec(
+        name="flow_valid",
+        dtype=np.dtype(np.bool_),
+        encoding="8UC1",
+        meaning="True where the surface point had a place in the previous frame's image plane",
+        display="mask",
+        source="annotation",
+        needs_past=True,
+        validity_of="flow",
+    ),
+    ViewSpec(
+        name="occlusion",
+        dtype=np.dtype(np.bool_),
+        encoding="8UC1",
+        meaning="True where the surface point was not visible in the previous frame",
+        display="mask",
+        source="annotation",
+        needs_past=True,
+        needs_past_depth=True,
+    ),
+    ViewSpec(
+        name="normals",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="unit surface normal in the optical frame",
+        invalid="0 nothing hit",
+        display="direction",
+        source="geometry",
+    ),
+    ViewSpec(
+        name="albedo",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="base colour of the surface, whatever its light: red, green, blue (linear)",
+        invalid="0 nothing hit",
+        display="colour",
+        source="geometry",
+    ),
 )
+
+VIEWS: Mapping[str, ViewSpec] = MappingProxyType({spec.name: spec for spec in _SPECS})
 """Every view by name."""
 
-FIVE_VIEWS: tuple[str, ...] = ("rgb", "depth", "category", "instance", "flow")
+FIVE_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if spec.by_default)
 """What an agent gets unless it asks otherwise."""
 
 
-def checked_views(names: Iterable[str]) -> tuple[str, ...]:
+ALWAYS_MADE: tuple[str, ...] = ("depth",)
+"""What costs nothing beside any other view: for a frame of which only the camera is wanted."""
+
+
+def view_spec(name: str) -> ViewSpec:
+    """Return the entry of one view.
+
+    Raises
+    ------
+    UnknownName
+        If there is no view of that name.
+    """
+    if name not in VIEWS:
+        raise UnknownName("view", name, VIEWS)
+    return VIEWS[name]
+
+
+def views_of(*sources: ViewSource) -> tuple[str, ...]:
+    """Return the views that one of these sources makes, in the order of `VIEWS`."""
+    return tuple(name for name, spec in VIEWS.items() if spec.source in sources)
+
+
+def checked_views(
+    names: Iterable[str], *, supported: Collection[str] | None = None
+) -> tuple[str, ...]:
     """Check names of views: known, at least one, each once; in the order of `VIEWS`.
+
+    Parameters
+    ----------
+    names : iterable of str
+    supported : collection of str or None
+        What the renderer can make; None if that is not known here.
 
     Raises
     ------
     UnknownName
         If a name is not in `VIEWS`.
     InvalidRequest
-        If there is none.
+        If there is none, or one that the renderer cannot make.
     """
     wanted = set(names)
     for name in sorted(wanted):
-        if name not in VIEWS:
-            raise UnknownName("view", name, VIEWS)
+        view_spec(name)
     if not wanted:
         raise InvalidRequest("views", (), f"at least one of: {', '.join(VIEWS)}")
-    return tuple(name for name in VIEWS if name in wanted)
+    ordered = tuple(name for name in VIEWS if name in wanted)
+    missing = [] if supported is None else [name for name in ordered if name not in supported]
+    if supported is not None and missing:
+        offered = ", ".join(name for name in VIEWS if name in supported)
+        raise InvalidRequest("views", missing, f"among those that this renderer makes: {offered}")
+    return ordered
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -155,6 +295,8 @@ class Frame:
     dt_ns : int
         Simulated time since the frame that flow refers to [ns]; 0 if there is none.
     camera : Camera
+    depth_range_m : float
+        Depth that the 8-bit depth picture shows as black [m].
     views : mapping of str to array
         Arrays as `VIEWS` says, read-only, never written again.
     timings_s : mapping of str to float
@@ -169,13 +311,14 @@ class Frame:
     stamp_ns: int
     dt_ns: int
     camera: Camera
+    depth_range_m: float = 10.0
     views: Mapping[str, NDArray[Any]]
     timings_s: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width
         for name, array in self.views.items():
-            spec = VIEWS[name]
+            spec = view_spec(name)
             shape = spec.shape(height, width)
             if array.shape != shape or array.dtype != spec.dtype:
                 raise ValueError(
@@ -193,3 +336,27 @@ class Frame:
     def dt_s(self) -> float:
         """Simulated time since the frame that flow refers to [s]; 0 if there is none."""
         return self.dt_ns * 1e-9
+
+    def to_dict(self, *, copy: bool = True) -> dict[str, Any]:
+        """Return the frame as the dict of the SAILenv client, with more in it.
+
+        Parameters
+        ----------
+        copy : bool
+            False hands this frame's own arrays over: nobody else may hold them, and the frame must
+            not be used afterwards.
+
+        Returns
+        -------
+        frame : dict
+            See `sailenv_ros.pictures.frame_dict.frame_dict`; every array is the caller's own.
+        """
+        from sailenv_ros.pictures.frame_dict import frame_dict  # which knows how views are shown
+
+        return frame_dict(self, copy=copy)
+
+    def _repr_html_(self) -> str:
+        """Return the views as pictures, for notebooks."""
+        from sailenv_ros.notebook import frame_html
+
+        return frame_html(self)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.validation import vector
 
 __all__ = [
     "BODY_FROM_OPTICAL",
@@ -27,7 +28,6 @@ __all__ = [
     "look_at",
     "quat_xyzw_from_rpy_deg",
     "rpy_deg_from_quat_xyzw",
-    "vector",
 ]
 
 Matrix = NDArray[np.float64]
@@ -95,37 +95,11 @@ class Pose:
         return rpy_deg_from_quat_xyzw(self.orientation_xyzw)
 
     def matrix(self) -> Matrix:
-        """Give the (4, 4) float64 transform world_from_body; a new array."""
+        """Return the (4, 4) float64 transform world_from_body; a new array."""
         result = np.eye(4)
         result[:3, :3] = _rotation_matrix(self.orientation_xyzw)
         result[:3, 3] = self.position_m
         return result
-
-
-def vector(what: str, values: ArrayLike, *, limit: float = math.inf) -> tuple[float, float, float]:
-    """Check three finite numbers.
-
-    Parameters
-    ----------
-    what : str
-        The name that an error tells.
-    values : (3,) array-like
-    limit : float
-        The largest magnitude accepted for each of them.
-
-    Raises
-    ------
-    InvalidRequest
-        If there are not three, or one is not finite or beyond the limit.
-    """
-    accepted = "three finite numbers" + (f" within ±{limit:g}" if math.isfinite(limit) else "")
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidRequest(what, values, accepted) from None
-    if array.shape != (3,) or not np.isfinite(array).all() or bool((np.abs(array) > limit).any()):
-        raise InvalidRequest(what, values, accepted)
-    return float(array[0]), float(array[1]), float(array[2])
 
 
 def quat_xyzw_from_rpy_deg(rpy_deg: ArrayLike) -> tuple[float, float, float, float]:
@@ -162,7 +136,7 @@ def invert(a_from_b: Matrix) -> Matrix:
 
 
 def look_at(eye_m: ArrayLike, target_m: ArrayLike) -> Pose:
-    """Give the body pose (x forward, z as far up as can be) at `eye_m` that faces `target_m`."""
+    """Return the body pose (x forward, z as far up as can be) at `eye_m` that faces `target_m`."""
     eye = np.asarray(vector("eye", eye_m))
     forward = np.asarray(vector("target", target_m)) - eye
     distance = float(np.linalg.norm(forward))

@@ -140,7 +140,7 @@ class Instance:
 
 
 def instance_colours() -> NDArray[np.uint8]:
-    """Give (65536, 3) uint8 RGB: one colour for each instance id, no two alike, 0 black.
+    """Return (65536, 3) uint8 RGB: one colour for each instance id, no two alike, 0 black.
 
     The id is spread over 24 bits by an odd multiplier modulo 2**24, which is a bijection, so
     neighbouring ids look different and no two ids share a colour.

@@ -5,20 +5,38 @@ Colours are linear RGB. Positions and directions are in the world frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from numbers import Real
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.geometry import vector
+from sailenv_ros.validation import checked_number, vector
 
-__all__ = ["Environment", "Light", "LightType", "SkyMap", "light_named"]
+__all__ = [
+    "LIGHT_ATTRIBUTES",
+    "LIGHT_LIMITS",
+    "Environment",
+    "Light",
+    "LightType",
+    "SkyMap",
+    "light_named",
+]
 
 LightType = Literal["directional", "point", "spot", "area"]
+
+LIGHT_LIMITS: dict[str, tuple[float, float, str]] = {
+    "intensity": (0.0, 1e6, ""),
+    "indirect_multiplier": (0.0, 1e6, ""),
+    "range_m": (0.0, 1e3, "m"),
+    "inner_cone_deg": (0.0, 89.0, "deg"),
+    "outer_cone_deg": (0.0, 89.0, "deg"),
+    "width_m": (0.0, 1e3, "m"),
+    "height_m": (0.0, 1e3, "m"),
+}
+"""Least and greatest value of each number of a light, and its unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,14 +85,14 @@ class Light:
         if self.type not in get_args(LightType):
             raise UnknownName(f"type of light {self.name!r}", str(self.type), get_args(LightType))
         colour = _radiance(f"colour of light {self.name!r}", self.colour)
-        for name in ("intensity", "indirect_multiplier"):
-            self._check(name, "a number from 0 to 1e+06", lambda value: 0.0 <= value <= 1e6)
-        for name in ("range_m", "width_m", "height_m"):
-            self._check(name, "a number from 0 to 1000 [m]", lambda value: 0.0 <= value <= 1e3)
-        self._check("outer_cone_deg", "an angle from 0 to 89 [deg]", lambda v: 0.0 <= v <= 89.0)
-        wide = float(self.outer_cone_deg)
-        accepted = f"an angle from 0 to outer_cone_deg = {wide:g} [deg]"
-        self._check("inner_cone_deg", accepted, lambda value: 0.0 <= value <= wide)
+        for name, (low, high, unit) in LIGHT_LIMITS.items():
+            what = f"{name} of light {self.name!r}"
+            value = checked_number(what, getattr(self, name), low, high, unit=unit)
+            object.__setattr__(self, name, value)
+        if self.inner_cone_deg > self.outer_cone_deg:
+            accepted = f"at most outer_cone_deg = {self.outer_cone_deg:g} [deg]"
+            what = f"inner_cone_deg of light {self.name!r}"
+            raise InvalidRequest(what, self.inner_cone_deg, accepted)
         x, y, z = vector(f"direction of light {self.name!r}", self.direction, limit=1e6)
         length = (x * x + y * y + z * z) ** 0.5
         if length < 1e-9:
@@ -84,12 +102,9 @@ class Light:
         object.__setattr__(self, "direction", (x / length, y / length, z / length))
         object.__setattr__(self, "position_m", position)
 
-    def _check(self, name: str, accepted: str, holds: Callable[[float], bool]) -> None:
-        value = getattr(self, name)
-        is_number = isinstance(value, Real) and not isinstance(value, bool)
-        if not is_number or not holds(float(value)):
-            raise InvalidRequest(f"{name} of light {self.name!r}", value, accepted)
-        object.__setattr__(self, name, float(value))
+
+LIGHT_ATTRIBUTES: tuple[str, ...] = tuple(f.name for f in fields(Light) if f.name != "name")
+"""Names of everything that can be changed of a light, in their order."""
 
 
 def light_named(name: str, lights: Iterable[Light]) -> Light:

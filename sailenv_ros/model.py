@@ -8,6 +8,7 @@ the same object is uploaded to the GPU once.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -126,12 +127,17 @@ class Model:
     parts: tuple[ModelPart, ...]
 
     def bounds(self) -> NDArray[np.float64]:
-        """Give (2, 3) float64: lowest and highest corner in the body frame [m]."""
-        if not self.parts:
-            return np.zeros((2, 3))
-        low = np.min([part.mesh.positions.min(axis=0) for part in self.parts], axis=0)
-        high = np.max([part.mesh.positions.max(axis=0) for part in self.parts], axis=0)
-        return np.stack([low, high]).astype(np.float64)
+        """Return (2, 3) float64 read-only: lowest and highest corner in the body frame [m]."""
+        return self._bounds
+
+    @cached_property
+    def _bounds(self) -> NDArray[np.float64]:
+        result = np.zeros((2, 3))
+        if self.parts:
+            result[0] = np.min([part.mesh.positions.min(axis=0) for part in self.parts], axis=0)
+            result[1] = np.max([part.mesh.positions.max(axis=0) for part in self.parts], axis=0)
+        result.flags.writeable = False
+        return result
 
     @property
     def triangle_count(self) -> int:
@@ -199,7 +205,7 @@ class Asset:
     name : str
         Catalogue name, e.g. ``"chair_01"``.
     display_name : str
-        As the original wrote it, e.g. ``"Chair 01"``.
+        As SAILenv wrote it, e.g. ``"Chair 01"``.
     category : str
         Name in the category table.
     model : Model

@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args
 
-import numpy as np
-
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.validation import checked_flag, checked_integer, checked_number
 
 __all__ = ["LIMITS", "NAMES", "PictureSettings", "ToneCurve"]
 
@@ -78,20 +77,24 @@ class PictureSettings:
     def __post_init__(self) -> None:
         if self.tone_curve not in get_args(ToneCurve):
             raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
-        if not isinstance(self.smooth_edges, bool):
-            raise InvalidRequest("smooth_edges", self.smooth_edges, "true or false")
+        checked_flag("smooth_edges", self.smooth_edges)
         for name, (low, high, unit) in LIMITS.items():
             value = getattr(self, name)
-            whole = name in _WHOLE
-            kinds = int | np.integer if whole else int | float | np.number
-            number = isinstance(value, kinds) and not isinstance(value, bool)
-            if not number or not low <= value <= high:
-                accepted = f"{'an integer' if whole else 'a number'} from {low:g} to {high:g}"
-                raise InvalidRequest(name, value, accepted + (f" [{unit}]" if unit else ""))
-            object.__setattr__(self, name, int(value) if whole else float(value))
+            if name in _WHOLE:
+                value = checked_integer(name, value, int(low), int(high), unit=unit)
+            else:
+                value = checked_number(name, value, low, high, unit=unit)
+            object.__setattr__(self, name, value)
+
+    @staticmethod
+    def checked(what: str, settings: object) -> PictureSettings:
+        """Refuse what is no object of this class; `what` is the name that the error tells."""
+        if not isinstance(settings, PictureSettings):
+            raise InvalidRequest(what, settings, "an object of PictureSettings")
+        return settings
 
     def changed(self, changes: Mapping[str, Any]) -> PictureSettings:
-        """Give these settings with some of them changed, by their names.
+        """Return these settings with some of them changed, by their names.
 
         Raises
         ------

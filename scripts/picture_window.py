@@ -1,4 +1,4 @@
-"""Picture the window in the browser: room_02 as it runs, the pointer upon a cushion.
+"""Picture the web viewer: room_02 as it runs, the pointer upon a cushion.
 
     PYTHONPATH=. python scripts/picture_window.py FILE
 
@@ -47,7 +47,7 @@ def main(path: Path) -> None:
 
 
 def _middle(simulation: Simulation, name: str) -> tuple[float, float]:
-    """Give where an object is in the window's large picture, from (0, 0) to (1, 1)."""
+    """Return where an object is in the web viewer's large picture, from (0, 0) to (1, 1)."""
     instance = simulation.capture("debug_agent", ["instance"]).views["instance"]
     rows, columns = np.nonzero(instance == simulation.get_object(name).id)
     height, width = instance.shape

@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def _isolate_ros() -> None:
-    """Give each worker a domain of its own, on this machine alone."""
+    """Assign each worker a domain of its own, on this machine alone."""
     worker = re.sub(r"\D", "", os.environ.get("PYTEST_XDIST_WORKER", "")) or "0"
     base = int(os.environ.get("SAILENV_TEST_DOMAIN_ID", BASE_DOMAIN_ID))
     os.environ["ROS_DOMAIN_ID"] = str(base + int(worker))

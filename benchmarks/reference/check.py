@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.reference.curve import radiance_of
-from benchmarks.reference.export import scene_of, sensor
 from benchmarks.reference.parts import Parts
+from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, traced_views
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.camera import Camera, CameraIntrinsics
@@ -60,7 +60,7 @@ class Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Give all cases by name."""
+    """Return all cases by name."""
     grey = Material(base_colour=(ALBEDO, ALBEDO, ALBEDO, 1.0), roughness=1.0)
     white = Material(base_colour=(1.0, 1.0, 1.0, 1.0), roughness=1.0)
     metal = Material(base_colour=(0.7, 0.7, 0.7, 1.0), metallic=1.0, roughness=0.3)
@@ -177,7 +177,7 @@ def _sky_agrees(renderer: Renderer) -> bool:
 def _both(
     name: str, snapshot: WorldSnapshot, cameras: Mapping[str, Camera], renderer: Renderer
 ) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Give linear radiance as it is drawn and as it is traced, by camera."""
+    """Return linear radiance as it is drawn and as it is traced, by camera."""
     sensors = {view: sensor(camera) for view, camera in cameras.items()}
     scene = scene_of(snapshot, Parts(HOME / "parts"))
     traced = traced_views(name.replace(" ", "_"), scene, sensors, SAMPLES)
@@ -212,7 +212,7 @@ def _camera(at: tuple[float, ...], to: tuple[float, ...], fov_deg: float) -> Cam
 
 
 def _tilted(axis: int) -> Material:
-    """Give a grey material whose normal map tilts it towards +u or +v everywhere."""
+    """Return a grey material whose normal map tilts it towards +u or +v everywhere."""
     texel = np.full((4, 4, 4), 128, np.uint8)
     texel[..., axis], texel[..., 2] = 204, 230
     return Material(base_colour=(ALBEDO, ALBEDO, ALBEDO, 1.0), roughness=1.0, normal_texture=texel)

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from benchmarks.reference.curve import matched_stops, picture_of
-from benchmarks.reference.export import scene_of, sensor
 from benchmarks.reference.parts import Parts
+from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import look_at

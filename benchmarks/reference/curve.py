@@ -36,7 +36,7 @@ def picture_of(radiance: NDArray[np.floating], stops: float = 0.0) -> NDArray[np
 
 
 def radiance_of(picture: NDArray[np.uint8], stops: float = 0.0) -> Floats:
-    """Give the linear radiance that a picture's values stand for; for 255 the least that is white.
+    """Return the linear radiance that a picture's values mean; for 255 the least that is white.
 
     As exact as eight bits are: within 1 % for values from 60 to 230.
     """

@@ -30,7 +30,7 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
         self.m_flags = self.m_components[0] | self.m_components[1]
 
     def sample(self, ctx: Any, si: Any, sample1: Any, sample2: Any, active: Any = True) -> Any:
-        """Choose a lobe and a direction; give it with the share of light that it carries."""
+        """Choose a lobe and a direction; return it with the share of light that it carries."""
         diffuse, f0, alpha = self._finish(si, active)
         wi, side = _turned(si.wi)
         glossy_share = self._glossy_share(diffuse, f0)
@@ -49,15 +49,15 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
         return bs, dr.select(active, value / dr.maximum(bs.pdf, 1e-12), 0.0)
 
     def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Give the BSDF times the cosine."""
+        """Return the BSDF times the cosine."""
         return self.eval_pdf(ctx, si, wo, active)[0]
 
     def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Give the density with which `sample` chooses a direction."""
+        """Return the density with which `sample` chooses a direction."""
         return self.eval_pdf(ctx, si, wo, active)[1]
 
     def eval_pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Give both."""
+        """Return both."""
         diffuse, f0, alpha = self._finish(si, active)
         wi, side = _turned(si.wi)
         above = mi.Vector3f(wo.x, wo.y, wo.z * side)
@@ -66,7 +66,7 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
         return dr.select(active, value, 0.0), dr.select(active, pdf, 0.0)
 
     def eval_diffuse_reflectance(self, si: Any, active: Any = True) -> Any:
-        """Give the colour that guides the denoiser."""
+        """Return the colour that guides the denoiser."""
         return self.base.eval(si, active)
 
     def _finish(self, si: Any, active: Any) -> tuple[Any, Any, Any]:
@@ -77,14 +77,14 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
         return base * (1.0 - metallic), f0, dr.square(roughness)
 
     def _glossy_share(self, diffuse: Any, f0: Any) -> Any:
-        """Give how often the glossy lobe is chosen."""
+        """Return how often the glossy lobe is chosen."""
         glossy, below = mi.luminance(f0), mi.luminance(diffuse)
         return dr.clip(glossy / dr.maximum(glossy + below, 1e-6), 0.15, 1.0)
 
     def _lobes(
         self, wi: Any, wo: Any, diffuse: Any, f0: Any, alpha: Any, glossy_share: Any
     ) -> tuple[Any, Any]:
-        """Give value times cosine, and density; both directions are on the front."""
+        """Return value times cosine, and density; both directions are on the front."""
         nv, nl = wi.z, wo.z
         halfway = dr.normalize(wi + wo)
         vh = dr.dot(wi, halfway)
@@ -135,6 +135,6 @@ def _facets(alpha: Any) -> Any:
 
 
 def _turned(wi: Any) -> tuple[Any, Any]:
-    """Give the direction as if seen from the front, and the sign of the side."""
+    """Return the direction as if seen from the front, and the sign of the side."""
     side = dr.select(wi.z < 0.0, mi.Float(-1.0), mi.Float(1.0))
     return mi.Vector3f(wi.x, wi.y, wi.z * side), side

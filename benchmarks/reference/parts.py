@@ -44,7 +44,7 @@ class Parts:
         self._known: dict[int, tuple[NDArray[Any], str]] = {}
 
     def array(self, array: NDArray[Any]) -> str:
-        """Store an array; give the name of its file."""
+        """Store an array; return the name of its file."""
         if id(array) not in self._known:
             head = f"{array.dtype.str}{array.shape}".encode()
             name = _named(head + np.ascontiguousarray(array).tobytes(), ".npy")
@@ -56,7 +56,7 @@ class Parts:
         return self._known[id(array)][1]
 
     def mesh(self, content: bytes) -> str:
-        """Store what `ply_bytes` made; give the name of its file."""
+        """Store what `ply_bytes` made; return the name of its file."""
         name = _named(content, ".ply")
         if not (self.folder / name).exists():
             (self.folder / f"{name}.part").write_bytes(content)
@@ -67,7 +67,7 @@ class Parts:
 def ply_bytes(
     positions: NDArray[Any], normals: NDArray[Any], uvs: NDArray[Any], triangles: NDArray[Any]
 ) -> bytes:
-    """Give a binary PLY file's content.
+    """Return a binary PLY file's content.
 
     Parameters
     ----------

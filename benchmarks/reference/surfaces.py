@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.reference.parts import Parts
+from sailenv_ros.colour import LINEAR_OF_SRGB8, srgb_from_linear
 from sailenv_ros.model import Material
 
 __all__ = ["bsdf", "emitter"]
@@ -50,7 +51,7 @@ def emitter(material: Material, parts: Parts) -> Dict | None:
         return None
     if material.base_colour_texture is None:
         return {"type": "area", "radiance": _rgb_value(glow)}
-    pattern = _linear(material.base_colour_texture[..., :3]) * glow
+    pattern = LINEAR_OF_SRGB8[material.base_colour_texture[..., :3]] * glow
     return {"type": "area", "radiance": _bitmap(pattern.astype(np.float32), parts, raw=True)}
 
 
@@ -61,12 +62,12 @@ def _base_colour(material: Material, parts: Parts) -> Dict:
         return _rgb_value(factor)
     if (factor > 0.999).all():
         return _bitmap(_rgb(texture), parts, raw=False)
-    shaded = _encoded(_linear(texture[..., :3]) * factor)
+    shaded = srgb_from_linear(LINEAR_OF_SRGB8[texture[..., :3]] * factor)
     return _bitmap(np.rint(255.0 * shaded).astype(np.uint8), parts, raw=False)
 
 
 def _finish(material: Material, channel: int, factor: float, least: float, parts: Parts) -> Dict:
-    """Give metal or roughness: a number, or the texture's channel times its factor."""
+    """Return metal or roughness: a number, or the texture's channel times its factor."""
     texture = material.metallic_roughness_texture
     if texture is None:
         return _rgb_value(np.full(3, np.clip(factor, least, 1.0)))
@@ -91,13 +92,3 @@ def _rgb(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 def _rgb_value(colour: NDArray[np.float64]) -> Dict:
     return {"type": "rgb", "value": [float(channel) for channel in colour]}
-
-
-def _linear(srgb8: NDArray[np.uint8]) -> NDArray[np.float64]:
-    c = srgb8.astype(np.float64) / 255.0
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-
-
-def _encoded(linear: NDArray[np.float64]) -> NDArray[np.float64]:
-    curved = 1.055 * np.maximum(linear, 0.0031308) ** (1.0 / 2.4) - 0.055
-    return np.where(linear <= 0.0031308, 12.92 * linear, curved)

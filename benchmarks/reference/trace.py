@@ -45,8 +45,8 @@ mi.set_variant("llvm_ad_rgb")
 import pyoidn  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
-import lamps  # noqa: E402
 import lit_surface  # noqa: E402
+import reference_lamps as lamps  # noqa: E402
 
 
 def loaded(description: Any, parts: Path) -> Any:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.assets.places import cache_folder
+from sailenv_ros.assets.folders import cache_folder
 
 __all__ = ["HOME", "ToolMissing", "Traced", "missing_views", "run_tool", "traced_views"]
 
@@ -67,7 +67,7 @@ def traced_views(
     may_trace: bool = True,
     or_last: bool = False,
 ) -> dict[str, Traced]:
-    """Give the traced pictures of a scene by the names of its cameras.
+    """Return the traced pictures of a scene by the names of its cameras.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def missing_views(files: Mapping[str, Path]) -> list[str]:
 
 
 def run_tool(script: str, *arguments: str | Path, capture: bool = False) -> str:
-    """Run a script of this folder in the tracer's environment; give what it printed if captured.
+    """Run a script of this folder in the tracer's environment; return what it printed if captured.
 
     Raises
     ------

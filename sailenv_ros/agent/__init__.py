@@ -2,3 +2,7 @@
 
 Importing this package imports no ROS; `sailenv_ros.agent.agent` does.
 """
+
+from sailenv_ros.system.transport import require_shared_memory
+
+require_shared_memory()

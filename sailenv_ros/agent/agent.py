@@ -1,41 +1,45 @@
 """The facade: a camera in the simulator as one Python object, for people who know no ROS.
 
-Has the method names of the original SAILenv client. Raises typed errors and never prints; every
-wait has a deadline. World coordinates are those of ROS (x forward, y left, z up) [m], angles [deg].
+Has the method names of the SAILenv client, and the operations of `Simulation`. Raises typed errors
+and never prints; every wait has a deadline. World coordinates are those of ROS (x forward, y left,
+z up) [m], angles [deg].
 """
 
 from __future__ import annotations
 
 import atexit
+import inspect
 import threading
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from sailenv_msgs.srv import DeleteAgent, RegisterAgent
-from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
-from sailenv_ros.agent.client import SimulatorClient
-from sailenv_ros.agent.frame_pictures import FramePictures
-from sailenv_ros.agent.frame_requests import FrameRequests
-from sailenv_ros.agent.picture_requests import PictureRequests
-from sailenv_ros.agent.pose_requests import PoseRequests
+from sailenv_msgs_py.services import SERVICES
+from sailenv_ros.agent.frame_client import FrameClient
 from sailenv_ros.agent.recorded import RecordedAgent
-from sailenv_ros.agent.topics import AgentTopics
-from sailenv_ros.agents import AgentSpec
+from sailenv_ros.agent.remote import RemoteSimulator
+from sailenv_ros.agents import AgentSpec, check_frame_rate
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import SailenvError, SimulationClosed
+from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
 from sailenv_ros.frame import checked_views
+from sailenv_ros.notebook import scene_html
+from sailenv_ros.operations import Operation, Operations
 from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["Agent"]
+
+ORDINARY_S = 30.0
+"""An operation whose own deadline is longer takes long by nature [s]."""
 
 END_S = 2.0
 """How long the simulator may take to take note of an Agent's end [s]."""
 
 
-class Agent(SimulatorClient, FrameRequests, PoseRequests, PictureRequests, FramePictures):
+class Agent(Operations):
     """A camera of its own in the simulator; a context manager.
 
     Parameters
@@ -66,11 +70,12 @@ depth_frame_active : bool
     simulator : mapping or None
         Parameters of the simulator node if one has to be started, e.g. ``{"scene": "optical"}``.
     timeout_s : float
-        Deadline of each request [s]; starting a simulator may take up to `start_timeout_s`.
+        Deadline of each operation [s], but of those that take long by nature (another scene, steps,
+        uploads): they keep their own. Starting a simulator may take up to `start_timeout_s`.
 
     Raises
     ------
-    InvalidRequest, RequestRefused
+    InvalidRequest
         If an argument cannot be accepted.
     SimulationClosed, DeadlineExceeded
         If there is no simulator and none could be started.
@@ -123,15 +128,16 @@ depth_frame_active : bool
             following=following,
             picture=PictureSettings() if picture is None else picture,
         )
+        self._timeout_s = timeout_s
         self._lock = threading.RLock()
-        self._topics: AgentTopics | None = None
+        self._frames: FrameClient | None = None
+        self._worker: ThreadPoolExecutor | None = None
         self._closed = False
-        self.recaptured = 0
-        super().__init__(
+        self._recaptured = 0
+        self._remote = RemoteSimulator(
             namespace=namespace,
             domain_id=domain_id,
             simulator=simulator,
-            timeout_s=timeout_s,
             start_timeout_s=start_timeout_s,
         )
         atexit.register(self.close)
@@ -141,9 +147,229 @@ depth_frame_active : bool
             self.close()
             raise
 
+    # -- life ------------------------------------------------------------------------------
+
+    @property
+    def id(self) -> str:
+        """Name of this agent in the simulator, and of its topics."""
+        return self._spec.name
+
+    @property
+    def own_agent(self) -> str:
+        """Name of this agent: the one that operations mean if none is named."""
+        return self._spec.name
+
+    @property
+    def simulator_pid(self) -> int | None:
+        """Process id of the simulator if it was started here, else None."""
+        return self._remote.process_id
+
+    def register(self) -> None:
+        """Make the agent known to the simulator; done on construction, needed after `delete`."""
+        with self._lock:
+            if self._frames is not None:
+                return
+            frames = FrameClient(self._remote, self._spec)
+            try:
+                self._spec = self.register_agent(self._spec)
+                frames.begin(self._spec, self._timeout_s)
+            except BaseException:
+                frames.close()
+                raise
+            self._frames = frames
+
+    def delete(self) -> None:
+        """Remove the agent from the simulator; a second call does nothing."""
+        with self._lock:
+            if self._frames is not None:
+                self._recaptured += self._frames.recaptured
+                self._frames.close()
+                self._frames = None
+                self._remote.connection.forget_services(self.id)
+                self.delete_agent(self.id)
+
+    def rejoin(self) -> None:
+        """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.
+
+        The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
+        """
+        self._remote.connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            # Where the old simulator lives after all, it shall not keep the name.
+            with suppress(SailenvError):
+                self.delete()
+            self._remote.reconnect()
+            self.register()
+
+    def close(self) -> None:
+        """Remove the agent and disconnect; a second call does nothing.
+
+        A simulator that was started for this agent ends with the last one that uses it.
+        """
+        if self._remote.connection.is_inherited:
+            return  # it is the parent's, who goes on with it
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            atexit.unregister(self.close)
+            self._timeout_s = min(self._timeout_s, END_S)
+            if self._worker is not None:
+                self._worker.shutdown(wait=False, cancel_futures=True)
+            try:
+                self.delete()
+            except SailenvError:
+                pass  # the simulator is gone, and with it the agent
+            finally:
+                self._remote.close()
+
+    def _repr_html_(self) -> str:
+        """Return a table of what is simulated, for notebooks."""
+        return scene_html(f"Agent {self.id}", self.info)
+
+    def __enter__(self) -> Agent:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    # -- operations ------------------------------------------------------------------------
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as the simulator announced it last; never blocks."""
+        return self._remote.info
+
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Begin an operation in a thread of its own; one is done after the other."""
+        self._remote.connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            if self._worker is None:
+                self._worker = ThreadPoolExecutor(1, thread_name_prefix=f"{self.id}-operations")
+            return self._worker.submit(self.call_operation, operation, arguments, None)
+
+    def call_operation(
+        self,
+        operation: Operation[..., Any],
+        arguments: inspect.BoundArguments,
+        timeout_s: float | None,
+    ) -> Any:
+        """Carry an operation out in the simulator and return its result."""
+        self._remote.connection.check_process()
+        limit_s = self._deadline_s(operation) if timeout_s is None else timeout_s
+        service = SERVICES[operation.name]
+        if service.of_agent and arguments.arguments["agent"] == self.id:
+            frames = self._own_frames
+            if operation is Operations.capture:
+                with self._lock:
+                    return frames.capture(arguments.arguments.get("views"), limit_s)
+        elif operation is Operations.capture:
+            accepted = f"{self.id!r}: an Agent receives its own frames alone"
+            raise InvalidRequest("agent", arguments.arguments["agent"], accepted)
+        return self._remote.call(service, arguments, limit_s)
+
+    @property
+    def picture(self) -> PictureSettings:
+        """How the pictures are made now; the simulator is asked."""
+        return self.get_picture()
+
+    # -- frames ----------------------------------------------------------------------------
+
+    @property
+    def recaptured(self) -> int:
+        """How often a frame was asked for anew because images did not arrive."""
+        return self._recaptured + (0 if self._frames is None else self._frames.recaptured)
+
+    def get_frame(
+        self,
+        views: Sequence[str] = (),
+        *,
+        agent: str | None = None,
+        timeout_s: float | None = None,
+    ) -> dict[str, Any]:
+        """Render one frame now and return it as the dict of the SAILenv client.
+
+        It shows the world after everything that this agent asked for before.
+
+        Parameters
+        ----------
+        views : sequence of str
+            More views than the agent's own, by their names in `sailenv_ros.frame.VIEWS`; rendered
+            for this frame alone.
+        agent : str or None
+            This one.
+        timeout_s : float or None
+            Deadline [s]; None means the agent's own.
+
+        Returns
+        -------
+        frame : dict
+            See `sailenv_ros.frame.Frame.to_dict`; every array is the caller's own.
+
+        Raises
+        ------
+        SimulatorLost
+            If the simulator has ended.
+        DeadlineExceeded
+            If no complete frame arrived in time; `recaptured` counts the attempts that were
+            repeated because images did not arrive.
+        """
+        wanted = (*self._spec.views, *views) if views else None
+        capture = self.capture if timeout_s is None else self.capture.within(timeout_s)
+        # What was received is nobody else's: it is handed over as it is.
+        return capture(wanted, agent=agent).to_dict(copy=False)
+
+    def frames(
+        self, rate_hz: float = 30.0, *, agent: str | None = None, timeout_s: float | None = None
+    ) -> Iterator[dict[str, Any]]:
+        """Yield frame after frame at a rate of simulated time, the newest each time.
+
+        Whoever is slower than the rate misses frames, which shows in their `sequence`. The rate
+        ends with the iteration; a view asked of `get_frame` before is in these frames too.
+
+        Parameters
+        ----------
+        rate_hz : float
+            Frames per simulated second, above 0 and up to 240.
+        agent : str or None
+            This one.
+        timeout_s : float or None
+            Deadline of each frame [s]; None means the agent's own.
+
+        Yields
+        ------
+        frame : dict
+            As of `get_frame`.
+
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If no frame came in time.
+        """
+        check_frame_rate(rate_hz)
+        if agent not in (None, self.id):
+            raise InvalidRequest("agent", agent, f"{self.id!r}: an Agent receives its own frames")
+        limit_s = self._timeout_s if timeout_s is None else timeout_s
+        self.set_rate(rate_hz)
+        try:
+            sequence = 0
+            while True:
+                frame = self._own_frames.newer(sequence, limit_s)
+                sequence = frame.sequence
+                yield frame.to_dict(copy=False)
+        finally:
+            if self._frames is not None and self._remote.connection.simulator_lives():
+                self.set_rate(0.0)
+
     @staticmethod
     def from_recording(path: str | Path, agent: str = "") -> RecordedAgent:
-        """Open a recording as an agent whose `get_frame` gives what was seen then.
+        """Open a recording as an agent whose `get_frame` returns what was seen then.
 
         Parameters
         ----------
@@ -159,90 +385,14 @@ depth_frame_active : bool
         """
         return RecordedAgent(path, agent)
 
-    # -- life ------------------------------------------------------------------------------
-
-    @property
-    def id(self) -> str:
-        """Name of this agent in the simulator, and of its topics."""
-        return self._spec.name
-
-    def register(self) -> None:
-        """Make the agent known to the simulator; done on construction, needed after `delete`."""
-        with self._lock:
-            if self._topics is not None:
-                return
-            request = RegisterAgent.Request(agent=agent_spec_to_msg(self._spec))
-            # Readers first: the agent's publishers then know them from their first message on.
-            topics = AgentTopics(self._connection, self.id, self._spec.views)
-            try:
-                answer = self._call(RegisterAgent, "register_agent", request)
-                self._topics = topics
-                self._spec = agent_spec_from_msg(answer.accepted)
-                topics.await_publishers(self._timeout_s)
-            except BaseException:
-                topics.close()
-                self._topics = None
-                raise
-
-    def delete(self) -> None:
-        """Remove the agent from the simulator; a second call does nothing."""
-        with self._lock:
-            if self._topics is not None:
-                self._topics.close()
-                self._topics = None
-                self._connection.forget_services(self.id)
-                self._call(DeleteAgent, "delete_agent", DeleteAgent.Request(name=self.id))
-
-    def rejoin(self) -> None:
-        """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.
-
-        The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
-        """
-        self._connection.check_process()
-        with self._lock:
-            if self._closed:
-                raise SimulationClosed("the Agent was closed")
-            # Where the old simulator lives after all, it shall not keep the name.
-            with suppress(SailenvError):
-                self.delete()
-            self._reconnect()
-            self.register()
-
-    def close(self) -> None:
-        """Remove the agent and disconnect; a second call does nothing.
-
-        A simulator that was started for this agent ends with the last one that uses it.
-        """
-        if self._connection.is_inherited:
-            return  # it is the parent's, who goes on with it
-        with self._lock:
-            if self._closed:
-                return
-            self._closed = True
-            atexit.unregister(self.close)
-            self._timeout_s = min(self._timeout_s, END_S)
-            try:
-                self.delete()
-            except SailenvError:
-                pass  # the simulator is gone, and with it the agent
-            finally:
-                self._release()
-
-    def __enter__(self) -> Agent:
-        return self
-
-    def __exit__(self, *exc: object) -> None:
-        self.close()
-
     # -- inside ----------------------------------------------------------------------------
 
     @property
-    def _own_topics(self) -> AgentTopics:
-        if self._topics is None:
+    def _own_frames(self) -> FrameClient:
+        if self._frames is None:
             raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
-        return self._topics
+        return self._frames
 
-    def _call_own(self, srv_type: Any, service: str, request: Any) -> Any:
-        if self._topics is None:
-            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
-        return self._call(srv_type, f"{self.id}/{service}", request)
+    def _deadline_s(self, operation: Operation[..., Any]) -> float:
+        takes_long = operation.deadline_s > ORDINARY_S
+        return max(self._timeout_s, operation.deadline_s) if takes_long else self._timeout_s

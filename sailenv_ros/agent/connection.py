@@ -23,17 +23,16 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
 from sailenv_msgs.srv import RegisterAgent
-from sailenv_msgs_py.scene_info import scene_info_from_msg
+from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidRequest,
-    RequestRefused,
     SimulationClosed,
     SimulatorLost,
 )
-from sailenv_ros.presence import present_simulator
 from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.transport import use_shared_memory_profile
+from sailenv_ros.system.presence import present_simulator
+from sailenv_ros.system.transport import use_shared_memory_profile
 
 __all__ = ["Connection"]
 
@@ -41,6 +40,9 @@ _log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.1
 """How often a wait looks whether the simulator still lives [s]."""
+
+STOPPED_S = 1.0
+"""A look that takes so much longer than it should tells that this process was stopped [s]."""
 
 POLL_INTERVAL_S = 0.005
 """How often a condition of the ROS graph is looked at, which tells of no change by itself [s]."""
@@ -104,7 +106,7 @@ class Connection:
         return self.simulator_here() is not None
 
     def simulator_here(self) -> int | None:
-        """Give the process id of the simulator of this name on this host, if there is one."""
+        """Return the process id of the simulator of this name on this host, if there is one."""
         return present_simulator(self.domain_id, self.namespace)
 
     @property
@@ -143,20 +145,19 @@ class Connection:
         Returns
         -------
         response : message
-            One that says success.
+            Be it a success or a refusal.
 
         Raises
         ------
         InvalidRequest
             If a field of the request cannot be sent at all.
-        RequestRefused
-            With the simulator's own sentence.
         SimulatorLost
             If the simulator has ended.
         DeadlineExceeded
             If there was no answer in time.
         """
         self.check_process()
+        _refuse_nul(service, request)
         deadline = time.monotonic() + timeout_s
         client = self._client(srv_type, service)
         what = f"the service {self.namespace}/{service}"
@@ -174,10 +175,7 @@ class Connection:
         except DeadlineExceeded:
             client.remove_pending_request(future)
             raise
-        response = future.result()
-        if not response.success:
-            raise RequestRefused(service, response.message)
-        return response
+        return future.result()
 
     def forget_services(self, prefix: str) -> None:
         """Free the clients of the services below that name."""
@@ -232,12 +230,19 @@ class Connection:
     def _wait(
         self, met: Callable[[float], bool], what: str, deadline: float, timeout_s: float
     ) -> None:
+        began = time.monotonic()
+        looked = time.monotonic()
         while not met(max(0.0, min(LOOK_INTERVAL_S, deadline - time.monotonic()))):
+            now = time.monotonic()
+            if now - looked > LOOK_INTERVAL_S + STOPPED_S:
+                # This process stood still (a debugger, Ctrl-Z, sleep): it has not waited so long.
+                deadline += now - looked
+            looked = now
             if self._closed:
                 raise SimulationClosed("the Agent was closed")
             # What came in before the simulator ended is still taken.
             if not self._is_alive() and not met(0.0):
-                raise SimulatorLost(what, timeout_s)
+                raise SimulatorLost(what, time.monotonic() - began)
             if time.monotonic() >= deadline:
                 raise DeadlineExceeded(what, timeout_s)
 
@@ -280,3 +285,19 @@ class Connection:
         self.node.destroy_node()
         with contextlib.suppress(RuntimeError):  # the interpreter's end may have come before
             self._context.try_shutdown()
+
+
+def _refuse_nul(service: str, message: Any) -> None:
+    """Refuse a text with a NUL in it: the messages' C code would cut it off there unseen."""
+    for name, kind in message.get_fields_and_field_types().items():
+        value = getattr(message, name)
+        if "string" in kind:
+            texts = [value] if isinstance(value, str) else value
+            if any("\0" in text for text in texts):
+                raise InvalidRequest(f"{name} of the request to {service}", value, "without a NUL")
+        elif hasattr(value, "get_fields_and_field_types"):
+            _refuse_nul(service, value)
+        elif isinstance(value, list):
+            for part in value:
+                if hasattr(part, "get_fields_and_field_types"):
+                    _refuse_nul(service, part)

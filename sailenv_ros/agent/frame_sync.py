@@ -72,7 +72,7 @@ class FrameSync:
     def add_info(
         self, sequence: int, stamp_ns: int, views: tuple[str, ...], sent_ns: int, message: Any
     ) -> Bundle | None:
-        """Take a frame_info; give its frame if that is now complete.
+        """Take a frame_info; return its frame if that is now complete.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class FrameSync:
         return self._completed()
 
     def add_image(self, view: str, stamp_ns: int, sent_ns: int, message: Any) -> Bundle | None:
-        """Take an image; give its frame if that is now complete."""
+        """Take an image; return its frame if that is now complete."""
         waiting = self._images.setdefault(view, deque(maxlen=DEPTH))
         waiting.append(_Image(stamp_ns=stamp_ns, sent_ns=sent_ns, message=message))
         return self._completed()

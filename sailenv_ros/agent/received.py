@@ -1,22 +1,22 @@
-"""What a client received, as its own nouns: a bundle of messages → the dict of one frame."""
+"""What a client received, as its own data: a bundle of messages → a `Frame`."""
 
 from __future__ import annotations
 
-from typing import Any
+from functools import lru_cache
 
 from sailenv_msgs_py.frame_info import camera_of_frame_info
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
-from sailenv_ros.agent.frame_dict import frame_dict
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.system.memory import keep_freed_memory
 
 __all__ = ["frame_of_bundle"]
 
 
-def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> dict[str, Any]:
-    """Make the dict of one frame; its arrays lie on the messages' bytes, which nobody else has.
+def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> Frame:
+    """Make one frame; its arrays lie on the messages' bytes, which nobody else has.
 
     Parameters
     ----------
@@ -24,20 +24,29 @@ def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> dict[str, A
         Of `sailenv_msgs/FrameInfo` and `sensor_msgs/Image`.
     intrinsics : CameraIntrinsics
         Of the agent that the frame is of.
-
-    Returns
-    -------
-    frame : dict
-        See `frame_dict`.
     """
+    _keep_freed_memory_once()
     info, images = bundle.info, bundle.images
-    return frame_dict(
-        {view: view_from_image(view, images[view]) for view in VIEWS if view in images},
-        camera=camera_of_frame_info(info, intrinsics),
-        depth_range_m=info.depth_range_m,
+    return Frame(
+        agent=info.agent,
         scene=info.scene,
+        epoch=info.epoch,
+        revision=info.revision,
         sequence=bundle.sequence,
         stamp_ns=ns_from_stamp(info.header.stamp),
         dt_ns=info.dt_ns,
-        render_s=info.render_s,
+        camera=camera_of_frame_info(info, intrinsics),
+        depth_range_m=info.depth_range_m,
+        views={view: view_from_image(view, images[view]) for view in VIEWS if view in images},
+        timings_s={"render": info.render_s},
     )
+
+
+@lru_cache(maxsize=1)
+def _keep_freed_memory_once() -> None:
+    """Keep the memory of frames that were let go, for the frames that follow.
+
+    A frame's bytes are received into some arrays of megabytes each; without this each page of them
+    is faulted in anew, which takes longer than the copying.
+    """
+    keep_freed_memory()

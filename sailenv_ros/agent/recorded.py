@@ -10,12 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.agent.client import Instance, instance_of
-from sailenv_ros.agent.frame_pictures import frame_pictures
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.agent.received import frame_of_bundle
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.operations.frame_pictures import frame_pictures
+from sailenv_ros.operations.scene_tables import SceneObject, scene_objects
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
@@ -70,7 +70,7 @@ class RecordedAgent(Sequence[dict[str, Any]]):
     # -- frames ----------------------------------------------------------------------------
 
     def get_frame(self) -> dict[str, Any]:
-        """Give the next frame, as the live agent's `get_frame` gave it.
+        """Return the next frame, as the live agent's `get_frame` gave it.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class RecordedAgent(Sequence[dict[str, Any]]):
         self._next = self._frames.position(index)
 
     def frame_at(self, time_s: float) -> dict[str, Any]:
-        """Give the last frame at or before a simulated time [s].
+        """Return the last frame at or before a simulated time [s].
 
         Raises
         ------
@@ -103,19 +103,19 @@ class RecordedAgent(Sequence[dict[str, Any]]):
         return len(self._frames)
 
     def __getitem__(self, index: Any) -> Any:
-        """Give the frame of that number, from 0, or a list of them; each call a dict of its own."""
+        """Return the frame of that number, from 0, or a list of them; each call a new dict."""
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         self._current = self._frames.position(index)
         info, images = self._frames.messages(self._current)
         bundle = Bundle(sequence=info.sequence, info=info, images=images)
-        return frame_of_bundle(bundle, self._frames.intrinsics(self._current))
+        return frame_of_bundle(bundle, self._frames.intrinsics(self._current)).to_dict(copy=False)
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return (self[number] for number in range(len(self)))
 
     def save_contact_sheet(self, path: str | Path, frame: Mapping[str, Any]) -> Path:
-        """Write all views of a frame as one labelled PNG file; give its path."""
+        """Write all views of a frame as one labelled PNG file; return its path."""
         info = self._info
         table = info.categories if info else CategoryTable([])
         return save_contact_sheet(path, frame_pictures(frame, table))
@@ -139,14 +139,10 @@ class RecordedAgent(Sequence[dict[str, Any]]):
         return {category.id: category.name for category in known}
 
     @property
-    def instances(self) -> dict[int, Instance]:
+    def instances(self) -> dict[int, SceneObject]:
         """The objects of the scene by their ids, the values of the instance view."""
         info = self._info
-        return (
-            {}
-            if info is None
-            else {i.id: instance_of(i, i.id in info.moving) for i in info.instances}
-        )
+        return {} if info is None else scene_objects(info)
 
     def close(self) -> None:
         """Close the files; a second call does nothing."""

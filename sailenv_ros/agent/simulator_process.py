@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, SimulationClosed
-from sailenv_ros.transport import remove_abandoned_segments
+from sailenv_ros.system.transport import remove_abandoned_segments, stay_local
 
 __all__ = ["SimulatorProcess"]
 
@@ -72,7 +72,7 @@ class SimulatorProcess:
         return self._process.poll() is None
 
     def log(self) -> str:
-        """Give what the child wrote so far."""
+        """Return what the child wrote so far."""
         return os.pread(self._log.fileno(), 1 << 20, 0).decode(errors="replace")
 
     def failure(self) -> SimulationClosed:
@@ -103,8 +103,10 @@ class SimulatorProcess:
 def _environment(domain_id: int) -> dict[str, str]:
     package_parent = str(Path(__file__).resolve().parents[2])
     path = os.environ.get("PYTHONPATH", "")
+    inherited = dict(os.environ)
+    stay_local(inherited)
     return {
-        **os.environ,
+        **inherited,
         "ROS_DOMAIN_ID": str(domain_id),
         "PYTHONPATH": os.pathsep.join([package_parent, *([path] if path else [])]),
         "PYTHONSAFEPATH": "1",  # not a package of this name that lies in the current folder

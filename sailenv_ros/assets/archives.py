@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import stat
+import struct
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
@@ -25,7 +26,7 @@ _CHUNK = 1 << 20
 
 
 def unpack_zip(archive: Path, folder: Path) -> tuple[Path, ...]:
-    """Unpack a zip archive into an empty folder; give the files.
+    """Unpack a zip archive into an empty folder; return the files.
 
     Raises
     ------
@@ -44,8 +45,13 @@ def unpack_zip(archive: Path, folder: Path) -> tuple[Path, ...]:
         raise AssetError(
             archive.name, f"it is no zip archive that can be read ({problem})"
         ) from None
+    except AssetError:
+        raise
     except zlib.error as problem:
         raise AssetError(archive.name, f"its data are damaged ({problem})") from None
+    except (ValueError, IndexError, struct.error) as problem:
+        # What the zip reader stumbles over in headers that were made up.
+        raise AssetError(archive.name, f"its list of files is malformed ({problem})") from None
 
 
 def _check(name: str, members: list[zipfile.ZipInfo]) -> None:

@@ -44,7 +44,7 @@ _FACING: Mapping[str, float] = {"north": -90.0, "east": 180.0, "south": 90.0, "w
 def arranged(
     entries: Sequence[ObjectSpec], assets: Mapping[str, Asset], room: RoomSpec | None
 ) -> Mapping[str, Pose]:
-    """Give the pose of each object, by its name.
+    """Return the pose of each object, by its name.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def _place(
 def _upon(
     entry: ObjectSpec, asset: Asset, carrier: ObjectSpec, carrying: Asset, base: Pose
 ) -> Pose:
-    """Give the pose on a carrier, whose turn the object takes along."""
+    """Return the pose on a carrier, whose turn the object takes along."""
     given = entry.pose.matrix()
     x, y, z = entry.position
     points = _points(asset.collision or _box_of(asset), entry.scale) @ given[:3, :3].T
@@ -117,7 +117,7 @@ def _upon(
 
 
 def _beside_wall(entry: ObjectSpec, asset: Asset, room: RoomSpec) -> Pose:
-    """Give the pose with the back to a wall, the front to the room."""
+    """Return the pose with the back to a wall, the front to the room."""
     assert entry.wall is not None
     facing = Pose.from_rpy_deg((0.0, 0.0, 0.0), (0.0, 0.0, _FACING[entry.wall])).matrix()
     turn = facing @ entry.pose.matrix()
@@ -138,7 +138,7 @@ def _beside_wall(entry: ObjectSpec, asset: Asset, room: RoomSpec) -> Pose:
 
 
 def _skirting(room: RoomSpec, height_m: float) -> float:
-    """Give how far the skirting keeps off what stands on the floor."""
+    """Return how far the skirting keeps off what stands on the floor."""
     return room.skirting.depth if room.skirting is not None and height_m == 0.0 else 0.0
 
 
@@ -154,7 +154,7 @@ def _points(shapes: Sequence[CollisionShape], scale: tuple[float, float, float])
 
 
 def _corners(shape: CollisionShape) -> Floats:
-    """Give points whose convex hull is a shape, or nearly so for round ones; triangles' own."""
+    """Return points whose convex hull is a shape, or nearly so for round ones; triangles' own."""
     if isinstance(shape, BoxShape):
         signs = np.stack(np.meshgrid((-1, 1), (-1, 1), (-1, 1)), axis=-1).reshape(-1, 3)
         return _moved(signs * np.asarray(shape.half_extents_m), shape.centre_m)
@@ -175,7 +175,7 @@ def _moved(points: Floats, centre_m: tuple[float, float, float]) -> Floats:
 
 
 def _height(shape: CollisionShape, scale: tuple[float, float, float], under: Floats) -> float:
-    """Give the greatest height of a shape over points of the floor; -inf where it is elsewhere."""
+    """Return the greatest height of a shape over points of the floor; -inf where there is none."""
     points = _corners(shape) * np.asarray(scale)
     if isinstance(shape, TriangleShape):
         triangles = shape.triangles

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sailenv_ros.errors import AssetError, NameTaken
 from sailenv_ros.labels import Category, CategoryTable
-from sailenv_ros.resources import resource_path
+from sailenv_ros.system.resources import resource_path
 
 __all__ = ["LAST_FIXED_ID", "load_categories"]
 
@@ -19,7 +19,7 @@ LAST_FIXED_ID = 199
 """Higher ids belong to scenes and packs."""
 
 
-class _Entry(BaseModel):
+class _CategoryEntry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     id: Annotated[int, Field(ge=1, le=LAST_FIXED_ID, strict=True)]
@@ -31,10 +31,10 @@ class _Entry(BaseModel):
         return Category(id=self.id, name=self.name, colour=(red, green, blue))
 
 
-class _File(BaseModel):
+class _CategoriesFile(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    categories: tuple[_Entry, ...]
+    categories: tuple[_CategoryEntry, ...]
 
 
 def load_categories(path: Path | None = None) -> CategoryTable:
@@ -60,7 +60,7 @@ def _own_table() -> CategoryTable:
 
 def _read(path: Path) -> CategoryTable:
     try:
-        content = _File.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        content = _CategoriesFile.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
         ids = [entry.id for entry in content.categories]
         if len(set(ids)) != len(ids):
             raise NameTaken("category id", str(next(i for i in ids if ids.count(i) > 1)))

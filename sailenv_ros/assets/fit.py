@@ -1,20 +1,20 @@
 """Whether an asset can be placed as an object's entry in a scene file says.
 
-Plain data in, places and sentences out, so that a scene's faults are found before it is built.
+Plain data in, places and sentences out, so that a scene's errors are found before it is built.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
-from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.model import Asset, CylinderShape, SphereShape, TriangleShape
+from sailenv_ros.validation import is_finite_number
 
 __all__ = ["ObjectFit"]
 
-Faults: TypeAlias = Iterator[tuple[tuple[str | int, ...], str]]
+Diagnostics: TypeAlias = Iterator[tuple[tuple[str | int, ...], str]]
 
 
 class ObjectFit:
@@ -29,7 +29,7 @@ class ObjectFit:
         self._library = library
         self._known = frozenset(library.all_names)
 
-    def __call__(self, entry: Mapping[str, Any]) -> Faults:
+    def __call__(self, entry: Mapping[str, Any]) -> Diagnostics:
         """Yield what does not fit; keep silent about an asset that is unknown.
 
         Raises
@@ -41,7 +41,7 @@ class ObjectFit:
         if not isinstance(name, str) or name not in self._known:
             return
         asset = self._library.get(name)
-        yield from _scale_faults(asset, entry.get("scale"))
+        yield from _scale_errors(asset, entry.get("scale"))
         if not entry.get("static", False) and _is_hollow(asset):
             yield (
                 ("asset",),
@@ -49,8 +49,12 @@ class ObjectFit:
             )
 
 
-def _scale_faults(asset: Asset, scale: object) -> Faults:
-    if not isinstance(scale, list | tuple) or len(scale) != 3 or not all(map(_is_number, scale)):
+def _scale_errors(asset: Asset, scale: object) -> Diagnostics:
+    if (
+        not isinstance(scale, list | tuple)
+        or len(scale) != 3
+        or not all(map(is_finite_number, scale))
+    ):
         return
     for shape in asset.collision:
         if isinstance(shape, SphereShape) and not _equal(scale):
@@ -63,10 +67,6 @@ def _scale_faults(asset: Asset, scale: object) -> Faults:
 
 def _is_hollow(asset: Asset) -> bool:
     return any(isinstance(shape, TriangleShape) for shape in asset.collision)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _equal(values: Any) -> bool:

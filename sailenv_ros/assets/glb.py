@@ -54,7 +54,7 @@ def read_glb(path: Path) -> tuple[tuple[ModelPart, ...], tuple[ConvexShape, ...]
 
 
 def glb_bytes(parts: Sequence[ModelPart], hulls: Sequence[ConvexShape]) -> bytes:
-    """Give the bytes of a binary glTF file; the same model gives the same bytes."""
+    """Return the bytes of a binary glTF file; the same model gives the same bytes."""
     scene = trimesh.Scene()
     for number, part in enumerate(parts):
         _add(scene, f"part_{number}", _drawn(part))
@@ -104,7 +104,7 @@ def _pbr(material: Material) -> Any:
 
 
 def _picture(texture: Texture | None, *, lossless: bool = False) -> Image.Image | None:
-    """Give a texture as a picture that says how it is to be stored; JPEG where none sees it."""
+    """Return a texture as a picture that says how it is to be stored; JPEG where none sees it."""
     if texture is None:
         return None
     picture = Image.fromarray(np.asarray(texture)).convert("RGBA" if lossless else "RGB")
@@ -123,7 +123,7 @@ def triangle_count(parts: Sequence[ModelPart]) -> int:
 
 
 def body_bounds(parts: Sequence[ModelPart]) -> NDArray[np.float64]:
-    """Give (2, 3) float64: lowest and highest corner in the body frame."""
+    """Return (2, 3) float64: lowest and highest corner in the body frame."""
     low = np.min([part.mesh.positions.min(axis=0) for part in parts], axis=0)
     high = np.max([part.mesh.positions.max(axis=0) for part in parts], axis=0)
     return np.stack([low, high]).astype(np.float64)

@@ -9,12 +9,12 @@ import dataclasses
 import warnings
 from collections.abc import Sequence
 
-import coacd
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from sailenv_ros.assets.meshes import RawMesh, components, simplified, welded
+from sailenv_ros.extras import need
 from sailenv_ros.model import ConvexShape
 
 __all__ = ["convex_hull", "convex_parts", "hulls_of_pieces", "merged"]
@@ -40,7 +40,7 @@ def merged(meshes: Sequence[RawMesh]) -> RawMesh:
 
 
 def convex_hull(points: Floats) -> ConvexShape:
-    """Give the hull of points, of at most `MAX_HULL_POINTS` corners."""
+    """Return the hull of points, of at most `MAX_HULL_POINTS` corners."""
     points = np.unique(np.asarray(points, dtype=np.float64).round(5), axis=0)
     corners = _corners(_thickened(points))
     if len(corners) > MAX_HULL_POINTS:
@@ -49,7 +49,7 @@ def convex_hull(points: Floats) -> ConvexShape:
 
 
 def hulls_of_pieces(mesh: RawMesh) -> tuple[ConvexShape, ...]:
-    """Give one hull for each connected piece: exact for furniture that is joined from boards.
+    """Return one hull for each connected piece: exact for furniture that is joined from boards.
 
     Pieces inside another one's box are left out; the smallest join their nearest neighbours until
     there are at most `MAX_HULLS`.
@@ -66,12 +66,13 @@ def hulls_of_pieces(mesh: RawMesh) -> tuple[ConvexShape, ...]:
 
 
 def convex_parts(mesh: RawMesh, *, threshold: float = 0.08) -> tuple[ConvexShape, ...]:
-    """Give a convex decomposition, for what is hollow or branched.
+    """Return a convex decomposition, for what is hollow or branched.
 
     Notes
     -----
     CoACD (Wei, Liu, Ling and Su, SIGGRAPH 2022) with its fixed seed.
     """
+    coacd = need("coacd", "importing a model")
     small = simplified(_closed(mesh), 4000, max_error=0.05)
     low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     coacd.set_log_level("error")
@@ -96,7 +97,7 @@ def _closed(mesh: RawMesh) -> RawMesh:
 
 
 def _thickened(points: Floats) -> Floats:
-    """Give what is flat along an axis a little depth."""
+    """Return what is flat along an axis a little depth."""
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in np.flatnonzero(high - low < THINNEST_M):
         lifted = points.copy()

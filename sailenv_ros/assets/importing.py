@@ -7,7 +7,6 @@ it unpacks, which is gone afterwards.
 from __future__ import annotations
 
 import dataclasses
-import re
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,10 +20,10 @@ from sailenv_ros.assets.meshes import RawMesh, is_open, smooth_mesh
 from sailenv_ros.assets.model_files import MODEL_SUFFIXES, RawPart, read_parts
 from sailenv_ros.errors import AssetError, InvalidRequest
 from sailenv_ros.model import Asset, CollisionShape, Model, ModelPart
+from sailenv_ros.validation import IDENTIFIER
 
-__all__ = ["ASSET_NAME", "import_asset"]
+__all__ = ["import_asset"]
 
-ASSET_NAME = re.compile(r"[a-z][a-z0-9_]{0,62}")
 """What catalogue names look like."""
 
 DENSITY_KG_M3 = 150.0
@@ -70,7 +69,7 @@ def import_asset(
     AssetError
         If the file is malformed, too large (200 MB, 5 million triangles) or malicious.
     """
-    if not ASSET_NAME.fullmatch(name):
+    if not IDENTIFIER.fullmatch(name):
         raise InvalidRequest("asset name", name, "lower-case letters, digits and _, at most 63")
     if height_m is not None and not SMALLEST_M <= height_m <= LARGEST_M:
         raise InvalidRequest("height", height_m, f"a length from {SMALLEST_M} to {LARGEST_M} [m]")
@@ -107,7 +106,7 @@ def _model_file(path: Path, folder: Path) -> Path:
 
 
 def _standing(parts: Sequence[RawPart], part: RawPart, height_m: float | None) -> RawMesh:
-    """Give a part's mesh in metres, the whole model's base centred on the origin."""
+    """Return a part's mesh in metres, the whole model's base centred on the origin."""
     low, high = _bounds(parts)
     size = high - low
     if not size.max() > 0.0:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import meshoptimizer
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from sailenv_ros.extras import need
 from sailenv_ros.model import Mesh
 
 __all__ = [
@@ -59,7 +59,7 @@ class RawMesh:
 
 
 def smooth_mesh(raw: RawMesh, crease_deg: float = CREASE_DEG) -> Mesh:
-    """Give a mesh to draw: the author's normals, or smooth ones with creases.
+    """Return a mesh to draw: the author's normals, or smooth ones with creases.
 
     Each corner's normal is the mean of those faces around its point that meet its own face at
     less than the crease angle, weighted by area. Triangles without area are dropped.
@@ -88,7 +88,7 @@ def smooth_mesh(raw: RawMesh, crease_deg: float = CREASE_DEG) -> Mesh:
 
 
 def simplified(raw: RawMesh, target: int, *, max_error: float = 0.004) -> RawMesh:
-    """Give a mesh of at most about so many triangles, its seams of texture kept.
+    """Return a mesh of at most about so many triangles, its seams of texture kept.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def simplified(raw: RawMesh, target: int, *, max_error: float = 0.004) -> RawMes
     indices = raw.triangles.astype(np.uint32).reshape(-1)
     positions = np.ascontiguousarray(raw.positions, dtype=np.float32)
     result = np.zeros_like(indices)
-    count = meshoptimizer.simplify(
+    count: int = need("meshoptimizer", "importing a model").simplify(
         result,
         indices,
         positions,
@@ -124,7 +124,7 @@ def simplified(raw: RawMesh, target: int, *, max_error: float = 0.004) -> RawMes
 
 
 def thinned_out(raw: RawMesh, target: int, *, seed: int) -> RawMesh:
-    """Give foliage with fewer leaves, each so much larger that the plant stays as dense.
+    """Return foliage with fewer leaves, each so much larger that the plant stays as dense.
 
     Notes
     -----
@@ -153,7 +153,7 @@ def thinned_out(raw: RawMesh, target: int, *, seed: int) -> RawMesh:
 
 
 def components(raw: RawMesh) -> Indices:
-    """Give (M,) int64: for each triangle the number of the connected piece that it belongs to."""
+    """Return (M,) int64: for each triangle the number of the connected piece that it belongs to."""
     _, points = np.unique(raw.positions.round(6), axis=0, return_inverse=True)
     corners = points.reshape(-1)[raw.triangles]
     rows = np.concatenate([corners[:, 0], corners[:, 1]])
@@ -191,7 +191,7 @@ def outward(raw: RawMesh) -> RawMesh:
 
 
 def box_uvs(raw: RawMesh, tile_m: float) -> RawMesh:
-    """Give texture coordinates by projection along the axis that each face looks to most.
+    """Return texture coordinates by projection along the axis that each face looks to most.
 
     Of the two axes that are left, u follows the one in which the face's connected piece is
     longer: as the grain of a board does.
@@ -218,14 +218,14 @@ def box_uvs(raw: RawMesh, tile_m: float) -> RawMesh:
 
 
 def _outermost(raw: RawMesh) -> Indices:
-    """Give the triangles with the lowest and highest corner along each axis."""
+    """Return the triangles with the lowest and highest corner along each axis."""
     points = raw.positions[raw.triangles]
     lowest, highest = points.min(axis=1).argmin(axis=0), points.max(axis=1).argmax(axis=0)
     return np.concatenate([lowest, highest])
 
 
 def _piece_sizes(points: Floats, of_triangle: Indices) -> Floats:
-    """Give (M, 3): for each triangle the size of the connected piece that it belongs to."""
+    """Return (M, 3): for each triangle the size of the connected piece that it belongs to."""
     pieces = int(of_triangle.max()) + 1
     low, high = np.full((pieces, 3), np.inf), np.full((pieces, 3), -np.inf)
     np.minimum.at(low, of_triangle, points.min(axis=1))
@@ -234,7 +234,7 @@ def _piece_sizes(points: Floats, of_triangle: Indices) -> Floats:
 
 
 def _edges(raw: RawMesh, of_triangle: Indices) -> tuple[Indices, Indices]:
-    """Give the points of each triangle's edges (3 M, 2), and what their triangle is marked with."""
+    """Return the points of each triangle's edges (3 M, 2), and the mark of their triangle."""
     _, points = np.unique(raw.positions.round(6), axis=0, return_inverse=True)
     corners = points.reshape(-1)[raw.triangles]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
@@ -264,7 +264,7 @@ def _facing_normals(raw: RawMesh) -> RawMesh:
 
 
 def _corner_normals(raw: RawMesh, crease_deg: float) -> Floats:
-    """Give (3 M, 3): the normal of each corner."""
+    """Return (3 M, 3): the normal of each corner."""
     points = raw.positions[raw.triangles]
     weighted = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     units = _unit(weighted)
@@ -286,7 +286,7 @@ def _corner_normals(raw: RawMesh, crease_deg: float) -> Floats:
 
 
 def welded(raw: RawMesh) -> RawMesh:
-    """Give a mesh whose corners of one place and texture coordinate are one; without normals."""
+    """Return a mesh whose corners of one place and texture coordinate are one; without normals."""
     rows = np.hstack([raw.positions, raw.uvs]).round(6)
     unique, place = np.unique(rows, axis=0, return_inverse=True)
     triangles = place.reshape(-1)[raw.triangles]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -19,10 +20,11 @@ from PIL import Image
 
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.obj_polygons import with_triangles
+from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import Material, Texture
 
-__all__ = ["MAX_TRIANGLES", "MODEL_SUFFIXES", "RawPart", "linear", "read_parts", "texture_of"]
+__all__ = ["MAX_TRIANGLES", "MODEL_SUFFIXES", "RawPart", "read_parts", "texture_of"]
 
 MODEL_SUFFIXES = (".glb", ".gltf", ".obj")
 MAX_TRIANGLES = 5_000_000
@@ -61,12 +63,12 @@ def read_parts(path: Path) -> tuple[RawPart, ...]:
         If the file cannot be read, is too large, or holds no triangles.
     """
     scene = _loaded(path)
-    parts = []
-    for node in scene.graph.nodes_geometry:
-        file_from_part, geometry = scene.graph[node]
-        mesh = scene.geometry[geometry]
-        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
-            parts.append(_part(str(geometry), mesh, np.asarray(file_from_part, dtype=np.float64)))
+    try:
+        parts = list(_parts(scene))
+    except (AssetError, MemoryError, RecursionError):
+        raise
+    except Exception as problem:  # whatever a broken file makes the reader stumble over
+        raise AssetError(path.name, f"it cannot be read ({_one_line(problem)})") from problem
     count = sum(len(part.mesh.triangles) for part in parts)
     if not count:
         raise AssetError(path.name, "it holds no triangles")
@@ -75,14 +77,16 @@ def read_parts(path: Path) -> tuple[RawPart, ...]:
     return tuple(parts)
 
 
-def linear(srgb: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give linear light for sRGB values, both 0 to 1 (IEC 61966-2-1)."""
-    srgb = np.clip(srgb, 0.0, 1.0)
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+def _parts(scene: trimesh.Scene) -> Iterator[RawPart]:
+    for node in scene.graph.nodes_geometry:
+        file_from_part, geometry = scene.graph[node]
+        mesh = scene.geometry[geometry]
+        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+            yield _part(str(geometry), mesh, np.asarray(file_from_part, dtype=np.float64))
 
 
 def texture_of(picture: Image.Image | None) -> Texture | None:
-    """Give a picture as the (H, W, 4) uint8 that materials hold; None for none."""
+    """Return a picture as the (H, W, 4) uint8 that materials hold; None for none."""
     if picture is None:
         return None
     if max(picture.size) > LARGEST_TEXTURE_PX:
@@ -127,6 +131,8 @@ def _part(name: str, mesh: trimesh.Trimesh, file_from_part: NDArray[np.float64])
         triangles = triangles[:, ::-1]
     if not np.isfinite(positions).all():
         raise AssetError(name, "its vertices are not all finite numbers")
+    if triangles.min() < 0 or triangles.max() >= len(positions):
+        raise AssetError(name, f"a triangle names a vertex that is none of its {len(positions)}")
     uv = getattr(mesh.visual, "uv", None)
     textured = uv is not None and len(uv) == len(positions) and bool(np.isfinite(uv).all())
     uvs = np.asarray(uv, dtype=np.float64)[:, :2] if textured else np.zeros((len(positions), 2))
@@ -141,11 +147,12 @@ def _part(name: str, mesh: trimesh.Trimesh, file_from_part: NDArray[np.float64])
 
 
 def _normals(mesh: trimesh.Trimesh, axes: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Give the file's own normals; trimesh would make up smooth ones."""
+    """Return the file's own normals; trimesh would make up smooth ones."""
     if "vertex_normals" not in mesh._cache.cache:
         return None
     normals = np.asarray(mesh.vertex_normals, dtype=np.float64)
-    turned = normals @ np.linalg.inv(axes)  # rows times the inverse are the inverse transpose
+    with np.errstate(all="ignore"):  # what is not finite is left out below
+        turned = normals @ np.linalg.inv(axes)  # rows times the inverse are the inverse transpose
     return turned if np.isfinite(turned).all() else None
 
 
@@ -192,7 +199,7 @@ def _three(values: Any) -> tuple[float, float, float]:
 def _from_mtl(given: Any, name: str) -> Material:
     """Read a Wavefront material; its colours are what a screen shows, so sRGB."""
     numbers = given.kwargs
-    red, green, blue = linear(np.asarray(_list(numbers.get("kd"), 3, 0.8)))
+    red, green, blue = linear_from_srgb(np.asarray(_list(numbers.get("kd"), 3, 0.8)))
     opacity = _list(numbers.get("d"), 1, 1.0)[0]
     texture = texture_of(given.image)
     if texture is not None:
@@ -217,7 +224,7 @@ def _list(given: Any, count: int, default: float) -> list[float]:
 
 
 def _roughness(exponent: float, specular: list[float]) -> float:
-    """Give the roughness of a Phong exponent, whose highlight is as wide; dull if it has none."""
+    """Return the roughness of a Phong exponent, whose highlight is as wide; dull if it has none."""
     if max(specular) < 0.05:
         return 0.9
     return float(np.clip((2.0 / (max(exponent, 0.0) + 2.0)) ** 0.25, 0.15, 0.95))

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 
 def with_triangles(text: str) -> str:
-    """Give an OBJ file's text with its polygons of four corners and more cut into triangles.
+    """Return an OBJ file's text with its polygons of four corners and more cut into triangles.
 
     Notes
     -----
@@ -55,7 +55,7 @@ def _triangles(corners: list[str], points: list[tuple[float, float, float]]) -> 
 
 
 def _normal(polygon: Floats) -> Floats:
-    """Give twice the polygon's area as a vector (Newell)."""
+    """Return twice the polygon's area as a vector (Newell)."""
     return np.asarray(np.cross(polygon, np.roll(polygon, -1, axis=0)).sum(axis=0))
 
 

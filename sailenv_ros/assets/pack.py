@@ -14,6 +14,8 @@ from typing import Annotated, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from sailenv_ros.assets.checksums import file_checksum
+from sailenv_ros.assets.folders import own_pack_folder, standard_pack_folder
 from sailenv_ros.assets.glb import read_glb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import (
@@ -27,20 +29,24 @@ from sailenv_ros.model import (
 )
 from sailenv_ros.scene.spec import CategorySpec
 
-__all__ = ["PACK_FILE", "AssetPack", "PackContent", "PackEntry"]
+__all__ = ["BUILD_COMMAND", "PACK_FILE", "AssetPack", "PackContent", "PackEntry"]
 
 PACK_FILE = "pack.yaml"
 
+BUILD_COMMAND = "sailenv assets build"
+
 AssetName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,62}$")]
 Text = Annotated[str, Field(max_length=300)]
+Checksum = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+FilePath = Annotated[str, Field(pattern=r"^[^/\x00-\x1f][^\x00-\x1f]{0,299}$")]
 Metres = Annotated[float, Field(gt=0.0, le=100.0)]
 
 
-class _Strict(BaseModel):
+class _PackModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class PackEntry(_Strict):
+class PackEntry(_PackModel):
     """What `pack.yaml` says of one object.
 
     Attributes
@@ -48,6 +54,8 @@ class PackEntry(_Strict):
     name, display_name, category : str
     file : str
         Of the model, in the pack's folder.
+    sha256 : str
+        Checksum of the file in hexadecimal digits; empty in packs written by hand.
     size : (3,) tuple of float
         Along the body's x, y, z [m].
     mass : float
@@ -61,6 +69,7 @@ class PackEntry(_Strict):
     display_name: Annotated[str, Field(pattern=r"^[^\x00-\x1f]{1,100}$")]
     category: Annotated[str, Field(min_length=1, max_length=63)]
     file: Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}\.glb$")]
+    sha256: Checksum | Literal[""] = ""
     size: tuple[Metres, Metres, Metres]
     mass: Annotated[float, Field(gt=0.0, le=1e6)]
     collision: Literal["box", "cylinder", "sphere", "hulls", "none"] = "hulls"
@@ -71,14 +80,21 @@ class PackEntry(_Strict):
     source: Text = ""
 
 
-class PackContent(_Strict):
-    """The whole of `pack.yaml`."""
+class PackContent(_PackModel):
+    """The whole of `pack.yaml`.
+
+    Attributes
+    ----------
+    files : mapping of str to str
+        SHA-256 of the pack's other files (skies, licence texts), by their paths in the folder.
+    """
 
     version: Literal[1]
     title: Text = ""
     fingerprint: Text = ""
     categories: tuple[CategorySpec, ...] = ()
     assets: tuple[PackEntry, ...] = ()
+    files: dict[FilePath, Checksum] = Field(default_factory=dict)
 
 
 class AssetPack:
@@ -112,7 +128,7 @@ class AssetPack:
         return MappingProxyType(self._entries)
 
     def fingerprint(self, name: str) -> str:
-        """Give a text that changes whenever an asset does: the pack's own, else of its file."""
+        """Return a text that changes whenever an asset does: the pack's own, else of its file."""
         if self.content.fingerprint:
             return f"{self.content.fingerprint} {name}"
         entry = self._entries[name]
@@ -132,8 +148,9 @@ class AssetPack:
         """
         entry = self._entries[name]
         path = self.folder / entry.file
-        if not path.is_file():
-            raise AssetError(name, f"its file {path} is missing")
+        problem = self._problem(entry.file, entry.sha256)
+        if problem:
+            raise AssetError(name, f"its file {path} {problem}; {self._remedy(name)}")
         parts, hulls = read_glb(path)
         if entry.collision == "hulls" and not hulls:
             raise AssetError(name, f"{path} holds no collision pieces")
@@ -150,6 +167,52 @@ class AssetPack:
             centre_of_mass_m=(x, y, z),
             tags=entry.tags,
         )
+
+    def check_file(self, path: Path) -> None:
+        """Check one of the pack's other files, e.g. a sky, before it is used.
+
+        Raises
+        ------
+        AssetError
+            If it is missing or is not what was written.
+        """
+        relative = str(path.relative_to(self.folder))
+        problem = self._problem(relative, self.content.files.get(relative, ""))
+        if problem:
+            raise AssetError(path.name, f"its file {path} {problem}; {self._remedy(path.stem)}")
+
+    def problems(self) -> Mapping[str, str]:
+        """Check every file of the pack.
+
+        Returns
+        -------
+        problems : mapping of str to str
+            What is wrong, in words, by the file's path in the folder; files without a checksum
+            need only be there.
+        """
+        listed = {entry.file: entry.sha256 for entry in self._entries.values()}
+        listed.update(self.content.files)
+        found = {file: self._problem(file, checksum) for file, checksum in listed.items()}
+        return MappingProxyType({file: problem for file, problem in found.items() if problem})
+
+    def _problem(self, file: str, checksum: str) -> str:
+        """Say what is wrong with a file; empty if nothing is."""
+        path = self.folder / file
+        try:
+            if not path.is_file():
+                return "is missing"
+            if checksum and file_checksum(path) != checksum:
+                return "is damaged (its checksum is wrong)"
+        except OSError as problem:
+            return f"cannot be read ({problem.strerror})"
+        return ""
+
+    def _remedy(self, name: str) -> str:
+        if self.folder == standard_pack_folder():
+            return f"make it anew with: {BUILD_COMMAND}"
+        if self.folder == own_pack_folder():
+            return f"add it anew with: sailenv assets add FILE --name {name} --category CATEGORY"
+        return "install the pack anew"
 
 
 def _read(path: Path) -> PackContent:

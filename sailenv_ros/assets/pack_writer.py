@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+import hashlib
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +12,9 @@ import yaml
 from sailenv_ros.assets.glb import body_bounds, glb_bytes, triangle_count
 from sailenv_ros.assets.pack import PACK_FILE, PackContent, PackEntry
 from sailenv_ros.model import ConvexShape, ModelPart
+from sailenv_ros.system.files import write_file
 
-__all__ = ["packed", "replaced_folder", "write_content"]
+__all__ = ["packed", "write_content"]
 
 
 def packed(
@@ -33,10 +31,25 @@ def packed(
     author: str = "",
     licence: str = "",
     source: str = "",
+    unique_file: bool = False,
 ) -> PackEntry:
-    """Write one model's file into a folder; give its entry for `pack.yaml`."""
-    file = f"{name}.glb"
-    write_atomically(folder / file, glb_bytes(parts, hulls))
+    """Write one model's file into a folder; return its entry for `pack.yaml`.
+
+    Parameters
+    ----------
+    unique_file : bool
+        True puts the checksum into the file's name, so that the file of an entry of before stays
+        as it is until `pack.yaml` names the new one.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    data = glb_bytes(parts, hulls)
+    checksum = hashlib.sha256(data).hexdigest()
+    file = f"{name}.{checksum[:16]}.glb" if unique_file else f"{name}.glb"
+    write_file(folder / file, data)
     low, high = body_bounds(parts)
     x, y, z = (float(v) for v in np.maximum(high - low, 1e-4).round(5))
     return PackEntry(
@@ -44,6 +57,7 @@ def packed(
         display_name=display_name,
         category=category,
         file=file,
+        sha256=checksum,
         size=(x, y, z),
         mass=mass,
         collision=collision,  # type: ignore[arg-type]
@@ -65,34 +79,4 @@ def write_content(folder: Path, content: PackContent) -> None:
     text = yaml.safe_dump(
         {"version": content.version, **plain}, sort_keys=False, allow_unicode=True, width=120
     )
-    write_atomically(folder / PACK_FILE, text.encode())
-
-
-def write_atomically(path: Path, data: bytes) -> None:
-    """Write a file so that a reader sees the old one or the new one, never half of it."""
-    handle, scratch = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}-")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        Path(scratch).chmod(0o644)
-        Path(scratch).replace(path)
-    except BaseException:
-        Path(scratch).unlink(missing_ok=True)
-        raise
-
-
-@contextmanager
-def replaced_folder(folder: Path) -> Iterator[Path]:
-    """Give an empty folder to fill, which takes the place of `folder` if all goes well."""
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    scratch = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}-"))
-    try:
-        yield scratch
-        scratch.chmod(0o755)
-        old = scratch.with_name(scratch.name + "-old")
-        if folder.exists():
-            folder.rename(old)
-        scratch.rename(folder)
-        shutil.rmtree(old, ignore_errors=True)
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+    write_file(folder / PACK_FILE, text.encode())

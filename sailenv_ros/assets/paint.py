@@ -27,7 +27,7 @@ def painted(
     metallic: float | None = None,
     roughness: float | None = None,
 ) -> Model:
-    """Give a model painted over; ``None`` leaves a property as it is.
+    """Return a model painted over; ``None`` leaves a property as it is.
 
     Parameters
     ----------

@@ -6,6 +6,7 @@ to one scale, so that a scene looks alike under another sky.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -13,8 +14,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.extras import need
 from sailenv_ros.lights import SkyMap
+from sailenv_ros.system.files import write_file
 
 __all__ = ["SKIES", "bake_sky", "load_sky", "sky_files"]
 
@@ -31,14 +35,14 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def sky_files(folders: Iterable[Path]) -> Mapping[str, Path]:
-    """Give the files of all skies in some packs' folders, by name."""
+    """Return the files of all skies in some packs' folders, by name."""
     return {
         path.stem: path for folder in folders for path in sorted((folder / SKIES).glob("*.npy"))
     }
 
 
 def load_sky(name: str, files: Mapping[str, Path]) -> SkyMap:
-    """Give a sky; the same object each time.
+    """Return a sky; the same object each time.
 
     Raises
     ------
@@ -54,9 +58,12 @@ def load_sky(name: str, files: Mapping[str, Path]) -> SkyMap:
 
 @lru_cache(maxsize=8)
 def _loaded(path: Path) -> SkyMap:
+    pack = path.parents[1]
+    if (pack / PACK_FILE).is_file():
+        AssetPack(pack).check_file(path)
     try:
-        radiance = np.load(path, allow_pickle=False)
-    except (OSError, ValueError) as problem:
+        radiance = np.load(io.BytesIO(path.read_bytes()), allow_pickle=False)
+    except Exception as problem:  # whatever a damaged file leads to
         raise AssetError(path.name, f"the sky cannot be read ({problem})") from None
     if radiance.ndim != 3 or radiance.shape[1:] != (2 * radiance.shape[0], 3):
         raise AssetError(path.name, f"a sky is (H, 2 H, 3), and this is {radiance.shape}")
@@ -83,12 +90,14 @@ def bake_sky(photograph: Path, target: Path) -> None:
     ------
     AssetError
         If it cannot be read.
+    MissingPackage
+        If OpenEXR is not installed.
+    OSError
+        If the sky's file cannot be written.
     """
-    # Imported here: only who builds a pack needs it.
-    import OpenEXR
-
+    openexr = need("OpenEXR", "building the furniture pack")
     try:
-        with OpenEXR.File(str(photograph)) as file:
+        with openexr.File(str(photograph)) as file:
             pixels = np.asarray(file.channels()["RGB"].pixels, dtype=np.float64)
     except (RuntimeError, OSError, KeyError) as problem:
         raise AssetError(photograph.name, f"the panorama cannot be read ({problem})") from None
@@ -98,4 +107,6 @@ def bake_sky(photograph: Path, target: Path) -> None:
     limit = SUN_RADIANCE * float(np.median(sky))
     radiance *= np.minimum(1.0, limit / np.maximum(light, 1e-6))[..., None]
     scale = MEAN_RADIANCE / float(np.minimum(sky, limit).mean())
-    np.save(target, (radiance * scale).astype(np.float16))
+    data = io.BytesIO()
+    np.save(data, (radiance * scale).astype(np.float16))
+    write_file(target, data.getvalue())

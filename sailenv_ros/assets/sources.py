@@ -6,17 +6,15 @@ import logging
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from sailenv_ros.assets.library import AssetSource
-from sailenv_ros.assets.pack import PACK_FILE, AssetPack
-from sailenv_ros.assets.places import pack_folders, standard_pack_folder
+from sailenv_ros.assets.asset_library import AssetSource
+from sailenv_ros.assets.folders import pack_folders, standard_pack_folder
+from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.standard.recipe import standard_recipe
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import Asset
 
 __all__ = ["BUILD_COMMAND", "UnbuiltPack", "installed_packs", "installed_sources"]
-
-BUILD_COMMAND = "sailenv assets build"
 
 _log = logging.getLogger(__name__)
 
@@ -68,7 +66,7 @@ def installed_packs() -> tuple[AssetPack, ...]:
 
 
 def installed_sources(packs: Sequence[AssetPack] | None = None) -> tuple[AssetSource, ...]:
-    """Give all sources; the standard pack's names are there even where it has not been built.
+    """Return all sources; the standard pack's names are there even where it has not been built.
 
     Parameters
     ----------

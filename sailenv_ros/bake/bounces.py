@@ -12,7 +12,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.scenery import Scenery
+from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 
 __all__ = ["Patches", "bounced_radiance", "patches_of"]
@@ -38,7 +38,7 @@ class Patches:
     count: int
 
     def means(self, values: Floats, valid: NDArray[np.bool_]) -> Floats:
-        """Give (count, C) float32: means over the valid texels of each, 0 where there are none."""
+        """Return (count, C) float32: means over the valid texels of each, 0 where it has none."""
         owner = self.of_texel[valid]
         number = np.maximum(np.bincount(owner, minlength=self.count), 1)
         sums = [
@@ -49,14 +49,14 @@ class Patches:
         return means
 
 
-def patches_of(scenery: Scenery, texels: Texels) -> Patches:
+def patches_of(geometry: StaticGeometry, texels: Texels) -> Patches:
     """Group the texels."""
     side = texels.index.shape[1]
     tile = (texels.rows // 4).astype(np.int64) * (side // 4 + 1) + texels.columns // 4
     axis = np.argmax(np.abs(texels.normals), axis=1)
     sign = texels.normals[np.arange(texels.count), axis] > 0
-    owner = scenery.owner[texels.triangle].astype(np.int64)
-    key = ((tile * 6 + axis * 2 + sign) * (len(scenery.instances) + 1)) + owner
+    owner = geometry.owner[texels.triangle].astype(np.int64)
+    key = ((tile * 6 + axis * 2 + sign) * (len(geometry.instances) + 1)) + owner
     _, of_texel = np.unique(key, return_inverse=True)
     count = int(of_texel.max()) + 1 if len(of_texel) else 0
     return Patches(of_texel=of_texel.astype(np.int32), count=count)
@@ -70,7 +70,7 @@ def bounced_radiance(
     albedo: Floats,
     bounces: int,
 ) -> Floats:
-    """Give (N, C) float32: radiance of each texel with all that was handed on to it.
+    """Return (N, C) float32: radiance of each texel with all that was handed on to it.
 
     Parameters
     ----------

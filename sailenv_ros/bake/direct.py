@@ -47,7 +47,7 @@ class Points:
     shifts: Floats
 
     def part(self, chosen: slice | NDArray[np.intp]) -> Points:
-        """Give some of them."""
+        """Return some of them."""
         return Points(
             positions=self.positions[chosen],
             normals=self.normals[chosen],
@@ -76,7 +76,7 @@ class LightSamples:
 
 
 def area_sides(light: Light) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the vectors along an area light's width and height, as long as these are.
+    """Return the vectors along an area light's width and height, as long as these are.
 
     The width is horizontal; of a light that shines straight up or down it lies along y.
     """
@@ -101,7 +101,7 @@ def samples_of(light: Light, positions: Floats, shifts: Floats, pattern: Floats)
 def arriving(
     scene: RayScene, light: Light, points: Points, pattern: Floats
 ) -> tuple[Floats, Floats]:
-    """Give (N,) irradiance / pi, and (N,) the share of the light that is in sight."""
+    """Return (N,) irradiance / pi, and (N,) the share of the light that is visible."""
     samples = samples_of(light, points.positions, points.shifts, pattern)
     cosine = np.einsum("nmx,nx->nm", samples.towards, points.normals)
     above = np.einsum("nmx,nx->nm", samples.towards, points.faces) > 0.0

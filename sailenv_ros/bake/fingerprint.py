@@ -24,7 +24,7 @@ _NOT_BAKED = ("colour", "intensity", "indirect_multiplier")
 
 
 def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -> str:
-    """Give 32 hexadecimal digits, alike for two snapshots whose baked light is alike."""
+    """Return 32 hexadecimal digits, alike for two snapshots whose baked light is alike."""
     contents = snapshot.contents
     digest = hashlib.blake2b(digest_size=16)
     _add(digest, [BAKE_VERSION, asdict(settings or BakeSettings())])

@@ -13,11 +13,11 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.back_to_back import BackToBack
 from sailenv_ros.bake.direct import LIFT_M, Points
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
 from sailenv_ros.bake.sampling import hemisphere_rays, shifted
 from sailenv_ros.bake.sky import sky_at
-from sailenv_ros.bake.twins import Twins
 
 __all__ = ["BACK", "NOTHING", "Surroundings", "gathered", "seen_from", "window_light"]
 
@@ -40,7 +40,7 @@ class Surroundings:
     faces : (T, 3) float32
         Normals of the triangles.
     two_sided : (T,) bool
-    twins : Twins
+    paired : BackToBack
     places : (T, 3, 2) float32
         Of the triangles' corners in the map.
     index : (H, W) int32
@@ -52,26 +52,28 @@ class Surroundings:
     scene: RayScene
     faces: Floats
     two_sided: NDArray[np.bool_]
-    twins: Twins
+    paired: BackToBack
     places: Floats
     index: NDArray[np.int32]
     sky: Floats
     panes: Floats
 
-    def clearness(self, texels: NDArray[np.int32], origins: Floats, directions: Floats) -> Floats:
-        """Give (R,) float32: how much glass lets through of rays that met nothing, else 1."""
+    def transmittance(
+        self, texels: NDArray[np.int32], origins: Floats, directions: Floats
+    ) -> Floats:
+        """Return (R,) float32: how much glass lets through of rays that met nothing, else 1."""
         clear = np.ones(len(texels), dtype=np.float32)
         out = np.flatnonzero(texels == NOTHING)
         never = np.full(len(out), NEVER, np.float32)
-        clear[out] = self.scene.clearness(origins[out], directions[out], never)
+        clear[out] = self.scene.transmittance(origins[out], directions[out], never)
         return clear
 
     def texels_hit(self, hits: Hits, directions: Floats) -> NDArray[np.int32]:
-        """Give (R,) int32: the texel that each ray met, `NOTHING` or `BACK`."""
+        """Return (R,) int32: the texel that each ray met, `NOTHING` or `BACK`."""
         found = np.empty(len(directions), dtype=np.int32)
         _texels_hit(
             hits.triangle, hits.second, hits.third, directions,
-            self.faces, self.two_sided, self.twins.other, self.twins.corner,
+            self.faces, self.two_sided, self.paired.other, self.paired.corner,
             self.places, self.index, found,
         )  # fmt: skip
         return found
@@ -106,7 +108,7 @@ def gathered(
     window_pattern: Floats,
     radiance: Floats,
 ) -> tuple[Floats, Floats]:
-    """Give (N, C) float32 irradiance / pi, and (N,) the harmonic mean of the distances seen.
+    """Return (N, C) float32 irradiance / pi, and (N,) the harmonic mean of the distances seen.
 
     Parameters
     ----------
@@ -128,13 +130,13 @@ def window_light(
     directions: Floats,
     window_pattern: Floats,
 ) -> Floats:
-    """Give (N, 3) float32: irradiance / pi from the sky, by rays that were cast and some more."""
+    """Return (N, 3) float32: irradiance / pi from the sky, by rays that were cast and some more."""
     light = np.zeros((len(texels), 3), dtype=np.float32)
     panes = around.panes if len(window_pattern) else around.panes[:0]
     shots = max(len(window_pattern), 1)
     rays = texels.shape[1]
     origins = np.repeat(points.positions, rays, axis=0)
-    clear = around.clearness(texels.reshape(-1), origins, directions.reshape(-1, 3))
+    clear = around.transmittance(texels.reshape(-1), origins, directions.reshape(-1, 3))
     _sky_by_chance(
         points.positions, points.normals, directions, texels, clear.reshape(-1, rays),
         around.sky, panes, shots, light,
@@ -223,7 +225,7 @@ def _surfaces_light(texels, distances, radiance, light, nearness):  # type: igno
 
 @numba.njit(cache=True, nogil=True)
 def _density(panes, position, dx, dy, dz):  # type: ignore[no-untyped-def]
-    """Give the density, over solid angle, of directions to evenly chosen points of all panes."""
+    """Return the density, over solid angle, of directions to evenly chosen points of all panes."""
     density = 0.0
     for p in range(len(panes)):
         nx, ny, nz = panes[p, 3]

@@ -1,4 +1,4 @@
-"""Gives every instance its place in the light map. From `Scenery` to `Layout`.
+"""Gives every instance its place in the light map. From `StaticGeometry` to `Layout`.
 
 Knows neither rays nor light.
 """
@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.packing import packed
-from sailenv_ros.bake.scenery import Scenery, StaticInstance
 from sailenv_ros.bake.settings import BakeSettings
+from sailenv_ros.bake.static_geometry import StaticGeometry, StaticInstance
 from sailenv_ros.bake.unwrap import Chart, unwrapped
 from sailenv_ros.baked_light import LightChart
 from sailenv_ros.model import Model
@@ -58,30 +58,30 @@ def is_simple(model: Model) -> bool:
 
 
 def laid_out(
-    scenery: Scenery,
+    geometry: StaticGeometry,
     settings: BakeSettings,
-    in_sight: NDArray[np.bool_],
-    told: Callable[[float], None] = lambda share: None,
+    visible_triangles: NDArray[np.bool_],
+    report: Callable[[float], None] = lambda share: None,
 ) -> Layout:
     """Unwrap all models and pack their charts.
 
     Parameters
     ----------
-    in_sight : (T,) bool
+    visible_triangles : (T,) bool
         Triangles that are seen at all.
     """
     coarser = 1.0
     while True:
-        charts = _unwrapped_models(scenery, settings, in_sight, coarser, told)
-        own = [charts[instance.model] for instance in scenery.instances]
+        charts = _unwrapped_models(geometry, settings, visible_triangles, coarser, report)
+        own = [charts[instance.model] for instance in geometry.instances]
         # The border keeps neighbours' texels out of look-ups that rounding moves by a hair.
         fit = packed([(chart.width + 1, chart.height + 1) for chart in own], settings.max_map)
         if fit is not None:
             break
         coarser *= COARSER
     side, corners = fit
-    places = np.zeros((scenery.triangle_count, 3, 2), dtype=np.float32)
-    for instance, chart, corner in zip(scenery.instances, own, corners, strict=True):
+    places = np.zeros((geometry.triangle_count, 3, 2), dtype=np.float32)
+    for instance, chart, corner in zip(geometry.instances, own, corners, strict=True):
         _place(places, instance, chart, corner)
     return Layout(
         side=side,
@@ -93,30 +93,30 @@ def laid_out(
                 scale=(chart.width / side, chart.height / side),
                 world_from_body=instance.world_from_body,
             )
-            for instance, chart, (x, y) in zip(scenery.instances, own, corners, strict=True)
+            for instance, chart, (x, y) in zip(geometry.instances, own, corners, strict=True)
         },
     )
 
 
 def _unwrapped_models(
-    scenery: Scenery,
+    geometry: StaticGeometry,
     settings: BakeSettings,
-    in_sight: NDArray[np.bool_],
+    visible_triangles: NDArray[np.bool_],
     coarser: float,
-    told: Callable[[float], None],
+    report: Callable[[float], None],
 ) -> dict[Model, Chart]:
     users: dict[Model, list[StaticInstance]] = {}
-    for instance in scenery.instances:
+    for instance in geometry.instances:
         users.setdefault(instance.model, []).append(instance)
     charts = {}
     for model, instances in users.items():
         seen = np.zeros(model.triangle_count, dtype=bool)
         for instance in instances:
             first = instance.first_triangle
-            seen |= in_sight[first : first + model.triangle_count]
+            seen |= visible_triangles[first : first + model.triangle_count]
         largest = np.abs([instance.scale for instance in instances]).max(axis=0)
         charts[model] = _unwrapped(model, tuple(largest.tolist()), seen, settings, coarser)
-        told(len(charts) / len(users))
+        report(len(charts) / len(users))
     return charts
 
 

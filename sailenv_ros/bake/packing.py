@@ -54,7 +54,7 @@ def _placed(sizes: Sequence[tuple[int, int]], side: int) -> list[tuple[int, int]
 
 
 def _level(skyline: list[tuple[int, int, int]], first: int, width: int, side: int) -> int | None:
-    """Give the height at which a rectangle rests that begins at a step; None if too wide."""
+    """Return the height at which a rectangle rests that begins at a step; None if too wide."""
     x = skyline[first][0]
     if x + width > side:
         return None

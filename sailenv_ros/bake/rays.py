@@ -1,17 +1,17 @@
-"""Rays against the scenery with embree. From `Scenery` to `RayScene`; knows no light."""
+"""Rays against the static geometry with Embree: `StaticGeometry` to `RayScene`. Knows no light."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.scenery import Scenery
+from sailenv_ros.bake.static_geometry import StaticGeometry
+from sailenv_ros.extras import need
 
 __all__ = ["Hits", "RayScene", "in_chunks", "through_glass"]
 
@@ -42,14 +42,14 @@ class Hits:
 
 
 class RayScene:
-    """The triangles of a scenery, ready to be met by rays from any thread."""
+    """The triangles of the static geometry, ready to be met by rays from any thread."""
 
-    def __init__(self, scenery: Scenery) -> None:
-        self._triangles = np.flatnonzero(scenery.solid).astype(np.int32)
-        self._scene, self._mesh = _tree(scenery.corners[self._triangles])
-        glass = np.flatnonzero(~scenery.solid & (scenery.passes < 1.0))
-        self._glass, self._glass_mesh = _tree(scenery.corners[glass])
-        self._passes, self._glass_faces = scenery.passes[glass], scenery.faces[glass]
+    def __init__(self, geometry: StaticGeometry) -> None:
+        self._triangles = np.flatnonzero(geometry.solid).astype(np.int32)
+        self._scene, self._mesh = _tree(geometry.corners[self._triangles])
+        glass = np.flatnonzero(~geometry.solid & (geometry.passes < 1.0))
+        self._glass, self._glass_mesh = _tree(geometry.corners[glass])
+        self._passes, self._glass_faces = geometry.passes[glass], geometry.faces[glass]
 
     def hits(self, origins: Floats, directions: Floats) -> Hits:
         """Find what solid triangles rays meet first."""
@@ -68,7 +68,7 @@ class RayScene:
         )
 
     def share_that_passes(self, origins: Floats, directions: Floats, lengths: Floats) -> Floats:
-        """Give (R,) float32: how much of the light on each ray's length is let through, 0 to 1.
+        """Return (R,) float32: how much of the light on each ray's length is let through, 0 to 1.
 
         Lengths are in lengths of the direction. Glass counts once, however many faces it has.
         """
@@ -77,11 +77,11 @@ class RayScene:
             share[self._scene.run(origins, directions, lengths, query="OCCLUDED") >= 0] = 0.0
         if len(self._passes):
             free = np.flatnonzero(share)
-            share[free] = self.clearness(origins[free], directions[free], lengths[free])
+            share[free] = self.transmittance(origins[free], directions[free], lengths[free])
         return share
 
-    def clearness(self, origins: Floats, directions: Floats, lengths: Floats) -> Floats:
-        """Give (R,) float32: the same, if nothing solid is in the way."""
+    def transmittance(self, origins: Floats, directions: Floats, lengths: Floats) -> Floats:
+        """Return (R,) float32: the same, if nothing solid is in the way."""
         share = np.ones(len(origins), dtype=np.float32)
         if len(self._passes) and len(origins):
             answer = self._glass.run(origins, directions, output=1)
@@ -94,7 +94,7 @@ class RayScene:
 
 
 def through_glass(cosine: Floats) -> Floats:
-    """Give how much of the light clear double glazing lets through: 0.85 of what meets it head-on.
+    """Return how much light clear double glazing lets through: 0.85 of what meets it head-on.
 
     Fresnel's equations for an index of 1.5, both polarisations alike, with all that goes to and
     fro between the two faces of each of the two sheets.
@@ -111,11 +111,11 @@ def through_glass(cosine: Floats) -> Floats:
     return np.asarray(np.square((1.0 - mirrored) / (1.0 + mirrored)), dtype=np.float32)
 
 
-def _tree(corners: Floats) -> tuple[EmbreeScene, TriangleMesh | None]:
+def _tree(corners: Floats) -> tuple[Any, Any]:
     """Build embree's tree over (T, 3, 3) float32 corners; the mesh is to be kept with it."""
-    scene, mesh = EmbreeScene(), None
+    scene, mesh = need("embreex.rtcore_scene", "baking light").EmbreeScene(), None
     if len(corners):
-        mesh = TriangleMesh(scene, corners)
+        mesh = need("embreex.mesh_construction", "baking light").TriangleMesh(scene, corners)
         # The first query builds the tree; threads shall find it built.
         nowhere = np.zeros((1, 3), np.float32)
         scene.run(nowhere, nowhere + 1)
@@ -127,7 +127,7 @@ def in_chunks(
     count: int,
     size: int,
     workers: int,
-    told: Callable[[float], None] = lambda share: None,
+    report: Callable[[float], None] = lambda share: None,
 ) -> None:
     """Do ``work(first, end)`` for all of `count` items in several threads.
 
@@ -138,6 +138,6 @@ def in_chunks(
     try:
         for done, future in enumerate([pool.submit(work, *piece) for piece in pieces]):
             future.result()
-            told((done + 1) / len(pieces))
+            report((done + 1) / len(pieces))
     finally:
         pool.shutdown(wait=True, cancel_futures=True)

@@ -20,7 +20,7 @@ _ORDER = np.array([0, 2, 1, 3], dtype=np.float32)
 
 
 def net(count: int) -> Floats:
-    """Give (count, 2) float32: points of the unit square, one in each of its even parts.
+    """Return (count, 2) float32: points of the unit square, one in each of its even parts.
 
     Of a square of a power of two there is one in each of as many square cells.
 
@@ -37,13 +37,13 @@ def net(count: int) -> Floats:
 
 
 def tile_shift(rows: NDArray[np.int32], columns: NDArray[np.int32]) -> Floats:
-    """Give (N, 2) float32: how far each texel moves a net's points, in sizes of cells."""
+    """Return (N, 2) float32: how far each texel moves a net's points, in sizes of cells."""
     shift = np.stack([_ORDER[columns & 3], _ORDER[rows & 3]], axis=1)
     return np.asarray(shift / 4.0, dtype=np.float32)
 
 
 def shifted(pattern: Floats, shifts: Floats) -> Floats:
-    """Give (N, M, 2) float32: each point of a net moved within its own cell of the square.
+    """Return (N, M, 2) float32: each point of a net moved within its own cell of the square.
 
     A net of M points has one in each of M square cells. Moved modulo the cell, the nets of a tile
     fill all cells evenly; moved modulo 1 they would leave gaps.
@@ -55,7 +55,7 @@ def shifted(pattern: Floats, shifts: Floats) -> Floats:
 
 
 def fibonacci_sphere(count: int) -> Floats:
-    """Give (count, 3) float32: unit vectors spread evenly over the sphere."""
+    """Return (count, 3) float32: unit vectors spread evenly over the sphere."""
     index = np.arange(count) + 0.5
     z = 1.0 - 2.0 * index / count
     radius = np.sqrt(1.0 - z * z)

@@ -1,6 +1,6 @@
 """What comes in from outside: the sky's radiance by direction, and the windows it comes through.
 
-From `Environment` and `Scenery` to arrays that compiled code reads. Knows no rays.
+From `Environment` and `StaticGeometry` to arrays that compiled code reads. Knows no rays.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.scenery import Scenery, StaticInstance
+from sailenv_ros.bake.static_geometry import StaticGeometry, StaticInstance
 from sailenv_ros.lights import Environment
 
 __all__ = ["panes", "sky_at", "sky_picture"]
@@ -25,7 +25,7 @@ THIN = 0.2
 
 
 def sky_picture(environment: Environment) -> NDArray[np.float32]:
-    """Give (H, 2 H, 3) float32: what is seen where nothing is hit, laid out as in `SkyMap`."""
+    """Return (H, 2 H, 3) float32: what is seen where nothing is hit, laid out as in `SkyMap`."""
     if environment.background == "colour":
         return np.full((2, 4, 3), environment.background_colour, dtype=np.float32)
     if environment.sky is not None:
@@ -46,7 +46,7 @@ def sky_picture(environment: Environment) -> NDArray[np.float32]:
 
 @numba.njit(cache=True, nogil=True)
 def sky_at(picture, x, y, z, channel):  # type: ignore[no-untyped-def]
-    """Give one colour's radiance from a unit direction, between the nearest four texels."""
+    """Return one colour's radiance from a unit direction, between the nearest four texels."""
     height, width, _ = picture.shape
     row = np.arccos(min(max(z, -1.0), 1.0)) / np.pi * height - 0.5
     column = (0.5 - np.arctan2(y, x) / (2.0 * np.pi)) * width - 0.5
@@ -61,7 +61,7 @@ def sky_at(picture, x, y, z, channel):  # type: ignore[no-untyped-def]
     return upper * (1.0 - down) + lower * down
 
 
-def panes(scenery: Scenery) -> NDArray[np.float32]:
+def panes(geometry: StaticGeometry) -> NDArray[np.float32]:
     """Find the flat pieces of glass, the largest first.
 
     Returns
@@ -71,7 +71,7 @@ def panes(scenery: Scenery) -> NDArray[np.float32]:
     """
     found = [
         pane
-        for instance in scenery.instances
+        for instance in geometry.instances
         for part in instance.model.parts
         if part.material.alpha == "blend" and len(part.mesh.triangles)
         for pane in _pane(instance, part.mesh.positions)

@@ -1,6 +1,6 @@
 """Which point of which triangle each texel of the light map stands for.
 
-From `Scenery` and `Layout` to `Texels`. Knows neither rays nor light.
+From `StaticGeometry` and `Layout` to `Texels`. Knows neither rays nor light.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.layout import Layout
-from sailenv_ros.bake.scenery import Scenery
+from sailenv_ros.bake.static_geometry import StaticGeometry
 
 __all__ = ["Texels", "rasterised"]
 
@@ -61,7 +61,7 @@ class Texels:
         return len(self.triangle)
 
 
-def rasterised(scenery: Scenery, layout: Layout) -> Texels:
+def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
     """Find the texels that the charts cover, and those that touch them."""
     side = layout.side
     owner = np.full((side, side), -1, dtype=np.int32)
@@ -71,9 +71,9 @@ def rasterised(scenery: Scenery, layout: Layout) -> Texels:
     index = np.full((side, side), -1, dtype=np.int32)
     index[rows, columns] = np.arange(len(rows))
     triangle = owner[rows, columns]
-    share = _off_the_edges(scenery.corners[triangle], weights[rows, columns])
-    faces = scenery.faces[triangle]
-    normals = np.einsum("nc,ncx->nx", share, scenery.normals[triangle])
+    share = _off_the_edges(geometry.corners[triangle], weights[rows, columns])
+    faces = geometry.faces[triangle]
+    normals = np.einsum("nc,ncx->nx", share, geometry.normals[triangle])
     # Normals that point through their own triangle are none.
     facing = np.einsum("nx,nx->n", normals, faces)
     normals[facing < 0.05] = faces[facing < 0.05]
@@ -84,14 +84,14 @@ def rasterised(scenery: Scenery, layout: Layout) -> Texels:
         columns=columns.astype(np.int32),
         triangle=triangle,
         weights=share,
-        positions=np.einsum("nc,ncx->nx", share, scenery.corners[triangle]),
+        positions=np.einsum("nc,ncx->nx", share, geometry.corners[triangle]),
         normals=normals,
         faces=faces,
     )
 
 
 def _off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Give the weights of points a little further in: at the very edge others may begin."""
+    """Return the weights of points a little further in: at the very edge others may begin."""
     middles = corners.mean(axis=1)
     points = np.einsum("nc,ncx->nx", share, corners)
     far = np.maximum(np.linalg.norm(middles - points, axis=1), 1e-9)
@@ -102,7 +102,7 @@ def _off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> 
 
 @numba.njit(cache=True, nogil=True)
 def _cover(places, owner, weights, nearest):  # type: ignore[no-untyped-def]
-    """Give each texel the triangle that is nearest to its centre, in order of the triangles."""
+    """Assign each texel the triangle that is nearest to its centre, in order of the triangles."""
     height, width = owner.shape
     share = np.zeros(3, np.float32)
     for t in range(len(places)):
@@ -124,7 +124,7 @@ def _cover(places, owner, weights, nearest):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True, nogil=True)
 def _closest(corners, x, y, share):  # type: ignore[no-untyped-def]
-    """Give the squared distance of a point from a triangle, and in `share` where it is nearest."""
+    """Return the squared distance of a point from a triangle, and in `share` the nearest point."""
     ax, ay = corners[0, 0], corners[0, 1]
     bx, by = corners[1, 0], corners[1, 1]
     cx, cy = corners[2, 0], corners[2, 1]

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-import xatlas
 from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import Unwrapping
+from sailenv_ros.extras import need
 from sailenv_ros.model import Mesh, Model
 
 __all__ = ["Chart", "unwrapped"]
@@ -52,7 +52,7 @@ def unwrapped(
     model: Model,
     scale: tuple[float, float, float],
     texel_m: float,
-    in_sight: NDArray[np.bool_] | None = None,
+    visible_triangles: NDArray[np.bool_] | None = None,
 ) -> Chart:
     """Lay a model flat.
 
@@ -64,10 +64,11 @@ def unwrapped(
         Of the instance for which the texels have their size.
     texel_m : float
         Side of a texel [m].
-    in_sight : (T,) bool or None
+    visible_triangles : (T,) bool or None
         Triangles that are seen at all, part after part; the others' texels are larger.
     """
-    seen = np.ones(model.triangle_count, bool) if in_sight is None else in_sight
+    seen = np.ones(model.triangle_count, bool) if visible_triangles is None else visible_triangles
+    xatlas = need("xatlas", "baking light")
     before = _threads()
     atlas = xatlas.Atlas()
     first = 0
@@ -123,7 +124,7 @@ def _joined(
 
 
 def _threads() -> frozenset[str]:
-    """Give the system's numbers of this process's threads."""
+    """Return the system's numbers of this process's threads."""
     return frozenset(task.name for task in _TASKS.iterdir()) if _TASKS.is_dir() else frozenset()
 
 

@@ -11,9 +11,11 @@ from sailenv_ros.behaviours.base import (
     behaviour,
 )
 from sailenv_ros.behaviours.registry import (
-    behaviour_faults,
+    behaviour_errors,
     behaviour_kinds,
-    known_behaviour_faults,
+    known_behaviour_errors,
+    readable_behaviour_errors,
+    refusing_behaviour_errors,
     start_behaviour,
 )
 
@@ -26,8 +28,10 @@ __all__ = [
     "BodyState",
     "RunningBehaviour",
     "behaviour",
-    "behaviour_faults",
+    "behaviour_errors",
     "behaviour_kinds",
-    "known_behaviour_faults",
+    "known_behaviour_errors",
+    "readable_behaviour_errors",
+    "refusing_behaviour_errors",
     "start_behaviour",
 ]

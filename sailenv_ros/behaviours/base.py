@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from sailenv_ros.geometry import Pose
-from sailenv_ros.scene.kinds import Number
+from sailenv_ros.scene.field_types import Number
 
 __all__ = [
     "MAX_SPEED_M_S",
@@ -42,7 +42,7 @@ MAX_SPEED_M_S = 10.0
 
 
 class BehaviourParameters(BaseModel):
-    """Base of every behaviour's parameters: unknown keys are faults, numbers are finite."""
+    """Base of every behaviour's parameters: unknown keys are errors, numbers are finite."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -53,8 +53,8 @@ class BehaviourParameters(BaseModel):
         default=None, description="of its random numbers, instead of the simulation's"
     )
 
-    def told(self) -> dict[str, Any]:
-        """Give the parameters as a scene file would write them, defaults too."""
+    def to_json(self) -> dict[str, Any]:
+        """Return the parameters as a scene file would write them, defaults too."""
         dumped = self.model_dump(exclude_none=True)
         if not self.start:
             del dumped["start"]
@@ -90,7 +90,7 @@ class BodyState:
     mass_kg : float
     inertia_kg_m2 : (3,) float64
         Moments of inertia about the body's own axes.
-    confines : (N, 4) float64
+    frustum_planes : (N, 4) float64
         Planes (a, b, c, d) that it is kept in front of: a x + b y + c z + d > 0 [m], with a unit
         normal (a, b, c). None at all unless its parameters name a viewer.
     """
@@ -100,7 +100,7 @@ class BodyState:
     angular_velocity: NDArray[np.float64]
     mass_kg: float
     inertia_kg_m2: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
-    confines: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
+    frustum_planes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from sailenv_ros.behaviours.base import Action, BehaviourParameters, BodyState, behaviour
 from sailenv_ros.behaviours.steering import random_direction, vector3
-from sailenv_ros.scene.kinds import Number
+from sailenv_ros.scene.field_types import Number
 
 __all__ = ["Poltergeist", "poltergeist"]
 

@@ -23,12 +23,14 @@ from sailenv_ros.behaviours.uniform_movement import uniform_movement_random_boun
 from sailenv_ros.behaviours.wander_plane import wander_plane
 from sailenv_ros.behaviours.waypoints import catmull_waypoints, linear_waypoints
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.scene.kinds import FAULT
+from sailenv_ros.scene.field_types import FIELD_ERROR
 
 __all__ = [
-    "behaviour_faults",
+    "behaviour_errors",
     "behaviour_kinds",
-    "known_behaviour_faults",
+    "known_behaviour_errors",
+    "readable_behaviour_errors",
+    "refusing_behaviour_errors",
     "start_behaviour",
 ]
 
@@ -51,30 +53,54 @@ _users: dict[str, BehaviourKind] = {}
 
 
 def behaviour_kinds() -> Mapping[str, BehaviourKind]:
-    """Give every known kind by its type; read-only."""
+    """Return every known kind by its type; read-only."""
     return _KINDS
 
 
-def behaviour_faults(
+def behaviour_errors(
     type_: str, parameters: Mapping[str, Any]
 ) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """Yield what is wrong with a behaviour: the place inside it, and a sentence.
 
-    A type ``module:name`` is imported, which runs code: for scene files, not for what comes over a
-    network.
+    A type ``module:name`` is imported, which runs code: for files whose user allows it, not for
+    what comes over a network.
     """
     if ":" in type_ and type_ not in _users:
         problem = _load_users(type_)
         if problem:
             yield ("type",), problem
             return
-    yield from known_behaviour_faults(type_, parameters)
+    yield from known_behaviour_errors(type_, parameters)
 
 
-def known_behaviour_faults(
+def refusing_behaviour_errors(
     type_: str, parameters: Mapping[str, Any]
 ) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Yield what is wrong with a behaviour, as `behaviour_faults`, but import nothing."""
+    """Yield what is wrong with a behaviour; one of a module whose code was not run is a fault."""
+    if ":" in type_ and type_ not in _users:
+        module = type_.partition(":")[0]
+        yield (
+            ("type",),
+            f"{type_!r} would run the code of the Python module {module!r}; if you trust it, allow "
+            "that: --allow-modules (sailenv), allow_modules:=true (sim_node), allow_modules=True "
+            "(Simulation)",
+        )
+        return
+    yield from known_behaviour_errors(type_, parameters)
+
+
+def readable_behaviour_errors(
+    type_: str, parameters: Mapping[str, Any]
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Yield what is wrong with a behaviour; one of a module whose code was not run is unchecked."""
+    if ":" not in type_ or type_ in _users:
+        yield from known_behaviour_errors(type_, parameters)
+
+
+def known_behaviour_errors(
+    type_: str, parameters: Mapping[str, Any]
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Yield what is wrong with a behaviour, as `behaviour_errors`, but import nothing."""
     kind = _kind(type_)
     if kind is None:
         yield ("type",), str(UnknownName("behaviour", type_, {**_KINDS, **_users}))
@@ -82,8 +108,8 @@ def known_behaviour_faults(
     try:
         kind.parameters.model_validate(dict(parameters))
     except ValidationError as error:
-        for fault in error.errors(include_url=False):
-            yield tuple(fault["loc"]), _sentence(kind, fault)
+        for details in error.errors(include_url=False):
+            yield tuple(details["loc"]), _sentence(kind, details)
 
 
 def start_behaviour(
@@ -95,14 +121,14 @@ def start_behaviour(
     place: int,
     start_s: float = 0.0,
 ) -> RunningBehaviour:
-    """Check a behaviour's parameters and give it a generator of its own.
+    """Check a behaviour's parameters and return its own generator.
 
     Raises
     ------
     InvalidRequest
         If the type is unknown or a parameter is wrong.
     """
-    for path, message in known_behaviour_faults(type_, parameters):
+    for path, message in known_behaviour_errors(type_, parameters):
         field = ".".join(str(part) for part in path)
         raise InvalidRequest(
             f"behaviour {type_!r} of {object_name!r}",
@@ -130,7 +156,7 @@ def _kind(type_: str) -> BehaviourKind | None:
 
 
 def _load_users(type_: str) -> str:
-    """Import a user's behaviour; give a sentence of what is wrong, empty if nothing is."""
+    """Import a user's behaviour; return a sentence of what is wrong, empty if nothing is."""
     module_name, _, name = type_.partition(":")
     try:
         module = importlib.import_module(module_name)
@@ -148,12 +174,12 @@ def _load_users(type_: str) -> str:
     return ""
 
 
-def _sentence(kind: BehaviourKind, fault: Any) -> str:
-    if fault["type"] == "extra_forbidden":
+def _sentence(kind: BehaviourKind, details: Any) -> str:
+    if details["type"] == "extra_forbidden":
         known = ", ".join(kind.parameters.model_fields)
         return f"is not a parameter of {kind.type}; its parameters are: {known}"
-    if fault["type"] == FAULT:
-        return str(fault["ctx"]["sentence"])
-    if fault["type"] == "missing":
+    if details["type"] == FIELD_ERROR:
+        return str(details["ctx"]["sentence"])
+    if details["type"] == "missing":
         return "is missing"
-    return f"{fault['msg'][0].lower()}{fault['msg'][1:]}, got {fault['input']!r}"
+    return f"{details['msg'][0].lower()}{details['msg'][1:]}, got {details['input']!r}"

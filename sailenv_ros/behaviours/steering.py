@@ -22,7 +22,7 @@ Vector = NDArray[np.float64]
 
 
 def vector3(values: Vector) -> tuple[float, float, float]:
-    """Give three numbers as a tuple of Python's own."""
+    """Return three numbers as a tuple of Python's own."""
     return float(values[0]), float(values[1]), float(values[2])
 
 
@@ -41,7 +41,7 @@ def random_direction(rng: np.random.Generator) -> Vector:
 
 
 def turn_vector(start: Pose, end: Pose) -> Vector:
-    """Give the shorter turn from one orientation to another.
+    """Return the shorter turn from one orientation to another.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def turn_vector(start: Pose, end: Pose) -> Vector:
 
 
 def towards(body: BodyState, goal: Pose) -> Action:
-    """Give the velocities that bring a body to a pose by the end of the step.
+    """Return the velocities that bring a body to a pose by the end of the step.
 
     What is too far for one step at the highest speed takes several.
     """

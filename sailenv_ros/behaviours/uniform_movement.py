@@ -17,8 +17,8 @@ from sailenv_ros.behaviours.base import (
     behaviour,
 )
 from sailenv_ros.behaviours.steering import random_direction, vector3
+from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Direction
-from sailenv_ros.scene.kinds import Number, Text
 
 __all__ = ["UniformMovement", "uniform_movement_random_bounce"]
 
@@ -89,15 +89,15 @@ def _first_direction(parameters: UniformMovement, rng: np.random.Generator) -> V
 
 
 def _impact(direction: Vector, speed: float, body: BodyState) -> Vector | None:
-    """Give the normal of what was hit in the last step: an impact changes speed along it."""
+    """Return the normal of what was hit in the last step: an impact changes speed along it."""
     change = body.linear_velocity - direction * speed
     size = float(np.linalg.norm(change))
     return None if size < 0.2 * speed else change / size
 
 
 def _left_behind(body: BodyState) -> list[Vector]:
-    """Give the normals of the planes that the body is to be in front of and is not."""
-    planes = body.confines
+    """Return the normals of the planes that the body is to be in front of and is not."""
+    planes = body.frustum_planes
     behind = planes[:, :3] @ np.asarray(body.pose.position_m) + planes[:, 3] < 0.0
     return list(planes[behind, :3])
 

@@ -19,8 +19,8 @@ from sailenv_ros.behaviours.base import (
 )
 from sailenv_ros.behaviours.steering import MAX_TURN_RAD_S, limited, turn_vector, vector3
 from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Position
-from sailenv_ros.scene.kinds import Number
 
 __all__ = ["WanderPlane", "wander_plane"]
 
@@ -82,7 +82,7 @@ def _way(
     memory: dict[str, Any],
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    """Give the way from the body to the waypoint that it heads for now [m]."""
+    """Return the way from the body to the waypoint that it heads for now [m]."""
     here = np.asarray(body.pose.position_m)
     targets = parameters.waypoints
     speed = float(np.linalg.norm(body.linear_velocity))
@@ -101,7 +101,7 @@ def _way(
 
 
 def _next_attitude(parameters: WanderPlane, way: NDArray[np.float64], pose: Pose) -> Pose:
-    """Give the attitude after one step of turning towards a way; the position stays."""
+    """Return the attitude after one step of turning towards a way; the position stays."""
     roll, pitch, yaw = pose.rpy_deg
     most = parameters.turn_rate
     wanted_yaw = math.degrees(math.atan2(way[1], way[0]))

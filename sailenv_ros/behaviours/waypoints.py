@@ -18,8 +18,8 @@ from sailenv_ros.behaviours.base import (
 )
 from sailenv_ros.behaviours.steering import towards
 from sailenv_ros.geometry import Pose, interpolate
+from sailenv_ros.scene.field_types import Number, Switch
 from sailenv_ros.scene.fields import Position, Rotation
-from sailenv_ros.scene.kinds import Number, Switch
 
 __all__ = [
     "ObjectWaypoint",
@@ -66,7 +66,7 @@ class Waypoints(BehaviourParameters):
         return tuple(Pose.from_rpy_deg(w.position, w.rotation) for w in self.waypoints)
 
     def leg_at(self, time_s: float) -> tuple[int, float]:
-        """Give the leg at a time from 0 on [s], and the fraction of it that is done, 0 to 1."""
+        """Return the leg at a time from 0 on [s], and the fraction of it that is done, 0 to 1."""
         legs = len(self.waypoints) if self.loop else len(self.waypoints) - 1
         if len(self.waypoints) == 1:
             return 0, 0.0
@@ -78,14 +78,14 @@ class Waypoints(BehaviourParameters):
 
 
 def linear_pose(parameters: Waypoints, time_s: float) -> Pose:
-    """Give the pose on straight legs, orientations by shorter arcs, at a time [s]."""
+    """Return the pose on straight legs, orientations by shorter arcs, at a time [s]."""
     leg, fraction = parameters.leg_at(time_s)
     poses = parameters.poses
     return interpolate(poses[leg], poses[(leg + 1) % len(poses)], fraction)
 
 
 def catmull_pose(parameters: Waypoints, time_s: float) -> Pose:
-    """Give the pose on a uniform Catmull-Rom spline, orientations by shorter arcs.
+    """Return the pose on a uniform Catmull-Rom spline, orientations by shorter arcs.
 
     Source: Catmull and Rom, "A class of local interpolating splines", 1974, with tension 1/2. An
     open track's ends are doubled.
@@ -107,7 +107,7 @@ def catmull_pose(parameters: Waypoints, time_s: float) -> Pose:
 
 
 def _around(poses: Sequence[Pose], leg: int, *, loop: bool) -> list[Pose]:
-    """Give the poses before, at the beginning of, at the end of and after a leg."""
+    """Return the poses before, at the beginning of, at the end of and after a leg."""
     count = len(poses)
     places = range(leg - 1, leg + 3)
     if loop:

@@ -1,22 +1,27 @@
-"""`sailenv assets`: build the standard pack, list and picture what there is, add one's own."""
+"""`sailenv assets`: build the standard pack, check, list and picture what there is, add to it."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from sailenv_ros.assets.importing import import_asset
-from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.checksums import damaged_by_manifest
+from sailenv_ros.assets.folders import own_pack_folder, pack_folders, standard_pack_folder
 from sailenv_ros.assets.own_pack import add_to_own_pack
-from sailenv_ros.assets.pack import AssetPack
-from sailenv_ros.assets.places import own_pack_folder, standard_pack_folder
+from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.sources import installed_packs, installed_sources
-from sailenv_ros.assets.standard.build import build_standard_pack, is_current, licence_files
-from sailenv_ros.errors import UnknownName
+from sailenv_ros.assets.standard.fetch import SOURCES, kept_folder
+from sailenv_ros.assets.standard.pack_build import build_standard_pack, is_current, licence_files
+from sailenv_ros.bake.light_files import damaged_light
+from sailenv_ros.catalogue.import_process import import_file_apart
+from sailenv_ros.catalogue.thumbnails import is_whole_png, thumbnail_folder
+from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.simulation.scenes import SceneLibrary
 
 __all__ = ["add_parser", "run"]
@@ -32,6 +37,9 @@ def add_parser(subparsers: Any) -> None:
     build = actions.add_parser("build", help="fetch and make the standard pack of furniture")
     build.add_argument("--force", action="store_true", help="make it anew though it is there")
     build.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    actions.add_parser(
+        "verify", help="check every file of packs, sources, baked light and thumbnails"
+    )
     actions.add_parser("list", help="list every object, with its category, size and licence")
     credit = actions.add_parser("credits", help="print authors, licences and sources")
     credit.add_argument("--full", action="store_true", help="the licence texts too")
@@ -62,6 +70,7 @@ def run(args: argparse.Namespace) -> int:
         "credits": _credits,
         "sheet": _sheet,
         "add": _add,
+        "verify": _verify,
     }[args.action](args)
 
 
@@ -85,7 +94,7 @@ def _build(args: argparse.Namespace) -> int:
     with _progress(console) as bar:
         task = bar.add_task("furniture", total=None)
 
-        def told(name: str, done: int, total: int) -> None:
+        def report(name: str, done: int, total: int) -> None:
             bar.update(task, description=name, completed=done, total=total)
 
         def said(text: str) -> None:
@@ -93,7 +102,7 @@ def _build(args: argparse.Namespace) -> int:
             if not console.is_terminal:
                 console.print(text)
 
-        build_standard_pack(progress=told, say=said, jobs=args.jobs, force=args.force)
+        build_standard_pack(progress=report, say=said, jobs=args.jobs, force=args.force)
         bar.update(task, description="furniture")
     print(f"{folder}: {len(AssetPack(folder).entries)} objects")
     return 0
@@ -108,6 +117,52 @@ def _list(_: argparse.Namespace) -> int:
     if not any(pack.folder == standard_pack_folder() for pack in installed_packs()):
         print("The furniture has not been built yet: sailenv assets build")
     return 0
+
+
+def _verify(_: argparse.Namespace) -> int:
+    """Tell of every damaged file and what makes it anew; 1 if there is one."""
+    problems = [*_pack_problems(), *_source_problems(), *_light_problems(), *_picture_problems()]
+    for file, problem, remedy in problems:
+        print(f"{file}: {problem}; {remedy}")
+    if not problems:
+        print("packs, sources, baked light and thumbnails: all files are whole")
+    return 1 if problems else 0
+
+
+Problems = Iterator[tuple[Path, str, str]]
+"""A file, what is wrong with it, and what is to be done."""
+
+
+def _pack_problems() -> Problems:
+    for folder in (standard_pack_folder(), *pack_folders()):
+        if not (folder / PACK_FILE).is_file():
+            continue
+        remedy = BUILD_COMMAND if folder == standard_pack_folder() else "add or install it anew"
+        try:
+            problems = AssetPack(folder).problems()
+        except AssetError as problem:
+            yield folder / PACK_FILE, problem.why, remedy
+        else:
+            for file, what in problems.items():
+                yield folder / file, what, remedy
+
+
+def _source_problems() -> Problems:
+    for package in SOURCES:
+        folder = kept_folder(package)
+        for file, what in damaged_by_manifest(folder).items():
+            yield folder / file, what, f"{BUILD_COMMAND} --force downloads {package} anew"
+
+
+def _light_problems() -> Problems:
+    for path, what in damaged_light().items():
+        yield path, what, "sailenv scene bake SCENE bakes it anew"
+
+
+def _picture_problems() -> Problems:
+    for path in sorted(thumbnail_folder().glob("*.png")):
+        if not is_whole_png(path.read_bytes()):
+            yield path, "is damaged (its checksum is wrong)", "it is made anew when it is asked for"
 
 
 def _credits(args: argparse.Namespace) -> int:
@@ -127,8 +182,8 @@ def _credits(args: argparse.Namespace) -> int:
 
 def _sheet(args: argparse.Namespace) -> int:
     # Imported here: all other actions do without OpenGL.
+    from sailenv_ros.catalogue.preview_renderer import PreviewRenderer
     from sailenv_ros.pictures.contact_sheet import save_contact_sheet
-    from sailenv_ros.simulation.portraits import PortraitStudio
 
     library = AssetLibrary(installed_sources())
     names = [library.canonical(n) for n in args.names] or [
@@ -136,10 +191,10 @@ def _sheet(args: argparse.Namespace) -> int:
     ]
     console = Console(stderr=True)
     pictures = {}
-    with PortraitStudio() as studio, _progress(console) as bar:
+    with PreviewRenderer() as previews, _progress(console) as bar:
         for name in bar.track(names, description="pictures"):
             asset = library.get(name)
-            pictures[asset.display_name] = studio.portrait(
+            pictures[asset.display_name] = previews.thumbnail(
                 asset, width=args.tile, height=args.tile * 3 // 4, azimuth_deg=args.azimuth
             )
     print(save_contact_sheet(args.output, pictures, columns=args.columns))
@@ -153,8 +208,8 @@ def _add(args: argparse.Namespace) -> int:
     name = args.name or "".join(
         c if c.isascii() and c.isalnum() else "_" for c in args.model.stem.lower()
     ).strip("_")
-    asset = import_asset(
-        args.model,
+    asset = import_file_apart(
+        args.model.absolute(),
         name=name,
         display_name=args.display_name,
         category=args.category,
@@ -173,12 +228,12 @@ def _add(args: argparse.Namespace) -> int:
 
 
 def _preview(asset: Any) -> Path:
+    from sailenv_ros.catalogue.preview_renderer import PreviewRenderer
     from sailenv_ros.pictures.contact_sheet import save_contact_sheet
-    from sailenv_ros.simulation.portraits import PortraitStudio
 
-    with PortraitStudio() as studio:
+    with PreviewRenderer() as previews:
         pictures = {
-            side: studio.portrait(asset, width=400, height=300, azimuth_deg=azimuth)
+            side: previews.thumbnail(asset, width=400, height=300, azimuth_deg=azimuth)
             for side, azimuth in (("front", 25.0), ("back", 205.0))
         }
     return save_contact_sheet(own_pack_folder() / f"{asset.name}.png", pictures, columns=2)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sailenv_ros.recording.recovery import Recovered
+    from sailenv_ros.recording.mcap.recovery import Recovered
 
 __all__ = ["add_parser", "run"]
 
@@ -49,17 +49,18 @@ def _info(path: Path) -> int:
 
 
 def _recover(path: Path, output: Path | None) -> int:
-    from sailenv_ros.recording.recovery import recover, recover_file
+    from sailenv_ros.recording.bag_recovery import recover
+    from sailenv_ros.recording.mcap.recovery import recover_file
 
     done = recover(path) if output is None else [recover_file(path, output)]
     for recovered in done:
-        print(_told(recovered))
+        print(_summary(recovered))
     if not done:
         print(f"{path}: nothing to restore, it is whole")
     return 0
 
 
-def _told(recovered: Recovered) -> str:
+def _summary(recovered: Recovered) -> str:
     kept = f"; the damaged file is {recovered.kept}" if recovered.kept else ""
     return (
         f"{recovered.path}: restored {recovered.messages} messages; damaged or incomplete chunks:"

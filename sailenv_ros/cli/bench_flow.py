@@ -14,14 +14,14 @@ from sailenv_ros.cli.experiment import (
     progress_bar,
 )
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.experiments.extras import need
-from sailenv_ros.experiments.flow_accuracy import OURS, judge_scenario, laboratory
+from sailenv_ros.experiments.flow_accuracy import OURS, evaluate_scenario, flow_test_scene
 from sailenv_ros.experiments.flow_methods import FlowMethod, opencv_methods
 from sailenv_ros.experiments.flow_network import flow_network
 from sailenv_ros.experiments.flow_scenes import SCENARIOS
 from sailenv_ros.experiments.flow_speed import PICTURE, SIZES, WARM_UP, time_flow
 from sailenv_ros.experiments.frame_sources import agent_source, in_process_source
 from sailenv_ros.experiments.machine import provenance
+from sailenv_ros.extras import need
 
 __all__ = ["flow_accuracy", "flow_speed"]
 
@@ -41,7 +41,7 @@ def flow_speed(args: argparse.Namespace) -> int:
     methods = _methods(args)
     in_process = args.in_process or importlib.util.find_spec("rclpy") is None
     source_of = in_process_source if in_process else agent_source
-    told = provenance(command_line())
+    origin = provenance(command_line())
     measured, renderer = [], ""
     with progress_bar(len(sizes) * (WARM_UP + frames)) as tell:
         for width, height in sizes:
@@ -63,7 +63,7 @@ def flow_speed(args: argparse.Namespace) -> int:
         "methods": entries,
         "sizes": measured,
     }
-    finish(args, "flow_speed", told, data)
+    finish(args, "flow_speed", origin, data)
     return 0
 
 
@@ -79,19 +79,19 @@ def flow_accuracy(args: argparse.Namespace) -> int:
         width, height, pairs = min(width, 160), min(height, 120), min(pairs, 2)
     names = args.scenario or list(SCENARIOS)
     methods = _methods(args)
-    told = provenance(command_line())
-    judged, sheets = [], {}
+    origin = provenance(command_line())
+    evaluated, sheets = [], {}
     with (
         progress_bar(len(names) * pairs) as tell,
-        laboratory(width, height) as simulation,
+        flow_test_scene(width, height) as simulation,
     ):
         for name in names:
             scenario = SCENARIOS[name]
-            found = judge_scenario(
+            found = evaluate_scenario(
                 simulation, scenario, methods, pairs=pairs,
                 on_pair=partial(tell, scenario.label),
             )  # fmt: skip
-            judged.append(
+            evaluated.append(
                 {
                     "name": name,
                     "label": scenario.label,
@@ -112,11 +112,11 @@ def flow_accuracy(args: argparse.Namespace) -> int:
             {"name": OURS, "label": OUR_LABEL},
             *({"name": method.name, "label": method.label} for method in methods),
         ],
-        "scenarios": judged,
+        "scenarios": evaluated,
         "pictures": pictures,
     }
-    finish(args, "flow_accuracy", told, data)
-    worst = max(entry["errors"][OURS]["mean_moving"] for entry in judged)
+    finish(args, "flow_accuracy", origin, data)
+    worst = max(entry["errors"][OURS]["mean_moving"] for entry in evaluated)
     return 0 if worst < EXACT_PX else 1
 
 

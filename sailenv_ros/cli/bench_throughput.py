@@ -8,17 +8,17 @@ from typing import Any
 
 from sailenv_ros.cli.experiment import checked_sizes, command_line, finish, progress_bar
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.extras import need
 from sailenv_ros.experiments.machine import provenance
-from sailenv_ros.experiments.throughput import measure_group, peer_rows, plan_of
+from sailenv_ros.experiments.throughput import baseline_rows, measure_group, plan_of
 from sailenv_ros.experiments.workloads import TRANSPORTS
+from sailenv_ros.extras import need
 
 __all__ = ["throughput"]
 
 SIZES = [(320, 240), (640, 480), (1280, 960)]
 SCENES = ["room_01", "room_02", "room_03", "optical"]
 AGENTS = [1, 4]
-PEER_FRAMES = 20
+BASELINE_FRAMES = 20
 """At most so many of each renderer: some take a second for one."""
 
 
@@ -38,21 +38,21 @@ def throughput(args: argparse.Namespace) -> int:
         agents=agents,
         transports=args.transport or list(TRANSPORTS),
         full=args.full,
-        peer_sizes=() if args.no_renderers else sizes[:2],
+        baseline_sizes=() if args.no_renderers else sizes[:2],
     )
-    told = provenance(command_line())
+    origin = provenance(command_line())
     cases: list[dict[str, Any]] = []
-    peers: list[dict[str, Any]] = []
-    peer_frames = min(frames, PEER_FRAMES)
-    total = len(plan.cases) * frames + len(plan.peers) * peer_frames
+    baselines: list[dict[str, Any]] = []
+    baseline_frames = min(frames, BASELINE_FRAMES)
+    total = len(plan.cases) * frames + len(plan.baselines) * baseline_frames
     with progress_bar(total) as tell:
         for group in plan.cases:
             first = next(iter(group.settings))
             cases += measure_group(group, frames, partial(tell, f"{group.vary}: {first}"))
-        for group in plan.peers:
+        for group in plan.baselines:
             tell("other renderers", 0)
-            rows = measure_group(group, peer_frames, partial(tell, "other renderers"))
-            peers += peer_rows(rows)
+            rows = measure_group(group, baseline_frames, partial(tell, "other renderers"))
+            baselines += baseline_rows(rows)
     base = plan.base
     like_base = [row for row in cases if row.get("stages") and _is_base(row, base)]
     data = {
@@ -69,9 +69,9 @@ def throughput(args: argparse.Namespace) -> int:
         "renderer": next((row["renderer"] for row in cases if row.get("renderer")), ""),
         "cases": cases,
         "stages": like_base[0]["stages"] if like_base else {},
-        "peers": peers,
+        "peers": baselines,
     }
-    finish(args, "throughput", told, data)
+    finish(args, "throughput", origin, data)
     return 0
 
 

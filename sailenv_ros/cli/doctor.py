@@ -15,17 +15,21 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.console import Console
 from rich.table import Table
 
 from sailenv_ros import __version__
-from sailenv_ros.cli.probes import try_probe
-from sailenv_ros.presence import simulator_is_present
-from sailenv_ros.transport import NEEDED_BYTES, SHARED_MEMORY, remove_abandoned_segments
+from sailenv_ros.cli.doctor_probes import try_probe
+from sailenv_ros.errors import NativeLibraryError
+from sailenv_ros.system.presence import simulator_is_present
+from sailenv_ros.system.transport import NEEDED_BYTES, SHARED_MEMORY, remove_abandoned_segments
 
-__all__ = ["Finding", "add_parser", "diagnose", "run"]
+if TYPE_CHECKING:
+    from sailenv_ros.native.library import NativeLibrary
+
+__all__ = ["CheckResult", "add_parser", "diagnose", "run"]
 
 Level = Literal["ok", "note", "warning", "FAILED"]
 Probe = Callable[[str, float], "tuple[dict[str, Any] | None, str]"]
@@ -44,7 +48,7 @@ GRAPHICS_VARIABLES = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
+class CheckResult:
     """One line of the report.
 
     Attributes
@@ -85,10 +89,10 @@ def run(args: argparse.Namespace) -> int:
     table.add_column(overflow="fold")  # paths are told whole
     failed = False
     with console.status("looking around"):
-        for finding in diagnose(timeout_s=args.timeout):
-            failed |= finding.level == "FAILED"
-            style = _STYLES[finding.level]
-            table.add_row(f"[{style}]{finding.level}[/]", finding.topic, _plain(finding.text))
+        for result in diagnose(timeout_s=args.timeout):
+            failed |= result.level == "FAILED"
+            style = _STYLES[result.level]
+            table.add_row(f"[{style}]{result.level}[/]", result.topic, _plain(result.text))
     console.print(table)
     console.print(
         "[red]The simulator cannot render here.[/]"
@@ -98,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
     return int(failed)
 
 
-def diagnose(*, timeout_s: float, probe: Probe = try_probe) -> Iterator[Finding]:
+def diagnose(*, timeout_s: float, probe: Probe = try_probe) -> Iterator[CheckResult]:
     """Look at everything, one after the other.
 
     Parameters
@@ -112,29 +116,31 @@ def diagnose(*, timeout_s: float, probe: Probe = try_probe) -> Iterator[Finding]
     yield from _ros(*probe("ros", timeout_s))
     yield from _shared_memory()
     yield from _scenes(*probe("scenes", timeout_s))
-    yield from _graphics(*probe("graphics", timeout_s))
+    native = _native()
+    yield native
+    yield from _graphics(*probe("graphics", timeout_s), has_native=native.level == "ok")
     yield from _frame(probe, timeout_s)
 
 
-def _python() -> Iterator[Finding]:
-    yield Finding(
+def _python() -> Iterator[CheckResult]:
+    yield CheckResult(
         topic="Python",
         text=f"{platform.python_version()} at {sys.executable}, {platform.platform()}",
     )
-    yield Finding(topic="package", text=f"sailenv_ros {__version__} at {_own_folder()}")
+    yield CheckResult(topic="package", text=f"sailenv_ros {__version__} at {_own_folder()}")
     bullet = "pybullet" if sys.version_info < (3, 12) else "pybullet-arm64"
-    yield Finding(
+    yield CheckResult(
         topic="libraries",
         text=", ".join(f"{name} {_version(name)}" for name in (*LIBRARIES, bullet)),
     )
 
 
-def _ros(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
+def _ros(found: dict[str, Any] | None, why_not: str) -> Iterator[CheckResult]:
     if found is None:
-        yield Finding(topic="ROS", text=why_not, level="warning")
+        yield CheckResult(topic="ROS", text=why_not, level="warning")
         return
     if found["missing"]:
-        yield Finding(
+        yield CheckResult(
             topic="ROS",
             text=f"missing: {'; '.join(found['missing'])}. The simulator runs without it, its node "
             "and Agent do not: scripts/setup brings it. Beside your own ROS 2 Jazzy, source that, "
@@ -146,9 +152,9 @@ def _ros(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
     of_pypi = Path(found["rclpy"]).is_relative_to(sys.prefix)
     distro = os.environ.get("ROS_DISTRO", "")
     source = "from PyPI" if of_pypi else f"installed ({found['rclpy']})"
-    yield Finding(topic="ROS", text=f"{distro or 'jazzy'}, {source}, {found['rmw']}")
+    yield CheckResult(topic="ROS", text=f"{distro or 'jazzy'}, {source}, {found['rmw']}")
     if of_pypi and distro:
-        yield Finding(
+        yield CheckResult(
             topic="ROS",
             text=f"ROS 2 {distro} is sourced, and this Python has another one from PyPI: the two "
             "must not be mixed. Use a shell without the first, or run scripts/setup in this one",
@@ -157,22 +163,22 @@ def _ros(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
     yield _domain()
 
 
-def _domain() -> Finding:
+def _domain() -> CheckResult:
     reach = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     try:
         domain = int(os.environ.get("ROS_DOMAIN_ID") or 0)
     except ValueError:
         text = f"ROS_DOMAIN_ID={os.environ['ROS_DOMAIN_ID']} is no number from 0 to 232"
-        return Finding(topic="domain", text=text, level="warning")
+        return CheckResult(topic="domain", text=text, level="warning")
     running = "a simulator runs" if simulator_is_present(domain, "/sailenv") else "no simulator"
     text = f"{domain}, discovery range {reach}; {running} as /sailenv"
-    return Finding(topic="domain", text=text)
+    return CheckResult(topic="domain", text=text)
 
 
-def _shared_memory() -> Iterator[Finding]:
+def _shared_memory() -> Iterator[CheckResult]:
     freed = remove_abandoned_segments()
     if freed:
-        yield Finding(
+        yield CheckResult(
             topic="/dev/shm",
             text=f"removed {freed >> 20} MiB that processes left behind when they were killed",
             level="note",
@@ -180,7 +186,7 @@ def _shared_memory() -> Iterator[Finding]:
     try:
         usage = shutil.disk_usage(SHARED_MEMORY)
     except OSError as problem:
-        yield Finding(
+        yield CheckResult(
             topic="/dev/shm", text=f"{problem.strerror}: images go the slow way", level="warning"
         )
         return
@@ -189,9 +195,9 @@ def _shared_memory() -> Iterator[Finding]:
         f"{usage.free >> 20} of {usage.total >> 20} MiB free, {in_use} segments of Fast DDS in use"
     )
     if usage.free >= NEEDED_BYTES:
-        yield Finding(topic="/dev/shm", text=text)
+        yield CheckResult(topic="/dev/shm", text=text)
     else:
-        yield Finding(
+        yield CheckResult(
             topic="/dev/shm",
             text=f"{text}; images want {NEEDED_BYTES >> 20} MiB, else they go the slow way "
             "(docker run --shm-size=1g)",
@@ -199,39 +205,54 @@ def _shared_memory() -> Iterator[Finding]:
         )
 
 
-def _scenes(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
+def _scenes(found: dict[str, Any] | None, why_not: str) -> Iterator[CheckResult]:
     if found is None:
-        yield Finding(topic="scenes", text=why_not, level="FAILED")
+        yield CheckResult(topic="scenes", text=why_not, level="FAILED")
         return
-    yield Finding(
+    yield CheckResult(
         topic="scenes",
         text=f"{', '.join(found['scenes']) or 'none'}; {found['assets']} assets to put into them",
         level="ok" if found["scenes"] else "FAILED",
     )
-    for fault in found["scenes"].values():
-        if fault:
-            yield Finding(topic="scenes", text=fault, level="warning")
+    for error in found["scenes"].values():
+        if error:
+            yield CheckResult(topic="scenes", text=error, level="warning")
 
 
-def _graphics(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
+def _graphics(
+    found: dict[str, Any] | None, why_not: str, *, has_native: bool
+) -> Iterator[CheckResult]:
     for name in GRAPHICS_VARIABLES:
         if name in os.environ:
-            yield Finding(topic="OpenGL", text=f"{name}={os.environ[name]} is set", level="note")
+            yield CheckResult(
+                topic="OpenGL", text=f"{name}={os.environ[name]} is set", level="note"
+            )
     remedy = f"If there is no driver: sudo apt-get install {GRAPHICS_PACKAGES}"
     if found is None:
-        yield Finding(topic="OpenGL", text=f"{why_not}. {remedy}", level="warning")
+        level: Level = "note" if has_native else "warning"
+        yield CheckResult(topic="OpenGL", text=f"{why_not}. {remedy}", level=level)
         return
     usable = [device for device in found["devices"] if not device["refused"]]
     for device in found["devices"]:
         topic = f"EGL device {device['index']}"
         if device["refused"]:
-            yield Finding(topic=topic, text=f"refused: {device['refused']}", level="note")
+            yield CheckResult(topic=topic, text=f"refused: {device['refused']}", level="note")
         else:
-            yield Finding(topic=topic, text=f"{device['renderer']}, OpenGL {device['version']}")
-    if not usable:
-        yield Finding(topic="OpenGL", text=f"no device gives a context. {remedy}", level="warning")
-    elif all(device["software"] for device in usable):
-        yield Finding(
+            yield CheckResult(topic=topic, text=f"{device['renderer']}, OpenGL {device['version']}")
+    hardware = any(not device["software"] for device in usable)
+    if has_native and not hardware:
+        yield CheckResult(
+            topic="OpenGL",
+            text="no device is graphics hardware: the native renderer draws, on the CPU; where "
+            "there is a graphics card, its driver lacks EGL",
+            level="note",
+        )
+    elif not usable:
+        yield CheckResult(
+            topic="OpenGL", text=f"no device gives a context. {remedy}", level="warning"
+        )
+    elif not hardware:
+        yield CheckResult(
             topic="OpenGL",
             text="rendering in SOFTWARE, on the CPU: no device is graphics hardware. Right "
             "pictures, slowly; where there is a graphics card, its driver lacks EGL",
@@ -239,24 +260,50 @@ def _graphics(found: dict[str, Any] | None, why_not: str) -> Iterator[Finding]:
         )
 
 
-def _frame(probe: Probe, timeout_s: float) -> Iterator[Finding]:
-    found, why_not = probe("frame by gl", timeout_s)
+def _frame(probe: Probe, timeout_s: float) -> Iterator[CheckResult]:
+    found, why_not = probe("frame by auto", timeout_s)
     if found is None:
-        yield Finding(topic="OpenGL", text=f"no frame: {why_not}", level="warning")
-        found, why_not = probe("frame by tiny", timeout_s)
+        yield CheckResult(topic="renderer", text=f"no frame: {why_not}", level="warning")
+        for name in ("native", "tiny"):
+            found, why_not = probe(f"frame by {name}", timeout_s)
+            if found is not None:
+                text = f"FALLBACK, on the CPU, with backend:={name}: {found['renderer']}"
+                yield CheckResult(topic="renderer", text=text, level="warning")
+                break
         if found is None:
-            yield Finding(topic="a frame", text=f"nor by the fallback: {why_not}", level="FAILED")
+            yield CheckResult(
+                topic="a frame", text=f"nor by the fallback: {why_not}", level="FAILED"
+            )
             return
-        text = f"FALLBACK, slow, on the CPU: {found['renderer']}"
-        yield Finding(topic="renderer", text=text, level="warning")
     else:
-        yield Finding(topic="renderer", text=found["renderer"])
-    yield Finding(
+        yield CheckResult(topic="renderer", text=found["renderer"])
+    yield CheckResult(
         topic="a frame",
         text=f"{found['scene']} at 640x480 with five views in {found['ms']:.0f} ms, "
         f"{found['instances']} objects seen",
         level="ok" if found["instances"] else "FAILED",
     )
+
+
+def native_library() -> NativeLibrary:
+    """Load the native library; imported here, so that ``--help`` is there at once."""
+    from sailenv_ros.native import library
+
+    return library.native_library()
+
+
+def _native() -> CheckResult:
+    try:
+        library = native_library()
+    except NativeLibraryError as problem:
+        return CheckResult(
+            topic="native library",
+            text=f"{problem}. Frames are drawn with OpenGL, also where there is no graphics "
+            "hardware, which is slower. A C++ compiler (apt-get install g++) and scripts/setup "
+            "make it",
+            level="warning",
+        )
+    return CheckResult(topic="native library", text=f"{library.instruction_set}, {library.path}")
 
 
 def _version(distribution: str) -> str:

@@ -34,7 +34,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="EXPERIMENT")
-    detection = actions.add_parser("detection", help="a COCO network on views of 14 classes")
+    detection = actions.add_parser("detection", help="a COCO network on pictures of 14 classes")
     add_common(detection)
     detection.add_argument("--model", type=Path, required=True, metavar="FILE", help=".onnx")
     detection.add_argument(
@@ -47,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
     )
     detection.add_argument("--score", type=float, default=0.3, metavar="X", help="least score")
     detection.add_argument("--views", type=int, default=5, metavar="N", help="of each class")
-    detection.add_argument("--seed", type=int, default=0, help="of the choice of views")
+    detection.add_argument("--seed", type=int, default=0, help="of the choice of viewpoints")
     detection.add_argument("--rooms", nargs="+", metavar="SCENE", help="default: the three rooms")
     detection.add_argument("--classes", nargs="+", metavar="NAME", help="default: the paper's 14")
     detection.add_argument(
@@ -60,11 +60,11 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from sailenv_ros.errors import UnknownName
-    from sailenv_ros.experiments.coco import PAPER_CLASSES
+    from sailenv_ros.experiments.coco_classes import PAPER_CLASSES
     from sailenv_ros.experiments.detector import Detector
-    from sailenv_ros.experiments.extras import need
     from sailenv_ros.experiments.machine import provenance
-    from sailenv_ros.experiments.views import ROOMS, Rule, Stage, rule_as_data
+    from sailenv_ros.experiments.viewpoints import ROOMS, Rule, Stage, rule_as_data
+    from sailenv_ros.extras import need
     from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 
     classes = tuple(args.classes or PAPER_CLASSES)
@@ -76,20 +76,22 @@ def run(args: argparse.Namespace) -> int:
     given = checked_sizes([args.size] if args.size else ())
     detector = Detector(args.model, args.format, labels=args.labels)
     width, height = given[0] if given else detector.size
-    rule = Rule(views=2 if args.quick else args.views, seed=args.seed)
+    rule = Rule(viewpoints=2 if args.quick else args.views, seed=args.seed)
     rooms = tuple(args.rooms or ROOMS)
-    told = provenance(command_line())
+    origin = provenance(command_line())
     sheet: dict[str, Any] = {}
     measured = []
     with (
         Stage(rooms, width, height) as stage,
-        progress_bar(len(classes) * rule.views) as tell,
+        progress_bar(len(classes) * rule.viewpoints) as tell,
     ):
         for name in classes:
-            views = stage.views(name, rule, partial(tell, name))
-            measured.append(_evaluated(name, views, stage.instances(name), detector, args, sheet))
-            for number in range(len(views) + 1, rule.views + 1):
-                sheet[f"{name} {number}: no view"] = np.zeros((height, width, 3), np.uint8)
+            viewpoints = stage.viewpoints(name, rule, partial(tell, name))
+            measured.append(
+                _evaluated(name, viewpoints, stage.instances(name), detector, args, sheet)
+            )
+            for number in range(len(viewpoints) + 1, rule.viewpoints + 1):
+                sheet[f"{name} {number}: no viewpoint"] = np.zeros((height, width, 3), np.uint8)
         renderer, baked = stage.description, stage.baked
     data = {
         "model": args.model.name,
@@ -109,40 +111,40 @@ def run(args: argparse.Namespace) -> int:
     if sheet:
         args.output.mkdir(parents=True, exist_ok=True)
         path = args.output / "detection_views.jpg"
-        save_contact_sheet(path, sheet, columns=rule.views, tile_width=168)
-    finish(args, "detection", told, data)
+        save_contact_sheet(path, sheet, columns=rule.viewpoints, tile_width=168)
+    finish(args, "detection", origin, data)
     return 0
 
 
 def _evaluated(
     name: str,
-    views: Any,
+    viewpoints: Any,
     instances: int,
     detector: Any,
     args: argparse.Namespace,
     sheet: dict[str, Any],
 ) -> dict[str, Any]:
-    """Score a class's views, and put them on the sheet."""
+    """Score a class's viewpoints, and put them on the sheet."""
     from sailenv_ros.experiments.detection import class_scores, scored, with_boxes
 
     results = []
-    for number, view in enumerate(views, start=1):
-        result = scored(view, detector.detect(view.picture), args.score)
+    for number, viewpoint in enumerate(viewpoints, start=1):
+        result = scored(viewpoint, detector.detect(viewpoint.picture), args.score)
         results.append(result)
         label = f"{name} {number}: {result.best_score:.2f}, IoU {result.box_iou:.2f}"
-        sheet[label] = with_boxes(view, result)
+        sheet[label] = with_boxes(viewpoint, result)
     entry = class_scores(name, results, instances)
     entry["chosen"] = [
         {
-            "room": view.room,
-            "object": view.name,
-            "eye_m": [round(value, 3) for value in view.eye_m],
-            "azimuth_deg": round(view.azimuth_deg, 1),
-            "distance_m": round(view.distance_m, 3),
-            "cover": round(view.cover, 4),
-            "visible": round(view.visible, 4),
+            "room": viewpoint.room,
+            "object": viewpoint.name,
+            "eye_m": [round(value, 3) for value in viewpoint.eye_m],
+            "azimuth_deg": round(viewpoint.azimuth_deg, 1),
+            "distance_m": round(viewpoint.distance_m, 3),
+            "cover": round(viewpoint.cover, 4),
+            "visible": round(viewpoint.visible, 4),
         }
-        for view in views
+        for viewpoint in viewpoints
     ]
     return entry
 

@@ -36,7 +36,7 @@ def add_common(parser: argparse.ArgumentParser) -> None:
 
 
 def command_line() -> list[str]:
-    """Give the words that this command was started with, as one would type them."""
+    """Return the words that this command was started with, as one would type them."""
     return ["sailenv", *sys.argv[1:]]
 
 
@@ -77,10 +77,10 @@ def progress_bar(total: int) -> Iterator[Callable[..., None]]:
     with bar:
         task = bar.add_task("", total=total)
 
-        def told(description: str | None = None, advance: int = 1) -> None:
+        def report(description: str | None = None, advance: int = 1) -> None:
             bar.update(task, description=description, advance=advance)
 
-        yield told
+        yield report
 
 
 def print_tables(tables: Sequence[Any]) -> None:
@@ -107,18 +107,18 @@ def print_tables(tables: Sequence[Any]) -> None:
 
 
 def finish(
-    args: argparse.Namespace, experiment: str, told: Mapping[str, Any], data: Mapping[str, Any]
+    args: argparse.Namespace, experiment: str, origin: Mapping[str, Any], data: Mapping[str, Any]
 ) -> None:
     """Write the result, print its tables and draw its plots."""
     from sailenv_ros.experiments.result_tables import tables_of
     from sailenv_ros.experiments.results import load_result, save_result
 
-    path = save_result(args.output, experiment, told, data)
+    path = save_result(args.output, experiment, origin, data)
     result = load_result(args.output, experiment)
     assert result is not None
     print_tables(tables_of(result))
-    load = ", ".join(map(str, told["load"]))
-    print(f"{told['cpu']}, {told['cpus']} CPUs, load {load}; {data.get('renderer', '')}")
+    load = ", ".join(map(str, origin["load"]))
+    print(f"{origin['cpu']}, {origin['cpus']} CPUs, load {load}; {data.get('renderer', '')}")
     print(path)
     if not args.no_plots:
         from sailenv_ros.experiments.plots import save_plots

@@ -35,12 +35,12 @@ COMMANDS = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a subcommand; give its exit status.
+    """Run a subcommand; return its exit status.
 
     Returns
     -------
     status : int
-        0 if all is well, 1 if what was examined has faults, 2 where the command could not be done,
+        0 if all is well, 1 if what was examined has errors, 2 where the command could not be done,
         130 after Ctrl-C.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Mapping
 from typing import NoReturn
 
+from sailenv_ros.system.presence import checked_namespace
+
 __all__ = ["become_node"]
 
 
@@ -20,10 +22,15 @@ def become_node(node: str, parameters: Mapping[str, object], *, namespace: str =
     parameters : mapping
     namespace : str
         The node's; empty leaves its own.
+
+    Raises
+    ------
+    InvalidRequest
+        If ROS would not accept the namespace.
     """
     words = [sys.executable, "-m", f"sailenv_ros.nodes.{node}", "--ros-args"]
     if namespace:
-        words += ["-r", f"__ns:=/{namespace.strip('/')}"]
+        words += ["-r", f"__ns:={checked_namespace(namespace)}"]
     for name, value in parameters.items():
         words += ["-p", f"{name}:={_yaml(value)}"]
     sys.stdout.flush()

@@ -13,6 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.cli.node_process import become_node
 from sailenv_ros.recording.progress import progress_line, size_in_bytes
 from sailenv_ros.recording.topics import RecordingOptions
@@ -40,6 +41,10 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--compression", choices=("zstd", "lz4", "none"), default="zstd")
     parser.add_argument("--split-size", default="0", metavar="SIZE", help="per file, e.g. 2G")
     parser.add_argument("--split-time", type=float, default=0.0, metavar="S", help="per file [s]")
+    parser.add_argument(
+        "--snapshot", type=float, default=0.0, metavar="S",
+        help="keep the last S seconds in memory, and write them when asked [s]",
+    )  # fmt: skip
     parser.add_argument("--quiet", action="store_true", help="no progress line")
     _add_lockstep(parser.add_argument_group("in process"))
 
@@ -52,7 +57,8 @@ def _add_lockstep(group: Any) -> None:
     group.add_argument("--width", type=int, default=640, help="of an agent made here [px]")
     group.add_argument("--height", type=int, default=480, help="of an agent made here [px]")
     group.add_argument("--rate", type=float, default=30.0, help="of an agent made here [Hz]")
-    group.add_argument("--backend", choices=("auto", "gl", "tiny"), default="auto")
+    add_allow_modules(group)
+    group.add_argument("--backend", choices=("auto", "native", "gl", "tiny"), default="auto")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -84,7 +90,11 @@ def _lockstep(args: argparse.Namespace, output: Path, options: RecordingOptions)
     intrinsics = CameraIntrinsics(width=args.width, height=args.height)
     spec = AgentSpec(name="agent", intrinsics=intrinsics, rate_hz=args.rate)
     with Simulation(
-        args.scene, mode="lockstep", seed=args.seed, backend=args.backend
+        args.scene,
+        mode="lockstep",
+        seed=args.seed,
+        backend=args.backend,
+        allow_modules=args.allow_modules,
     ) as simulation:
         if not simulation.info.agents:
             simulation.register_agent(spec)
@@ -112,6 +122,7 @@ def _become_the_node(args: argparse.Namespace, output: Path, options: RecordingO
         "split_bytes": options.split_bytes,
         "split_s": float(options.split_s),
         "progress": not args.quiet,
+        "snapshot_s": float(args.snapshot),
     }
     if args.agents:
         parameters["agents"] = args.agents
@@ -126,22 +137,22 @@ class _Progress:
     def __init__(self, writer: Any, *, quiet: bool) -> None:
         self._writer = writer
         self._quiet = quiet
-        self._began_s = self._told_s = time.monotonic()
+        self._began_s = self._reported_s = time.monotonic()
         self._frames = 0
 
     def frame_done(self, count: int) -> None:
         self._frames = count
         now = time.monotonic()
-        if now - self._told_s >= 0.5 and sys.stderr.isatty():
-            self._told_s = now
-            self._tell("\r")
+        if now - self._reported_s >= 0.5 and sys.stderr.isatty():
+            self._reported_s = now
+            self._report("\r")
 
     def end(self) -> None:
-        self._tell("\r" if sys.stderr.isatty() else "")
+        self._report("\r" if sys.stderr.isatty() else "")
         if not self._quiet:
             print(file=sys.stderr)
 
-    def _tell(self, begin: str) -> None:
+    def _report(self, begin: str) -> None:
         if self._quiet:
             return
         statistics = self._writer.statistics

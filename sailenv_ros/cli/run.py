@@ -13,13 +13,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args
 
+from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.cli.scene_bake import bake_before_running
-from sailenv_ros.errors import SimulationClosed
+from sailenv_ros.errors import SimulationClosed, StorageError
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
-from sailenv_ros.gateway.commands import Protocol
-from sailenv_ros.memory import keep_freed_memory
+from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.scenes import default_scene
+from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.transport import stay_local
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
 from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
 from sailenv_ros.viewer import ViewerServer
@@ -35,7 +37,7 @@ def add_parser(subparsers: Any) -> None:
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "run",
         help="start the simulator, with or without ROS",
-        description="Starts the simulator and lets clients of the original SAILenv connect; "
+        description="Starts the simulator and lets SAILenv clients connect; "
         "a browser shows what its agents see.",
     )
     parser.set_defaults(run=run)
@@ -48,11 +50,11 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--protocol", choices=get_args(Protocol), default="0.5")
     parser.add_argument(
         "--viewer-port", type=int, default=VIEWER_PORT, metavar="PORT",
-        help="of the window in the browser; 0: none (default: %(default)s)",
+        help="of the web viewer; 0: none (default: %(default)s)",
     )  # fmt: skip
     parser.add_argument(
         "--viewer-host", default=VIEWER_HOST, metavar="HOST",
-        help="address of the window; 0.0.0.0: all, with a token (default: %(default)s)",
+        help="address of the web viewer; 0.0.0.0: all, with a token (default: %(default)s)",
     )  # fmt: skip
     parser.add_argument(
         "--viewer-control", action="store_true",
@@ -65,12 +67,17 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
     )
+    add_allow_modules(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run until it is ended by Ctrl-C or SIGTERM; 0 then."""
     if not args.no_bake:
-        bake_before_running(args.scene or default_scene(), args.scenes)
+        scene = args.scene or default_scene()
+        try:
+            bake_before_running(scene, args.scenes, allow_modules=args.allow_modules)
+        except StorageError as problem:
+            print(f"{problem}; the light is worked out from frame to frame", file=sys.stderr)
     return _run_alone(args) if args.no_ros else _become_the_node(args)
 
 
@@ -84,12 +91,14 @@ def _become_the_node(args: argparse.Namespace) -> int:
         "gateway.protocol": f"'{args.protocol}'",  # a text, not a number
         "viewer.host": args.viewer_host,
         "viewer.port": args.viewer_port,
+        "allow_modules": str(args.allow_modules).lower(),
         "viewer.control": str(args.viewer_control).lower(),
     }
     if args.scenes:
         values["scene_paths"] = "[" + ", ".join(f"'{path}'" for path in args.scenes) + "]"
     given = [word for name, value in values.items() for word in ("-p", f"{name}:={value}")]
     command = [sys.executable, "-m", "sailenv_ros.nodes.sim_node", "--ros-args", *given]
+    stay_local()
     sys.stdout.flush()
     os.execv(sys.executable, command)
 
@@ -100,14 +109,19 @@ def _run_alone(args: argparse.Namespace) -> int:
     # A shell starts what it puts into the background with SIGINT ignored; who sends it means it.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
-    with Simulation(args.scene, seed=args.seed, scene_paths=args.scenes) as simulation:
+    with Simulation(
+        args.scene,
+        seed=args.seed,
+        scene_paths=args.scenes,
+        allow_modules=args.allow_modules,
+    ) as simulation:
         server = GatewayServer(
             simulation, host=args.host, port=args.port, protocol=args.protocol
         )  # fmt: skip
         with server, _viewer(simulation, args) as viewer:
             print(f"scene {simulation.info.scene!r}; renderer: {simulation.info.renderer}")
             print(
-                f"listening on {server.host}:{server.port} for clients of the original SAILenv "
+                f"listening on {server.host}:{server.port} for SAILenv clients "
                 f"(protocol {args.protocol}); Ctrl-C ends it",
                 flush=True,
             )
@@ -122,7 +136,7 @@ def _run_alone(args: argparse.Namespace) -> int:
 
 @contextlib.contextmanager
 def _viewer(simulation: Simulation, args: argparse.Namespace) -> Iterator[ViewerServer | None]:
-    """Serve the window while the block runs, unless its port is 0."""
+    """Serve the web viewer while the block runs, unless its port is 0."""
     if not args.viewer_port:
         yield None
         return
@@ -138,4 +152,4 @@ def _wait_for_the_end(simulation: Simulation) -> None:
             time.sleep(LOOK_S)
     except KeyboardInterrupt:
         return
-    raise SimulationClosed("of a fault, which the log shows")
+    raise SimulationClosed("of an error, which the log shows")

@@ -11,11 +11,11 @@ from typing import Any
 
 from sailenv_ros.behaviours import behaviour_kinds
 from sailenv_ros.cli import scene_bake, scene_render
+from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownName
-from sailenv_ros.resources import resource_path
-from sailenv_ros.scene.catalogue import SUFFIXES, SceneCatalogue
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.scene.reference import write_reference
+from sailenv_ros.scene.scene_catalogue import SUFFIXES, SceneCatalogue
 from sailenv_ros.scene.schema import (
     SCHEMA_FILE,
     is_stale,
@@ -25,7 +25,9 @@ from sailenv_ros.scene.schema import (
 )
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.world.rehearsal import obstructions, overlaps, shifts
+from sailenv_ros.system.files import write_file
+from sailenv_ros.system.resources import resource_path
+from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 
 __all__ = ["add_parser", "run"]
 
@@ -37,13 +39,14 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
-    check = actions.add_parser("check", help="report every fault of scene files, with its place")
+    check = actions.add_parser("check", help="report every error of scene files, with its place")
     check.add_argument("scenes", nargs="+", metavar="FILE", help="a YAML file, or a scene's name")
     check.add_argument(
         "--physics",
         action="store_true",
         help="build it too: what overlaps, what does not stay in place, what is in the mover's way",
     )
+    add_allow_modules(check)
     actions.add_parser("list", help="list the scenes that come with the package")
     scene_render.add_arguments(
         actions.add_parser("render", help="render a scene from a viewpoint into a picture file")
@@ -66,9 +69,9 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Do what was asked; 0 if all is well, 1 if there are faults."""
+    """Do what was asked; 0 if all is well, 1 if there are errors."""
     if args.action == "check":
-        return _check(args.scenes, physics=args.physics)
+        return _check(args.scenes, physics=args.physics, allow_modules=args.allow_modules)
     if args.action == "list":
         return _list()
     if args.action == "render":
@@ -84,8 +87,8 @@ def _new(file: Path) -> int:
     if file.suffix not in SUFFIXES:
         raise InvalidRequest("name of the scene file", file.name, f"one that ends in {SUFFIXES[0]}")
     try:
-        with file.open("x", encoding="utf-8") as new:
-            new.write(resource_path("config", "new_scene.yaml").read_text(encoding="utf-8"))
+        content = resource_path("config", "new_scene.yaml").read_bytes()
+        write_file(file, content, overwrite=False)
     except FileExistsError:
         raise InvalidRequest("scene file", str(file), "one that does not exist yet") from None
     except OSError as problem:
@@ -96,16 +99,17 @@ def _new(file: Path) -> int:
     return 0
 
 
-def _check(scenes: list[str], *, physics: bool) -> int:
-    library, status = SceneLibrary(), 0
+def _check(scenes: list[str], *, physics: bool, allow_modules: bool) -> int:
+    """Check files; code that they name runs only where they are built and that is allowed."""
+    library, status = SceneLibrary(allow_modules=allow_modules), 0
     for scene in scenes:
         try:
             counts = _counts(_load(library, scene))
-            faults = list(_physical_faults(library, scene)) if physics else []
-            for fault in faults:
-                print(f"{scene}: {fault}")
-            status = 1 if faults else status
-            if not faults:
+            diagnostics = list(_physics_diagnostics(library, scene)) if physics else []
+            for diagnostic in diagnostics:
+                print(f"{scene}: {diagnostic}")
+            status = 1 if diagnostics else status
+            if not diagnostics:
                 print(f"{scene}: ok ({counts})")
         except (SceneError, AssetError, UnknownName) as problem:
             print(problem)
@@ -113,7 +117,7 @@ def _check(scenes: list[str], *, physics: bool) -> int:
     return status
 
 
-def _physical_faults(library: SceneLibrary, scene: str) -> Iterator[str]:
+def _physics_diagnostics(library: SceneLibrary, scene: str) -> Iterator[str]:
     world = library.build(scene, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
     try:
         for overlap in overlaps(world):
@@ -148,7 +152,9 @@ def _counts(spec: SceneSpec) -> str:
         "mover": len(spec.all_movers),
         "agent": len(spec.agents),
     }
-    return ", ".join(f"{count} {noun}{'' if count == 1 else 's'}" for noun, count in counts.items())
+    counted = [f"{count} {noun}{'' if count == 1 else 's'}" for noun, count in counts.items()]
+    of_modules = {b.type for entry in spec.objects for b in entry.behaviours if ":" in b.type}
+    return ", ".join([*counted, *(f"names the code of {type_!r}" for type_ in sorted(of_modules))])
 
 
 def _list() -> int:
@@ -158,7 +164,7 @@ def _list() -> int:
         try:
             print(f"{name:<{width}}  {library.load(name).title}".rstrip())
         except (SceneError, AssetError):
-            print(f"{name:<{width}}  (has faults: see sailenv scene check {name})")
+            print(f"{name:<{width}}  (has errors: see sailenv scene check {name})")
             status = 1
     return status
 

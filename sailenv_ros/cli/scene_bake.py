@@ -12,11 +12,12 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from sailenv_ros.bake.bake import bake
-from sailenv_ros.bake.files import baked_file, is_baked, load_baked, remember, store_baked
 from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.light_files import baked_file, is_baked, load_baked, remember, store_baked
+from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.cli.arguments import add_allow_modules
+from sailenv_ros.errors import InvalidRequest, MissingPackage
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
 
@@ -28,6 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="names or files")
     parser.add_argument("--all", action="store_true", help="every scene with a room")
     parser.add_argument("--force", action="store_true", help="bake anew what is there already")
+    add_allow_modules(parser)
 
 
 def bake_scenes(args: argparse.Namespace) -> int:
@@ -38,7 +40,7 @@ def bake_scenes(args: argparse.Namespace) -> int:
     InvalidRequest
         If neither scenes nor `--all` are given.
     """
-    library = SceneLibrary()
+    library = SceneLibrary(allow_modules=args.allow_modules)
     scenes = [*args.scenes, *(_rooms(library) if args.all else ())]
     if not scenes:
         raise InvalidRequest("what to bake", "nothing", "names or files of scenes, or --all")
@@ -47,13 +49,19 @@ def bake_scenes(args: argparse.Namespace) -> int:
     return 0
 
 
-def bake_before_running(scene: str, scene_paths: list[Path]) -> None:
-    """Bake a scene that is about to be shown; quick where nothing is to be done."""
-    library = SceneLibrary(scene_paths)
+def bake_before_running(scene: str, scene_paths: list[Path], *, allow_modules: bool) -> None:
+    """Bake a scene that is about to be shown; quick where nothing is to be done.
+
+    Where the packages that bake are not installed it says so, and the scene is lit without.
+    """
+    library = SceneLibrary(scene_paths, allow_modules=allow_modules)
     if is_baked(library.stamp(scene)):
         return
     if library.load(scene).room is not None:
-        _bake_one(library, scene, force=False)
+        try:
+            _bake_one(library, scene, force=False)
+        except MissingPackage as missing:
+            print(f"{scene}: its light is computed frame by frame: {missing}", flush=True)
 
 
 def _rooms(library: SceneLibrary) -> list[str]:
@@ -87,9 +95,9 @@ def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
     with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
         task = bar.add_task(f"light of {scene}", total=1.0)
 
-        def told(stage: str, share: float) -> None:
+        def report_stage(stage: str, share: float) -> None:
             bar.update(task, description=f"light of {scene}: {stage}", completed=share)
 
-        baked = bake(snapshot, report=told)
+        baked = bake(snapshot, report=report_stage)
         bar.update(task, description=f"light of {scene}", completed=1.0)
     return baked

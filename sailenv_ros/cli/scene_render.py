@@ -10,13 +10,14 @@ import numpy as np
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet, save_picture
-from sailenv_ros.scene.catalogue import SUFFIXES
+from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.simulation import Simulation
 
 __all__ = ["add_arguments", "render_scene"]
@@ -47,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plain", action="store_true", help="a single view's pixels alone, no label and no border"
     )
+    add_allow_modules(parser)
 
 
 def render_scene(args: argparse.Namespace) -> int:
@@ -61,7 +63,7 @@ def render_scene(args: argparse.Namespace) -> int:
         raise InvalidRequest("number of pictures", count, "one view of one time with --plain")
     scene = Path(args.scene) if Path(args.scene).suffix in SUFFIXES else args.scene
     pictures: dict[str, Any] = {}
-    with Simulation(scene=scene, mode="lockstep") as simulation:
+    with Simulation(scene=scene, mode="lockstep", allow_modules=args.allow_modules) as simulation:
         simulation.register_agent(_eye(args))
         table = simulation.info.categories
         for time_s in sorted(args.time):
@@ -90,14 +92,14 @@ def _eye(args: argparse.Namespace) -> AgentSpec:
 
 
 def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
-    """Give the frame of a time; it has a past, so that flow shows what moves."""
+    """Return the frame of a time; it has a past, so that flow shows what moves."""
     step = max(FLOW_STEPS, round(time_s * STEPS_PER_S))
     now = simulation.sim_time_ns * STEPS_PER_S // 10**9
     if step - FLOW_STEPS > now:
         simulation.step(step - FLOW_STEPS - now)
-    simulation.capture("eye", views)
+    simulation.capture(views, agent="eye")
     simulation.step(FLOW_STEPS)
-    return simulation.capture("eye", views)
+    return simulation.capture(views, agent="eye")
 
 
 def _pictures(frame: Frame, table: CategoryTable) -> dict[str, np.ndarray[Any, Any]]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.coco import COCO_NAMES, index_of_category_id
+from sailenv_ros.experiments.coco_classes import COCO_NAMES, index_of_category_id
 from sailenv_ros.experiments.detections import Detections, kept_boxes
 
 __all__ = ["DECODERS", "LEAST_SCORE", "Outputs", "class_indices", "recognised"]
@@ -92,14 +92,14 @@ def _nanodet(outputs: Outputs, size: Size) -> Detections:
 
 
 def _bins_of(width: int) -> int:
-    """Give the bins of one distance in a row that begins with class scores; 0 if it does not."""
+    """Return the bins of one distance in a row that begins with class scores; 0 if it does not."""
     rest = width - CLASSES
     # A YOLO's row is shorter, or has 32 coefficients of a mask behind its box.
     return rest // 4 if rest >= 32 and rest % 4 == 0 and width not in YOLO_WIDTHS else 0
 
 
 def _cells(count: int, size: Size, middle: float) -> tuple[Array, Array]:
-    """Give centres (N, 2) and strides (N,) of the cells of as many strides as make `count`."""
+    """Return centres (N, 2) and strides (N,) of the cells of as many strides as make `count`."""
     centres: list[Array] = []
     strides: list[Array] = []
     for stride in NANODET_STRIDES:
@@ -223,7 +223,7 @@ def _maskrcnn(outputs: Outputs, size: Size) -> Detections:
 
 
 def _pasted(mask: Array, box: Array, size: Size) -> NDArray[np.bool_]:
-    """Give a mask of the input's size, of one that has it or of one of the box alone."""
+    """Return a mask of the input's size, of one that has it or of one of the box alone."""
     if mask.shape == (size[1], size[0]):
         return np.asarray(mask >= 0.5)
     left, top = (int(np.floor(value)) for value in box[:2])
@@ -266,7 +266,7 @@ def _suppressed(boxes: Array, score: Array) -> Detections:
 
 
 def _probabilities(values: Array) -> Array:
-    """Give values from 0 to 1: as they are if they are such, else through the logistic curve."""
+    """Return values from 0 to 1: as they are if they are such, else through the logistic curve."""
     values = values.astype(np.float64)
     if values.size and (values.min() < 0.0 or values.max() > 1.0):
         return np.asarray(1.0 / (1.0 + np.exp(-values)))

@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.experiments.coco import COCO_NAMES
+from sailenv_ros.experiments.coco_classes import COCO_NAMES
 from sailenv_ros.experiments.detections import Detections, box_iou, mask_iou
 from sailenv_ros.experiments.statistics import mean_and_deviation
-from sailenv_ros.experiments.views import View
+from sailenv_ros.experiments.viewpoints import Viewpoint
 
 __all__ = ["HIT_IOU", "Scored", "class_scores", "overall_scores", "scored", "with_boxes"]
 
@@ -26,7 +26,7 @@ FOUND = (255, 90, 80)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scored:
-    """What a detector made of one view.
+    """What a detector made of one viewpoint.
 
     Attributes
     ----------
@@ -51,19 +51,19 @@ class Scored:
         return self.box_iou >= HIT_IOU
 
 
-def scored(view: View, found: Detections, least_score: float) -> Scored:
+def scored(viewpoint: Viewpoint, found: Detections, least_score: float) -> Scored:
     """Compare what was found with what is there."""
-    index = COCO_NAMES.index(view.category)
+    index = COCO_NAMES.index(viewpoint.category)
     named = found.of_class(index, least_score)
     pixel_iou = None
     if named.masks is not None:
-        seen = np.zeros(view.target.shape, np.bool_)
+        seen = np.zeros(viewpoint.target.shape, np.bool_)
         for mask in named.masks:
             seen |= mask
-        pixel_iou = mask_iou(seen, view.of_category)
+        pixel_iou = mask_iou(seen, viewpoint.of_category)
     if not len(named):
         return Scored(best_score=0.0, box_iou=0.0, pixel_iou=pixel_iou, box=None)
-    overlaps = box_iou(named.boxes, view.box)
+    overlaps = box_iou(named.boxes, viewpoint.box)
     best = int(overlaps.argmax())
     left, top, right, bottom = (float(value) for value in named.boxes[best])
     return Scored(
@@ -90,7 +90,7 @@ def class_scores(name: str, scores: Sequence[Scored], instances: int) -> dict[st
 
 
 def overall_scores(classes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Give means over the classes, each class counting once; those without views do not."""
+    """Return means over the classes, each class counting once; those without views do not."""
     seen = [entry for entry in classes if entry["views"]]
     return {
         "views": sum(entry["views"] for entry in classes),
@@ -100,10 +100,10 @@ def overall_scores(classes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def with_boxes(view: View, score: Scored) -> NDArray[np.uint8]:
-    """Give the picture with the object's box (green) and the class's best one (red)."""
-    picture = view.picture.copy()
-    for box, colour in ((view.box, TRUTH), (score.box, FOUND)):
+def with_boxes(viewpoint: Viewpoint, score: Scored) -> NDArray[np.uint8]:
+    """Return the picture with the object's box (green) and the class's best one (red)."""
+    picture = viewpoint.picture.copy()
+    for box, colour in ((viewpoint.box, TRUTH), (score.box, FOUND)):
         if box is not None:
             left, top, right, bottom = (round(float(value)) for value in box)
             cv2.rectangle(picture, (left, top), (right - 1, bottom - 1), colour, 2)

@@ -14,7 +14,7 @@ Data = Mapping[str, Any]
 
 
 def detection_tables(data: Data) -> list[Table]:
-    """Give the table of `sailenv eval detection`."""
+    """Return the table of `sailenv eval detection`."""
     masks = data["masks"]
     columns: tuple[str, ...] = ("class", "views", "hit rate", "box IoU", "paper's box IoU")
     if masks:

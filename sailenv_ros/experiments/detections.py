@@ -41,7 +41,7 @@ class Detections:
         return len(self.scores)
 
     def of_class(self, index: int, least_score: float) -> Detections:
-        """Give those of one class with at least a score."""
+        """Return those of one class with at least a score."""
         chosen = np.flatnonzero((self.classes == index) & (self.scores >= least_score))
         masks = None if self.masks is None else tuple(self.masks[n] for n in chosen)
         return Detections(
@@ -53,7 +53,7 @@ class Detections:
 
 
 def box_iou(boxes: Array, box: Array) -> Array:
-    """Give (N,) area of the intersection over that of the union of boxes (N, 4) with one (4,)."""
+    """Return (N,) area of the intersection over that of the union of boxes (N, 4) with one (4,)."""
     low = np.maximum(boxes[:, :2], box[:2])
     high = np.minimum(boxes[:, 2:], box[2:])
     common = np.prod(np.maximum(0.0, high - low), axis=1)
@@ -64,14 +64,14 @@ def box_iou(boxes: Array, box: Array) -> Array:
 
 
 def mask_iou(first: NDArray[np.bool_], second: NDArray[np.bool_]) -> float:
-    """Give pixels in both over pixels in either; 0 if there are none."""
+    """Return pixels in both over pixels in either; 0 if there are none."""
     return float((first & second).sum() / max(1, (first | second).sum()))
 
 
 def kept_boxes(
     boxes: Array, scores: Array, classes: NDArray[np.int64], *, least_score: float, overlap: float
 ) -> NDArray[np.int64]:
-    """Give the rows that non-maximum suppression keeps, class by class, best first."""
+    """Return the rows that non-maximum suppression keeps, class by class, best first."""
     corners = np.asarray(boxes, np.float32)
     sizes = np.concatenate([corners[:, :2], corners[:, 2:] - corners[:, :2]], axis=1)
     if not len(sizes):

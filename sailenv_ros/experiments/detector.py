@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.experiments.decoders import DECODERS, class_indices, recognised
 from sailenv_ros.experiments.detections import Detections
-from sailenv_ros.experiments.extras import need
+from sailenv_ros.extras import need
 
 __all__ = ["INPUTS", "Detector", "Fitted", "InputStyle", "fitted"]
 
@@ -195,7 +195,7 @@ class Detector:
 
 
 def _declared_size(shape: Sequence[Any]) -> Size | None:
-    """Give (width, height) of an input (…, 3, H, W) that has one."""
+    """Return (width, height) of an input (…, 3, H, W) that has one."""
     if len(shape) not in (3, 4) or shape[-3] != 3:
         raise InvalidRequest("input of the detector", list(shape), "(1, 3, H, W) or (3, H, W)")
     down, across = shape[-2:]

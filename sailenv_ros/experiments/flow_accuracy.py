@@ -31,7 +31,7 @@ from sailenv_ros.geometry import look_at
 from sailenv_ros.pictures.colours import colour_flow
 from sailenv_ros.simulation.simulation import Simulation
 
-__all__ = ["OURS", "Accuracy", "Judged", "judge_scenario", "laboratory"]
+__all__ = ["OURS", "Accuracy", "FlowErrors", "evaluate_scenario", "flow_test_scene"]
 
 OURS = "sailenv"
 STEPS = 8
@@ -46,7 +46,7 @@ MOVES_PX = 0.05
 
 
 @dataclass(slots=True)
-class Judged:
+class FlowErrors:
     """Errors of one method, gathered over picture pairs."""
 
     errors_px: list[NDArray[np.float32]] = field(default_factory=list)
@@ -58,7 +58,7 @@ class Judged:
         self.moving_px.append(error[moves].astype(np.float32))
 
     def summary(self) -> dict[str, float]:
-        """Give mean, 95th percentile and maximum [px per frame], and the mean of what moves."""
+        """Return mean, 95th percentile and maximum [px per frame], and the mean of what moves."""
         errors = np.concatenate(self.errors_px).astype(np.float64)
         moving = np.concatenate(self.moving_px).astype(np.float64)
         return {
@@ -76,7 +76,7 @@ class Accuracy:
     Attributes
     ----------
     errors : dict of str to dict
-        By method, `OURS` first: what `Judged.summary` gives.
+        By method, `OURS` first: what `FlowErrors.summary` gives.
     compared : float
         Share of the pictures' pixels that were compared, 0 to 1: those where arithmetic and
         renderer see the same object and its point was before the earlier camera.
@@ -93,7 +93,7 @@ class Accuracy:
 
 
 @contextmanager
-def laboratory(width: int, height: int, *, seed: int = 0) -> Iterator[Simulation]:
+def flow_test_scene(width: int, height: int, *, seed: int = 0) -> Iterator[Simulation]:
     """Open a lockstep simulation with an empty scene, the textured cube and a camera.
 
     Ends with the block; nothing is left behind.
@@ -108,7 +108,7 @@ def laboratory(width: int, height: int, *, seed: int = 0) -> Iterator[Simulation
             yield simulation
 
 
-def judge_scenario(
+def evaluate_scenario(
     simulation: Simulation,
     scenario: Scenario,
     methods: Sequence[FlowMethod],
@@ -124,14 +124,14 @@ def judge_scenario(
     Parameters
     ----------
     simulation : Simulation
-        A `laboratory`.
+        A `flow_test_scene`.
     pairs : int
         At least 1.
     on_pair : callable
         Called after each.
     """
     boxes = _begin(simulation, scenario)
-    judged = {name: Judged() for name in (OURS, *(method.name for method in methods))}
+    evaluated = {name: FlowErrors() for name in (OURS, *(method.name for method in methods))}
     motion_px, compared = [], []
     frame, instant = _observed(simulation, boxes)
     flows: dict[str, NDArray[Any]] = {}
@@ -145,12 +145,12 @@ def judge_scenario(
         speed = np.linalg.norm(truth.displacement_px[sure], axis=-1)
         for name, flow in flows.items():
             error = np.linalg.norm(flow[sure] - truth.displacement_px[sure], axis=-1)
-            judged[name].add(error, speed > MOVES_PX)
+            evaluated[name].add(error, speed > MOVES_PX)
         motion_px.append(speed.mean())
         compared.append(sure.mean())
         on_pair()
     return Accuracy(
-        errors={name: entry.summary() for name, entry in judged.items()},
+        errors={name: entry.summary() for name, entry in evaluated.items()},
         compared=float(np.mean(compared)),
         mean_motion_px=float(np.mean(motion_px)),
         pictures=_pictures(frame, truth, flows, methods),
@@ -158,18 +158,18 @@ def judge_scenario(
 
 
 def _begin(simulation: Simulation, scenario: Scenario) -> list[BoxSolid]:
-    """Begin a scenario; give its boxes."""
+    """Begin a scenario; return its boxes."""
     objects = scenario.objects()
     ids = simulation.load_scenario({"objects": objects})
-    simulation.set_follow(EYE, scenario.camera_moves)
+    simulation.set_follow(scenario.camera_moves, agent=EYE)
     if not scenario.camera_moves:
-        simulation.set_pose(EYE, STANDING, teleport=True)
+        simulation.set_pose(STANDING, teleport=True, agent=EYE)
     simulation.step(SETTLE_STEPS)
     return [_solid(entry, number) for entry, number in zip(objects, ids, strict=True)]
 
 
 def _solid(entry: dict[str, Any], instance_id: int) -> BoxSolid:
-    """Give the box of a scene's entry: the built-in cube's origin lies in its middle."""
+    """Return the box of a scene's entry: the built-in cube's origin lies in its middle."""
     x, y, z = (0.5 * float(length) for length in entry["scale"])
     below, above = (0.0, 2 * z) if entry["asset"] == TEXTURED else (-z, z)
     return BoxSolid(
@@ -178,19 +178,19 @@ def _solid(entry: dict[str, Any], instance_id: int) -> BoxSolid:
 
 
 def _observed(simulation: Simulation, boxes: Sequence[BoxSolid]) -> tuple[Frame, Instant]:
-    frame = simulation.capture(EYE, ("rgb", "instance", "flow", "flow_valid"))
+    frame = simulation.capture(("rgb", "instance", "flow", "flow_valid"), agent=EYE)
     poses = [simulation.get_object(box.instance_id).pose for box in boxes]
     return frame, Instant(camera=frame.camera, poses=poses)
 
 
 def _comparable(truth: MotionField, frame: Frame) -> NDArray[np.bool_]:
-    """Give (H, W) where both see the same object and its point was before the earlier camera."""
+    """Return (H, W) where both see the same object and its point was before the earlier camera."""
     sure: NDArray[np.bool_] = (frame["instance"] == truth.instance) & frame["flow_valid"]
     return sure & np.isfinite(truth.displacement_px).all(axis=-1)
 
 
 def _estimates(frame: Frame, past: Frame, methods: Sequence[FlowMethod]) -> dict[str, NDArray[Any]]:
-    """Give each method's displacement (H, W, 2) from the earlier picture to this [px]."""
+    """Return each method's displacement (H, W, 2) from the earlier picture to this [px]."""
     flows: dict[str, NDArray[Any]] = {OURS: frame["flow"].astype(np.float64) * frame.dt_s}
     now, then = (np.ascontiguousarray(entry["rgb"][..., ::-1]) for entry in (frame, past))
     for method in methods:

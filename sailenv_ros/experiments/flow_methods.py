@@ -43,7 +43,7 @@ class FlowMethod:
 
 
 def opencv_methods() -> tuple[FlowMethod, ...]:
-    """Give Farneback's method and the dense inverse search at its three presets.
+    """Return Farneback's method and the dense inverse search at its three presets.
 
     Farneback's parameters are those of OpenCV's own example; turning pictures grey is part of every
     method's time.

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.extras import need
 from sailenv_ros.experiments.flow_methods import Flow, FlowMethod, Picture
+from sailenv_ros.extras import need
 
 __all__ = ["flow_network", "network_input"]
 
@@ -76,7 +76,7 @@ def _whole(length_px: int) -> int:
 
 
 def _onnx(path: Path) -> tuple[Callable[[Any, Any], Any], tuple[int, int] | None]:
-    """Give what runs a network, and the size (W, H) it was made for, if any."""
+    """Return what runs a network, and the size (W, H) it was made for, if any."""
     runtime = need("onnxruntime", "a flow network")
     try:
         session = runtime.InferenceSession(str(path), providers=runtime.get_available_providers())

@@ -1,4 +1,4 @@
-"""The scenes in which flow is judged: boxes in a closed box, so that arithmetic knows every pixel.
+"""Scenes in which flow is evaluated: boxes in a closed box, so that arithmetic knows every pixel.
 
 Names of scenarios in, objects as in a scene file out, and the one textured model they need.
 """
@@ -89,7 +89,7 @@ class Scenario:
     behaviours: tuple[Mapping[str, Any], ...] = ()
 
     def objects(self) -> list[dict[str, Any]]:
-        """Give the objects as a scene file has them."""
+        """Return the objects as a scene file has them."""
         entries = [
             {**self._box(name, place, scale, colour), "static": True}
             for name, (place, scale, colour) in WALLS.items()
@@ -144,7 +144,7 @@ def texture(size_px: int = 512, seed: int = 7) -> NDArray[np.uint8]:
 
 
 def textured_cube_zip() -> bytes:
-    """Give a zip of a Wavefront cube with its texture, as `Simulation.upload_model` takes it."""
+    """Return a zip of a Wavefront cube with its texture, as `Simulation.upload_model` takes it."""
     _, png = cv2.imencode(".png", texture())
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:

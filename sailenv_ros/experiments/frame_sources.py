@@ -31,7 +31,7 @@ class FrameSource(Protocol):
         """Advance physics by steps of 1/240 s."""
 
     def get_frame(self, flow: bool) -> dict[str, Any]:
-        """Give ``main`` (H, W, 3) uint8 BGR, and ``flow`` [px/s] if it is wanted."""
+        """Return ``main`` (H, W, 3) uint8 BGR, and ``flow`` [px/s] if it is wanted."""
 
 
 class _AgentSource:
@@ -82,9 +82,9 @@ class _InProcessSource:
 
     def get_frame(self, flow: bool) -> dict[str, Any]:
         if not flow:
-            frame = self._simulation.capture("without_flow")
+            frame = self._simulation.capture(agent="without_flow")
             return {"main": np.ascontiguousarray(frame["rgb"][..., ::-1])}
-        frame = self._simulation.capture("with_flow")
+        frame = self._simulation.capture(agent="with_flow")
         main = np.ascontiguousarray(frame["rgb"][..., ::-1])
         return {"main": main, "flow": frame["flow"]}
 

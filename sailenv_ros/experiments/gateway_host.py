@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 
 from sailenv_ros.gateway import GatewayServer
-from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.simulation.simulation import Simulation
+from sailenv_ros.system.memory import keep_freed_memory
 
 __all__ = ["main"]
 

@@ -34,7 +34,7 @@ def provenance(command: Sequence[str]) -> dict[str, Any]:
 
     Returns
     -------
-    told : dict
+    origin : dict
         ``machine``, ``cpu``, ``cpus`` (that this process may use), ``memory_gib``, ``system``,
         ``python``, ``versions`` by package, ``commit`` (empty outside a checkout; ``+`` at its end
         if files differ from it), ``command``, ``began`` (UTC, ISO 8601), ``load`` (of the last 1, 5
@@ -56,7 +56,7 @@ def provenance(command: Sequence[str]) -> dict[str, Any]:
 
 
 def cpu_name(cpuinfo: Path = Path("/proc/cpuinfo")) -> str:
-    """Give the processor's name as the system tells it."""
+    """Return the processor's name as the system tells it."""
     try:
         lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:

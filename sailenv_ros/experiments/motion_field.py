@@ -100,7 +100,7 @@ def motion_field(boxes: Sequence[BoxSolid], now: Instant, then: Instant) -> Moti
 
 
 def _depth(box: BoxSolid, pose: Pose, camera: Camera, rays: Array) -> Array:
-    """Give (H, W) the depth at which rays enter a box from outside; inf where they do not."""
+    """Return (H, W) the depth at which rays enter a box from outside; inf where they do not."""
     matrix = pose.matrix()
     box_from_camera = matrix[:3, :3].T @ camera.world_from_camera[:3, :3]
     eye = matrix[:3, :3].T @ (camera.world_from_camera[:3, 3] - matrix[:3, 3])

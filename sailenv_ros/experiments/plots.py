@@ -13,8 +13,9 @@ from typing import Any
 
 from PIL import Image
 
-from sailenv_ros.experiments.extras import need
 from sailenv_ros.experiments.paper import DETECTION, FLOW_MS
+from sailenv_ros.extras import need
+from sailenv_ros.system.files import storage_errors, write_file
 
 __all__ = ["THEMES", "plot_names", "plot_png", "save_plots"]
 
@@ -31,7 +32,7 @@ COLOURS = ("#3b82c4", "#e0a030", "#3aa675", "#9a6dd7", "#c46a3b", "#5aa9c9", "#b
 
 
 def plot_names(experiment: str) -> tuple[str, ...]:
-    """Give the names of an experiment's plots."""
+    """Return the names of an experiment's plots."""
     return tuple(_PLOTS[experiment])
 
 
@@ -52,12 +53,13 @@ def plot_png(result: Data, name: str, theme: str = "light") -> bytes:
 
 
 def save_plots(result: Data, folder: Path) -> list[Path]:
-    """Write every plot of a result, light and dark (``…_dark.png``); give the paths."""
+    """Write every plot of a result, light and dark (``…_dark.png``); return the paths."""
     paths = []
     for name in plot_names(result["experiment"]):
         for theme in THEMES:
             path = folder / f"{name}{'' if theme == 'light' else '_' + theme}.png"
-            path.write_bytes(plot_png(result, name, theme))
+            with storage_errors("the plot", path):
+                write_file(path, plot_png(result, name, theme))
             paths.append(path)
     return paths
 
@@ -70,7 +72,7 @@ class _Canvas:
         self._figure: Any = None
 
     def axes(self, title: str, *, width: float = 8.65, height: float = 4.2) -> Any:
-        """Begin a figure of inches; give its axes."""
+        """Begin a figure of inches; return its axes."""
         figure_module = need("matplotlib.figure", "a plot")
         theme = self.theme
         self._figure = figure_module.Figure(
@@ -99,7 +101,7 @@ class _Canvas:
         axes.legend(frameon=False, fontsize=8.5, labelcolor=self.theme["ink"], **kwargs)
 
     def png(self) -> bytes:
-        """Give the figure as a file, of so few colours that it is small."""
+        """Return the figure as a file, of so few colours that it is small."""
         drawn = io.BytesIO()
         self._figure.savefig(drawn, format="png", dpi=120, facecolor=self.theme["paper"])
         file = io.BytesIO()
@@ -243,20 +245,20 @@ def _transports(canvas: _Canvas, data: Data) -> None:
     canvas.legend(axes)
 
 
-def _peers(canvas: _Canvas, data: Data) -> None:
-    peers = [entry for entry in data["peers"] if entry.get("frame")]
+def _baselines(canvas: _Canvas, data: Data) -> None:
+    baselines = [entry for entry in data["peers"] if entry.get("frame")]
     axes = canvas.axes(
         "The same geometry by other renderers, as multiples of our time",
-        height=1.2 + 0.38 * len(peers),
+        height=1.2 + 0.38 * len(baselines),
     )
-    ratios = [entry["ratio"] for entry in peers]
-    colours = [ACCENT if entry["ours"] else canvas.theme["quiet"] for entry in peers]
-    axes.barh(range(len(peers)), ratios, color=colours, height=0.62)
+    ratios = [entry["ratio"] for entry in baselines]
+    colours = [ACCENT if entry["ours"] else canvas.theme["quiet"] for entry in baselines]
+    axes.barh(range(len(baselines)), ratios, color=colours, height=0.62)
     for place, ratio in enumerate(ratios):
         axes.text(
             ratio, place, f" {ratio:.2f}", va="center", fontsize=8.5, color=canvas.theme["ink"]
         )
-    axes.set_yticks(range(len(peers)), [f"{e['label']}, {e['size']}" for e in peers])
+    axes.set_yticks(range(len(baselines)), [f"{e['label']}, {e['size']}" for e in baselines])
     axes.invert_yaxis()
     axes.grid(False, axis="y")
     canvas.label(axes, x="median time ÷ that of sailenv_ros, picture + depth + instance")
@@ -267,6 +269,6 @@ _PLOTS: Mapping[str, Mapping[str, Callable[[_Canvas, Data], None]]] = MappingPro
         "flow_speed": {"flow_speed": _flow_speed},
         "flow_accuracy": {"flow_accuracy": _flow_accuracy},
         "detection": {"detection": _detection},
-        "throughput": {"throughput": _transports, "renderers": _peers},
+        "throughput": {"throughput": _transports, "renderers": _baselines},
     }
 )

@@ -23,5 +23,5 @@ _TABLES: Mapping[str, Callable[[Mapping[str, Any]], list[Table]]] = MappingProxy
 
 
 def tables_of(result: Mapping[str, Any]) -> list[Table]:
-    """Give the tables of a result as `results.load_result` reads it."""
+    """Return the tables of a result as `results.load_result` reads it."""
     return _TABLES[result["experiment"]](result["data"])

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.system.files import make_folder, storage_errors, write_file
 
 __all__ = ["EXPERIMENTS", "load_result", "save_result"]
 
@@ -29,8 +30,12 @@ def save_result(
     Returns
     -------
     path : Path
+
+    Raises
+    ------
+    StorageError
+        If it cannot be written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{experiment}.json"
     result = {
         "version": VERSION,
@@ -39,10 +44,9 @@ def save_result(
         "data": data,
     }
     text = json.dumps(_plain(result), indent=1, ensure_ascii=False, allow_nan=False)
-    # A reader never finds half a file, and Ctrl-C leaves the old one.
-    part = path.with_suffix(".json.part")
-    part.write_text(text + "\n", encoding="utf-8")
-    part.replace(path)
+    with storage_errors("the result", path):
+        make_folder(folder)
+        write_file(path, (text + "\n").encode())
     return path
 
 

@@ -44,7 +44,7 @@ def summary_ms(times_s: Iterable[float]) -> Summary:
 
 
 def mean_and_deviation(values: Iterable[float]) -> tuple[float, float]:
-    """Give mean and standard deviation (of the sample itself, n in the denominator); nan if none.
+    """Return mean and standard deviation (of the sample itself, n in the denominator); nan if none.
 
     The paper's tables have mean ± deviation over the views.
     """

@@ -52,7 +52,7 @@ def number(value: float | None, digits: int = 1, *, missing: str = "–") -> str
 
 
 def speed_tables(data: Data) -> list[Table]:
-    """Give the table of `sailenv bench flow-speed`."""
+    """Return the table of `sailenv bench flow-speed`."""
     sizes = data["sizes"]
     columns = ("[ms]", *(f"{entry['width']}×{entry['height']}" for entry in sizes))
     rows = []
@@ -84,7 +84,7 @@ def _mean(summary: Mapping[str, Any]) -> str:
 
 
 def accuracy_tables(data: Data) -> list[Table]:
-    """Give the tables of `sailenv bench flow-accuracy`."""
+    """Return the tables of `sailenv bench flow-accuracy`."""
     methods: Sequence[Data] = data["methods"]
     columns = ("scenario", "motion", *(method["label"] for method in methods))
     rows = tuple(

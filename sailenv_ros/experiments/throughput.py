@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.experiments.peers import PEERS
+from sailenv_ros.experiments.baselines import BASELINES
 from sailenv_ros.experiments.statistics import summary_ms
 from sailenv_ros.experiments.worker import Worker
 from sailenv_ros.experiments.workloads import TRANSPORTS, Setting
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS
 
-__all__ = ["Group", "Plan", "VIEW_SETS", "measure_group", "peer_rows", "plan_of"]
+__all__ = ["Group", "Plan", "VIEW_SETS", "measure_group", "baseline_rows", "plan_of"]
 
 ROUND = 5
 """Frames of each in a row before the next has its turn."""
@@ -57,7 +57,7 @@ class Plan:
 
     base: Setting
     cases: tuple[Group, ...]
-    peers: tuple[Group, ...]
+    baselines: tuple[Group, ...]
 
 
 def plan_of(
@@ -67,7 +67,7 @@ def plan_of(
     agents: Sequence[int],
     transports: Sequence[str],
     full: bool,
-    peer_sizes: Sequence[tuple[int, int]],
+    baseline_sizes: Sequence[tuple[int, int]],
 ) -> Plan:
     """Plan the measurement.
 
@@ -108,14 +108,16 @@ def plan_of(
         for vary, settings in (("views", views), ("agents", counts), ("scene", rooms)):
             if len(settings) > 1:
                 groups.append(Group(vary=vary, settings=settings))
-    peers = tuple(
+    baselines = tuple(
         Group(
             vary="renderer",
-            settings={name: replace(base, kind=name, width=width, height=height) for name in PEERS},
+            settings={
+                name: replace(base, kind=name, width=width, height=height) for name in BASELINES
+            },
         )
-        for width, height in peer_sizes
+        for width, height in baseline_sizes
     )
-    return Plan(base=base, cases=tuple(groups), peers=peers)
+    return Plan(base=base, cases=tuple(groups), baselines=baselines)
 
 
 def _agents(count: int) -> str:
@@ -152,7 +154,7 @@ def measure_group(
         ``memory_mib``, ``repeated`` (frames of which images were lost), ``renderer``.
     """
     rows = [_row(label, group.vary, setting) for label, setting in group.settings.items()]
-    told: list[list[dict[str, Any]]] = [[] for _ in rows]
+    collected: list[list[dict[str, Any]]] = [[] for _ in rows]
     with ExitStack() as stack:
         started = [stack.enter_context(Worker(setting)) for setting in group.settings.values()]
         workers: list[Worker | None] = []
@@ -176,16 +178,16 @@ def measure_group(
                     rows[place].update(answer)
                     workers[place] = None
                 else:
-                    told[place].append(answer)
+                    collected[place].append(answer)
             done += count
             on_round(count)
-    for row, answers in zip(rows, told, strict=True):
+    for row, answers in zip(rows, collected, strict=True):
         if answers and "problem" not in row:
             row.update(_figures(answers, row["agents"]))
     return rows
 
 
-def peer_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def baseline_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Turn a group of renderers into the report's rows, with ratios to ours."""
     ours = next((row for row in rows if row["label"] == "sailenv_ros"), {})
     base = ours["frame"]["median"] if ours.get("frame") else None
@@ -194,7 +196,7 @@ def peer_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
             "label": row["label"],
             "size": f"{row['width']}×{row['height']}",
             "ours": row["label"].startswith("sailenv_ros"),
-            "draws": PEERS[row["label"]][0],
+            "draws": BASELINES[row["label"]][0],
             "frame": row.get("frame"),
             "ratio": row["frame"]["median"] / base if row.get("frame") and base else None,
             "problem": row.get("problem"),

@@ -18,7 +18,7 @@ CASE_COLUMNS = (
 
 
 def throughput_tables(data: Data) -> list[Table]:
-    """Give the tables of `sailenv bench throughput`: cases, stages, other renderers."""
+    """Return the tables of `sailenv bench throughput`: cases, stages, other renderers."""
     base = data["base"]
     cases = tuple(_case(row) for row in data["cases"])
     notes = (
@@ -41,7 +41,7 @@ def throughput_tables(data: Data) -> list[Table]:
         title = "Stages of rendering in the base case"
         tables.append(Table(title=title, columns=("stage", "median [ms]"), rows=rows))
     if data["peers"]:
-        tables.append(_peers(data))
+        tables.append(_baselines(data))
     return tables
 
 
@@ -63,7 +63,7 @@ def _case(row: Data) -> tuple[str, ...]:
     )
 
 
-def _peers(data: Data) -> Table:
+def _baselines(data: Data) -> Table:
     rows = tuple(
         (
             entry["label"],

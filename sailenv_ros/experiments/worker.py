@@ -48,7 +48,7 @@ class Worker:
         self._rest = b""
 
     def ready(self) -> dict[str, Any]:
-        """Wait until it is; give ``renderer``, or ``problem`` if it cannot be."""
+        """Wait until it is; return ``renderer``, or ``problem`` if it cannot be."""
         return self._answer(START_S)
 
     def take(self, frames: int) -> dict[str, Any]:
@@ -105,9 +105,9 @@ def main(words: Sequence[str] | None = None) -> None:
     # What libraries print shall not be taken for an answer.
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    told = json.loads(text)
+    fields = json.loads(text)
     try:
-        workload = make_workload(Setting(**{**told, "views": tuple(told["views"])}))
+        workload = make_workload(Setting(**{**fields, "views": tuple(fields["views"])}))
     except (SailenvError, ImportError) as problem:
         answers.write(json.dumps({"problem": str(problem)}) + "\n")
         return
@@ -126,7 +126,7 @@ def _measured(workload: Workload, frames: int) -> dict[str, Any]:
 
     Returns
     -------
-    told : dict
+    fields : dict
         ``physics`` and ``frame``: wall times of each round, of the latter of all cameras together
         [s]; ``stages``: a dict for each frame whose stages are known [s]; ``cpu_s``: processor time
         of simulator and client in all; ``memory_mib``: what they have in memory now; ``repeated``:
@@ -153,7 +153,7 @@ def _measured(workload: Workload, frames: int) -> dict[str, Any]:
 
 
 def _cpu_s(pid: int) -> float:
-    """Give the processor time that a process has used, all threads, user and system [s]."""
+    """Return the processor time that a process has used, all threads, user and system [s]."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -21,10 +21,10 @@ from typing import Any, Protocol
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import ProtocolError
-from sailenv_ros.experiments.extras import need
+from sailenv_ros.extras import need
 from sailenv_ros.frame import FIVE_VIEWS
-from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.simulation.simulation import Simulation
+from sailenv_ros.system.memory import keep_freed_memory
 
 __all__ = ["STEPS", "TRANSPORTS", "Setting", "Workload", "environment_of", "make_workload"]
 
@@ -39,7 +39,7 @@ class Setting:
     Attributes
     ----------
     kind : str
-        A name of `TRANSPORTS` or of `peers.PEERS`.
+        A name of `TRANSPORTS` or of `baselines.BASELINES`.
     scene : str
     width, height : int
         [px]
@@ -75,7 +75,7 @@ class Workload(Protocol):
         """Advance physics by `STEPS`."""
 
     def frames(self) -> list[dict[str, float]]:
-        """Make one frame of each camera; give the stages' times that are known [s]."""
+        """Make one frame of each camera; return the stages' times that are known [s]."""
 
     def close(self) -> None:
         """End everything that was started."""
@@ -102,7 +102,7 @@ class _InProcess(_NothingLost):
         self._simulation.step(STEPS)
 
     def frames(self) -> list[dict[str, float]]:
-        return [dict(self._simulation.capture(name).timings_s) for name in self._names]
+        return [dict(self._simulation.capture(agent=name).timings_s) for name in self._names]
 
     def close(self) -> None:
         self._simulation.close()
@@ -157,7 +157,7 @@ class _Dds:
 
 
 class _Gateway(_NothingLost):
-    """The original's client, and the simulator behind the gateway in another process."""
+    """The SAILenv client, and the simulator behind the gateway in another process."""
 
     def __init__(self, setting: Setting, *, use_gzip: bool) -> None:
         client = _original_client()
@@ -239,17 +239,17 @@ TRANSPORTS: Mapping[str, Callable[[Setting], Workload]] = MappingProxyType(
 
 
 def environment_of(kind: str) -> dict[str, str]:
-    """Give what a worker's environment has besides this process's own."""
+    """Return what a worker's environment has besides this process's own."""
     # Fast DDS as it comes: whoever sets this variable is left alone by our own choice of profile.
     return {"FASTDDS_BUILTIN_TRANSPORTS": "DEFAULT"} if kind == "DDS, default" else {}
 
 
 class _Peer(_NothingLost):
     def __init__(self, setting: Setting) -> None:
-        from sailenv_ros.experiments.peers import PEERS, PeerScene
+        from sailenv_ros.experiments.baselines import BASELINES, BaselineScene
 
-        self._scene = PeerScene(setting.scene, setting.width, setting.height)
-        self._picture = PEERS[setting.kind][1]()
+        self._scene = BaselineScene(setting.scene, setting.width, setting.height)
+        self._picture = BASELINES[setting.kind][1]()
         self.renderer = ""
         self.pids: tuple[int, ...] = ()
 

@@ -12,9 +12,9 @@ from collections.abc import Generator, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from sailenv_ros.catalogue.uploads import MAX_UPLOAD_BYTES
 from sailenv_ros.errors import ProtocolError
-from sailenv_ros.gateway.commands import HELLO, CommandKind, Field, commands_of
-from sailenv_ros.simulation.uploads import MAX_UPLOAD_BYTES
+from sailenv_ros.gateway.protocol_commands import HELLO, CommandKind, Field, commands_of
 
 __all__ = [
     "MAX_DOCUMENT_LENGTH",
@@ -84,7 +84,7 @@ class MessageReader:
         self._buffer += data
 
     def take(self) -> Message | None:
-        """Give the next message if it is complete.
+        """Return the next message if it is complete.
 
         Raises
         ------
@@ -148,7 +148,7 @@ def _length(what: str, limit: int, unit: str) -> _Parsing:
 
 
 def _text(what: str, limit: int) -> _Parsing:
-    """Read a text whose length is told in characters, as the original client tells it."""
+    """Read a text whose length is told in characters, as the SAILenv client tells it."""
     length = yield from _length(what, limit, "characters")
     decoder = codecs.getincrementaldecoder("utf-8")()
     text = ""

@@ -1,4 +1,4 @@
-"""Answers about lights and surroundings; part of `Session`.
+"""Answers about lights and surroundings.
 
 Colours on the wire are red, green, blue from 0 to 255 (sRGB); ours are linear.
 """
@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from typing import Any
 
+from sailenv_ros.colour import linear_from_srgb8, srgb8_from_linear
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_floats, pack_ints, pack_string, pack_strings
 from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
 from sailenv_ros.gateway.unity import unity_from_vector, vector_from_unity
-from sailenv_ros.lights import Light, light_named
-from sailenv_ros.pictures.srgb import linear_from_srgb8, srgb8_from_linear
+from sailenv_ros.lights import Light
+from sailenv_ros.operations import Operations
 from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["LightAnswers"]
@@ -25,9 +26,16 @@ Vector3 = tuple[float, float, float]
 
 
 class LightAnswers:
-    """Answers about lights; the method's name is the command's."""
+    """Answers about lights; the method's name is the command's.
 
-    _info: Callable[[], SceneInfo]
+    Parameters
+    ----------
+    info : callable
+        Returns the scene as it was announced last.
+    """
+
+    def __init__(self, info: Callable[[], SceneInfo]) -> None:
+        self._info = info
 
     def get_lights(self) -> Answer:
         """Tell the lights' names."""
@@ -36,11 +44,11 @@ class LightAnswers:
 
     def get_light_type(self, light: str) -> Answer:
         """Tell a light's type."""
-        lights = yield Ask("lights")
         try:
-            return [pack_string(light_named(light, lights).type)]
+            found: Light = yield Ask(Operations.get_light, light)
         except SailenvError:
             return [pack_string(LIGHT_NOT_FOUND)]
+        return [pack_string(found.type)]
 
     def get_light_colour(self, light: str) -> Answer:
         """Tell a light's colour."""
@@ -100,8 +108,8 @@ class LightAnswers:
 
 def _read(name: str, pack: Callable[[Light], bytes]) -> Answer:
     try:
-        lights = yield Ask("lights")
-        return [pack_string("ok"), pack(light_named(name, lights))]
+        light: Light = yield Ask(Operations.get_light, name)
+        return [pack_string("ok"), pack(light)]
     except SailenvError as error:
         return [pack_string(one_line(error))]
 
@@ -111,18 +119,18 @@ def _written(name: str, changes: Callable[[], dict[str, Any]]) -> Answer:
 
 
 def _changed(name: str, changes: Callable[[], dict[str, Any]]) -> Generator[Step, Any, None]:
-    yield Ask("set_light", (name,), changes())
+    yield Ask(Operations.set_light, name, **changes())
 
 
 def _with_ambient(red: int, green: int, blue: int) -> Generator[Step, Any, None]:
-    yield Ask("set_ambient_light", (_linear(red, green, blue),))
+    yield Ask(Operations.set_ambient_light, _linear(red, green, blue))
 
 
 def _with_background(red: int, green: int, blue: int) -> Generator[Step, Any, None]:
     if min(red, green, blue) < 0:
-        yield Ask("set_background", ("sky",))
+        yield Ask(Operations.set_background, "sky")
     else:
-        yield Ask("set_background", ("colour", _linear(red, green, blue)))
+        yield Ask(Operations.set_background, "colour", _linear(red, green, blue))
 
 
 def _linear(red: int, green: int, blue: int) -> Vector3:

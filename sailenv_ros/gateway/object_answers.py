@@ -1,4 +1,4 @@
-"""Answers about objects and models; part of `Session`."""
+"""Answers about objects and models."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_string, pack_strings
-from sailenv_ros.gateway.scenario import (
+from sailenv_ros.gateway.scenario_json import (
     behaviours_of_dynamic,
     entries_of_scenario,
     mapping_of_json,
@@ -16,6 +16,7 @@ from sailenv_ros.gateway.scenario import (
 from sailenv_ros.gateway.scene_names import scene_of_wire
 from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
 from sailenv_ros.gateway.unity import pose_from_unity, scale_from_unity
+from sailenv_ros.operations import Operations
 from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["ObjectAnswers"]
@@ -26,18 +27,23 @@ Vector3 = tuple[float, float, float]
 
 
 class ObjectAnswers:
-    """Answers about objects; the method's name is the command's."""
+    """Answers about objects; the method's name is the command's.
 
-    _info: Callable[[], SceneInfo]
+    Parameters
+    ----------
+    info : callable
+        Returns the scene as it was announced last.
+    agent : callable
+        Returns the name of the session's agent.
+    """
 
-    @property
-    def agent(self) -> str:
-        """Name of this session's agent."""
-        raise NotImplementedError
+    def __init__(self, info: Callable[[], SceneInfo], agent: Callable[[], str]) -> None:
+        self._info = info
+        self._agent = agent
 
     def get_spawnables(self) -> Answer:
         """Tell the names of what can be spawned, as people write them: ``Chair 01``."""
-        names = yield Ask("spawnable_display_names")
+        names = yield Ask(Operations.spawnable_display_names)
         return [pack_strings(names)]
 
     def spawn_object(
@@ -60,15 +66,16 @@ class ObjectAnswers:
         """
         try:
             description = mapping_of_json("description of the dynamic", dynamic)
-            settings = {
-                "pose": pose_from_unity(position, rotation),
-                "scale": scale_from_unity("scale", scale),
-                "static": remove_dynamics and not has_dynamic,
-                "behaviours": behaviours_of_dynamic(
-                    dynamic_type, description, keep_in_view=self.agent if frustum_limited else ""
+            instance_id = yield Ask(
+                Operations.spawn_object,
+                name,
+                pose=pose_from_unity(position, rotation),
+                scale=scale_from_unity("scale", scale),
+                remove_dynamics=remove_dynamics and not has_dynamic,
+                behaviours=behaviours_of_dynamic(
+                    dynamic_type, description, keep_in_view=self._agent() if frustum_limited else ""
                 ),
-            }
-            instance_id = yield Ask("spawn_object", (name,), settings)
+            )
         except SailenvError as error:
             # The client knows no more than "not spawned"; the reason is for the terminal.
             _log.warning("%r was not spawned: %s", name, one_line(error))
@@ -101,11 +108,11 @@ class ObjectAnswers:
         count = len(objects) if isinstance(objects, list) else 0
         try:
             scene = scene_of_wire(str(wanted.get("scene_name")), self._info())
-            entries = entries_of_scenario(wanted, self.agent)
+            entries = entries_of_scenario(wanted, self._agent())
             described = {"scene": scene, "objects": entries}
             if wanted.get("timings") is not None:
                 described["timings"] = wanted["timings"]
-            ids = yield Ask("load_scenario", (described,))
+            ids = yield Ask(Operations.load_scenario, described)
         except SailenvError as error:
             _log.warning("a scenario was refused: %s", one_line(error))
             return [pack_string("")] * count
@@ -114,7 +121,7 @@ class ObjectAnswers:
     def send_obj_zip(self, filename: str, data: bytes) -> Answer:
         """Import a model; tell the name that spawns it, or what is wrong after ``error:``."""
         try:
-            name = yield Ask("upload_model", (data,), {"name": "", "filename": filename})
+            name = yield Ask(Operations.upload_model, data, filename)
         except SailenvError as error:
             _log.warning("the model %r was refused: %s", filename, one_line(error))
             return [pack_string(f"error: {one_line(error)}")]
@@ -124,8 +131,8 @@ class ObjectAnswers:
 def _moved_object(
     instance_id: int, position: Vector3, rotation: Vector3
 ) -> Generator[Step, Any, None]:
-    yield Ask("move_object", (instance_id, pose_from_unity(position, rotation)))
+    yield Ask(Operations.move_object, instance_id, pose=pose_from_unity(position, rotation))
 
 
 def _despawned(instance_id: int) -> Generator[Step, Any, None]:
-    yield Ask("despawn_object", (instance_id,))
+    yield Ask(Operations.despawn_object, instance_id)

@@ -1,4 +1,4 @@
-"""A frame's views as the original client takes them: pictures, bytes bottom up, or gzipped.
+"""A frame's views as the SAILenv client takes them: pictures, bytes bottom up, or gzipped.
 
 `Frame` in, bytes out. Pictures are uncompressed Netpbm files, which Pillow opens and which lose
 nothing; whoever is far away asks for gzip.
@@ -34,7 +34,7 @@ GZIP_LEVEL = 1
 
 
 def views_of_flags(flags: int) -> tuple[str, ...]:
-    """Give the views that a client asks for, in the order in which it reads them; maybe none.
+    """Return the views that a client asks for, in the order in which it reads them; maybe none.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Names of scenes as clients of the original know them, and ours; nothing else."""
+"""Names of scenes as clients of SAILenv know them, and ours; nothing else."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _SCENE_SUFFIX = "/scene"
 
 
 def wire_scenes(info: SceneInfo) -> list[str]:
-    """Give the scenes' names as clients know them: ``room_01/scene``."""
+    """Return the scenes' names as clients know them: ``room_01/scene``."""
     return [f"{name}{_SCENE_SUFFIX}" for name in info.scenes]
 
 
 def scene_of_wire(name: str, info: SceneInfo) -> str:
-    """Give our name of a scene; a client may leave the ``/scene`` out.
+    """Return our name of a scene; a client may leave the ``/scene`` out.
 
     Raises
     ------

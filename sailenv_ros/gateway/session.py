@@ -25,6 +25,7 @@ from sailenv_ros.gateway.unity import (
     unity_from_vector,
     vector_from_unity,
 )
+from sailenv_ros.operations import Operations
 from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["AGENT_PREFIX", "Session"]
@@ -35,7 +36,7 @@ AGENT_PREFIX = "client_"
 Vector3 = tuple[float, float, float]
 
 
-class Session(LightAnswers, ObjectAnswers):
+class Session:
     """One connection, which is one agent.
 
     Parameters
@@ -48,6 +49,7 @@ class Session(LightAnswers, ObjectAnswers):
 
     def __init__(self, info: Callable[[], SceneInfo], next_id: Callable[[], int]) -> None:
         self._info = info
+        self._answers = (self, ObjectAnswers(info, lambda: self.agent), LightAnswers(info))
         self._next_id = next_id
         self._agent: AgentSpec | None = None
         self._use_gzip = False
@@ -65,7 +67,8 @@ class Session(LightAnswers, ObjectAnswers):
 
     def answer(self, message: Message) -> Answer:
         """Begin the answer to a message; the errors that a client cannot be told are raised."""
-        answer: Callable[..., Answer] = getattr(self, message.name)
+        group = next(group for group in self._answers if hasattr(group, message.name))
+        answer: Callable[..., Answer] = getattr(group, message.name)
         return answer(**message.fields)
 
     # -- life ------------------------------------------------------------------------------
@@ -85,7 +88,7 @@ class Session(LightAnswers, ObjectAnswers):
                 name=f"{AGENT_PREFIX}{number}", intrinsics=intrinsics, rate_hz=0.0
             )
             try:
-                self._agent = yield Ask("register_agent", (self._agent,))
+                self._agent = yield Ask(Operations.register_agent, self._agent)
             except NameTaken:
                 self._agent = None  # it is somebody else's
             else:
@@ -94,7 +97,7 @@ class Session(LightAnswers, ObjectAnswers):
     def delete(self) -> Answer:
         """Remove the agent; nothing is answered."""
         self._ended = True
-        yield Ask("delete_agent", (self.agent,))
+        yield Ask(Operations.delete_agent, self.agent)
         self._agent = None
         return []
 
@@ -106,7 +109,7 @@ class Session(LightAnswers, ObjectAnswers):
             raise ProtocolError("a frame was asked for before the registration")
         views = views_of_flags(flags)
         # Someone may want nothing but the time.
-        frame: Frame = yield Ask("capture", (self.agent, views or ("instance",)))
+        frame: Frame = yield Ask(Operations.capture, views or ("instance",), agent=self.agent)
         depth_range_m, use_gzip = self._agent.depth_range_m, self._use_gzip
 
         def pack() -> list[bytes]:
@@ -122,7 +125,7 @@ class Session(LightAnswers, ObjectAnswers):
         return (yield from in_words(self._changed_scene(name)))
 
     def _changed_scene(self, name: str) -> Generator[Step, Any, None]:
-        yield Ask("change_scene", (scene_of_wire(name, self._info()),))
+        yield Ask(Operations.change_scene, scene_of_wire(name, self._info()))
 
     def get_categories(self) -> Answer:
         """Tell the number and name of each category."""
@@ -135,7 +138,7 @@ class Session(LightAnswers, ObjectAnswers):
 
     def get_position(self) -> Answer:
         """Tell where the agent is."""
-        here = yield Ask("get_pose", (self.agent,))
+        here = yield Ask(Operations.get_agent_pose, agent=self.agent)
         return [pack_floats(*unity_from_vector(here.pose.position_m))]
 
     def set_position(self, position: Vector3) -> Answer:
@@ -143,11 +146,13 @@ class Session(LightAnswers, ObjectAnswers):
         return (yield from in_words(self._moved(position)))
 
     def _moved(self, position: Vector3) -> Generator[Step, Any, None]:
-        yield Ask("set_position", (self.agent, vector_from_unity("position", position)))
+        yield Ask(
+            Operations.set_position, vector_from_unity("position", position), agent=self.agent
+        )
 
     def get_rotation(self) -> Answer:
         """Tell how the agent is turned."""
-        here = yield Ask("get_pose", (self.agent,))
+        here = yield Ask(Operations.get_agent_pose, agent=self.agent)
         return [pack_floats(*unity_angles_deg(here.pose))]
 
     def set_rotation(self, rotation: Vector3) -> Answer:
@@ -156,11 +161,11 @@ class Session(LightAnswers, ObjectAnswers):
 
     def _turned(self, rotation: Vector3) -> Generator[Step, Any, None]:
         turn = pose_from_unity((0.0, 0.0, 0.0), rotation)
-        yield Ask("set_rotation", (self.agent, turn.rpy_deg))
+        yield Ask(Operations.set_rotation, turn.rpy_deg, agent=self.agent)
 
     def toggle_follow(self) -> Answer:
         """Follow the mover, or stop."""
         return (yield from in_words(self._toggled()))
 
     def _toggled(self) -> Generator[Step, Any, None]:
-        yield Ask("toggle_follow", (self.agent,))
+        yield Ask(Operations.toggle_follow, agent=self.agent)

@@ -6,14 +6,17 @@ Types alone; knows no socket, no thread, no simulation.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from typing import Any, ParamSpec, TypeAlias
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_string
+from sailenv_ros.operations import Operation
 
 __all__ = ["Answer", "Ask", "Step", "Work", "in_words", "one_line"]
+
+P = ParamSpec("P")
 
 _log = logging.getLogger(__name__)
 
@@ -21,13 +24,20 @@ MAX_WORDS = 1000
 """Longest sentence that a client is told [characters]."""
 
 
-@dataclass(frozen=True, slots=True)
 class Ask:
-    """A request to the simulation by its name; its result is what the request gives."""
+    """An operation of the simulation with its arguments; its result is the operation's.
 
-    name: str
-    args: tuple[Any, ...] = ()
-    kwargs: Mapping[str, Any] = field(default_factory=dict)
+    Parameters
+    ----------
+    operation : Operation
+    *args, **kwargs
+        Of the operation.
+    """
+
+    def __init__(self, operation: Operation[P, Any], /, *args: P.args, **kwargs: P.kwargs) -> None:
+        self.operation: Operation[..., Any] = operation
+        self.args = args
+        self.kwargs = kwargs
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +64,6 @@ def in_words(asking: Generator[Step, Any, object]) -> Answer:
 
 
 def one_line(error: SailenvError) -> str:
-    """Give an error's sentences on one line, not endlessly long."""
+    """Return an error's sentences on one line, not endlessly long."""
     text = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
     return text if len(text) <= MAX_WORDS else text[: MAX_WORDS - 3] + "..."

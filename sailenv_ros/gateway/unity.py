@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from sailenv_ros.geometry import POSITION_LIMIT_M, Pose, vector
+from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
+from sailenv_ros.validation import vector
 
 __all__ = [
     "orientation_xyzw_from_unity",
@@ -90,7 +91,7 @@ def pose_from_unity(position: ArrayLike, angles_deg: ArrayLike) -> Pose:
 
 
 def unity_angles_deg(pose: Pose) -> Vector3:
-    """Give Unity's angles about x, y, z of a pose [deg], each from 0 to 360 as Unity tells them.
+    """Return Unity's angles about x, y, z of a pose [deg], each from 0 to 360 as Unity tells them.
 
     Looking straight up or down, the turn about z is told as 0.
     """

@@ -11,7 +11,7 @@ from sailenv_ros.errors import SailenvError
 from sailenv_ros.nodes.agent_services import AgentServices
 from sailenv_ros.nodes.diagnostics import AgentCounts
 from sailenv_ros.nodes.publishers import AgentPublisher
-from sailenv_ros.nodes.requests import Requests
+from sailenv_ros.nodes.requests import OperationRunner
 from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
@@ -34,11 +34,13 @@ class _Endpoint:
 class AgentEndpoints:
     """Topics and services of all agents; used by the executor's thread alone."""
 
-    def __init__(self, node: Node, simulation: Simulation, requests: Requests, tf: TfTree) -> None:
+    def __init__(
+        self, node: Node, simulation: Simulation, runner: OperationRunner, tf: TfTree
+    ) -> None:
         self._tf = tf
         self._node = node
         self._simulation = simulation
-        self._requests = requests
+        self._runner = runner
         self._endpoints: dict[str, _Endpoint] = {}
 
     def reconcile(self, info: SceneInfo) -> None:
@@ -56,7 +58,7 @@ class AgentEndpoints:
                 self._set_rate(self._endpoints[name], spec)
 
     def counts(self) -> list[AgentCounts]:
-        """Give what each agent's publisher did since this was asked before."""
+        """Return what each agent's publisher did since this was asked before."""
         return [endpoint.publisher.counts() for endpoint in self._endpoints.values()]
 
     def close(self) -> None:
@@ -76,14 +78,14 @@ class AgentEndpoints:
             publisher = AgentPublisher(self._node, self._simulation, spec, self._tf)
         except SailenvError:
             return  # deleted meanwhile; the next scene_info says so
-        services = AgentServices(self._node, self._requests, publisher, spec)
+        services = AgentServices(self._node, self._runner, publisher, spec)
         self._endpoints[spec.name] = _Endpoint(spec=spec, publisher=publisher, services=services)
 
 
 def _same_topics(one: AgentSpec, other: AgentSpec) -> bool:
-    """Say whether two specs differ at most in what topics and services need not be made for."""
-    return (one.intrinsics, one.depth_range_m, one.views) == (
-        other.intrinsics,
-        other.depth_range_m,
-        other.views,
-    )
+    """Say whether two specs differ at most in what topics and services need not be made for.
+
+    Another lens is none of it: frames bring their camera along, and a service that changes it must
+    live to answer.
+    """
+    return (one.depth_range_m, one.views) == (other.depth_range_m, other.views)

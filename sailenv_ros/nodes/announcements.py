@@ -13,7 +13,7 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
 from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
-from sailenv_msgs_py.scene_info import scene_info_to_msg
+from sailenv_msgs_py.scene_msgs import scene_info_to_msg
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_ros.nodes.qos import clock_qos, latched_qos, no_events
 from sailenv_ros.scene_info import SceneInfo

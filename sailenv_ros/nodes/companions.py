@@ -6,7 +6,7 @@ picture, lossless png of ids), each made only while somebody subscribes. Knows n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import cv2
@@ -17,16 +17,12 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from sailenv_msgs_py.images import picture_to_image
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import VIEWS, Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 
-__all__ = ["COLOUR_VIEWS", "COMPRESSED_VIEWS", "Companions", "compressed_view"]
-
-COLOUR_VIEWS = ("depth", "category", "instance", "flow")
-
-COMPRESSED_VIEWS: Mapping[str, str] = {"rgb": "jpeg", "category": "png", "instance": "png"}
-"""Which views are compressed, and how: a picture may lose something, ids may not."""
+__all__ = ["Companions", "compressed_view"]
 
 JPEG_QUALITY = 90
 
@@ -38,6 +34,8 @@ class Companions:
     ----------
     make_publisher : callable
         ``make_publisher(kind, topic)`` makes a publisher below the agent's name.
+    views : iterable of str
+        Views that the renderer can make; `VIEWS` says which companions each of them has.
     depth_range_m : float
         Depth that is shown as black [m].
     categories : callable
@@ -47,15 +45,23 @@ class Companions:
     def __init__(
         self,
         make_publisher: Callable[[type, str], Publisher],
+        views: Iterable[str],
         *,
         depth_range_m: float,
         categories: Callable[[], CategoryTable],
     ) -> None:
         self._depth_range_m = depth_range_m
         self._categories = categories
-        self._colour = {view: make_publisher(Image, f"{view}/color") for view in COLOUR_VIEWS}
+        specs = [view_spec(view) for view in views]
+        self._colour = {
+            spec.name: make_publisher(Image, f"{spec.name}/color")
+            for spec in specs
+            if spec.color_topic
+        }
         self._compressed = {
-            view: make_publisher(CompressedImage, f"{view}/compressed") for view in COMPRESSED_VIEWS
+            spec.name: make_publisher(CompressedImage, f"{spec.name}/compressed")
+            for spec in specs
+            if spec.compressed_topic
         }
 
     @property
@@ -64,7 +70,7 @@ class Companions:
         return (*self._colour.values(), *self._compressed.values())
 
     def wanted_views(self) -> frozenset[str]:
-        """Give the views that somebody subscribes to a companion of."""
+        """Return the views that somebody subscribes to a companion of."""
         topics = (*self._colour.items(), *self._compressed.items())
         return frozenset(view for view, topic in topics if topic.get_subscription_count())
 
@@ -91,13 +97,21 @@ def compressed_view(view: str, values: NDArray[Any], header: Header) -> Compress
     Parameters
     ----------
     view : str
-        One of `COMPRESSED_VIEWS`.
+        One that has a `compressed_topic` in `VIEWS`.
     values : (H, W) or (H, W, 3) array
         As `sailenv_ros.frame.VIEWS` says.
     header : Header
         Kept, not copied.
+
+    Raises
+    ------
+    InvalidRequest
+        If that view is not compressed.
     """
-    codec, encoding = COMPRESSED_VIEWS[view], VIEWS[view].encoding
+    codec, encoding = view_spec(view).compressed_topic, view_spec(view).encoding
+    if codec is None:
+        compressed = ", ".join(name for name, spec in VIEWS.items() if spec.compressed_topic)
+        raise InvalidRequest("view to compress", view, f"one of: {compressed}")
     if codec == "jpeg":
         settings, target = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY], "bgr8"
         values = np.ascontiguousarray(values[..., ::-1])

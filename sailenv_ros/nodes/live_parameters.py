@@ -53,6 +53,6 @@ class LiveParameters:
     def _request(self, parameter: Parameter) -> None:
         # Queued and not awaited: a request that takes long must not hold up the executor.
         if parameter.name == "real_time_factor":
-            self._simulation.request("set_real_time_factor", parameter.value)
+            self._simulation.set_real_time_factor.submit(parameter.value)
         elif parameter.name == "agent.rate_hz":
-            self._simulation.request("set_rate", self._agent, parameter.value)
+            self._simulation.set_rate.submit(parameter.value, agent=self._agent)

@@ -20,8 +20,8 @@ from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
-from sailenv_ros.gateway.commands import Protocol
-from sailenv_ros.render.backend import BackendName
+from sailenv_ros.gateway.protocol_commands import Protocol
+from sailenv_ros.render.backend import BACKEND_NAMES, BackendName
 from sailenv_ros.scene_info import TimeMode
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
 from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
@@ -40,9 +40,10 @@ class SimParameters:
     real_time_factor : float
     seed : int
     paused : bool
-    backend : {'auto', 'gl', 'tiny'}
+    backend : {'auto', 'native', 'gl', 'tiny'}
     render_device : int or None
     scene_paths : tuple of Path
+    allow_modules : bool
     publish_clock : bool
     gateway_host : str
     gateway_port : int
@@ -64,6 +65,7 @@ class SimParameters:
     backend: BackendName
     render_device: int | None
     scene_paths: tuple[Path, ...]
+    allow_modules: bool
     publish_clock: bool
     gateway_host: str
     gateway_port: int
@@ -106,6 +108,10 @@ _PARAMETERS: dict[str, _Parameter] = {
         "Empty: room_01, or optical where the furniture has not been built.",
     ),
     "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
+    "allow_modules": _Parameter(
+        False,
+        "True: scene files may have behaviours of Python modules, whose code runs in this process.",
+    ),
     "mode": _Parameter(
         "realtime",
         "realtime: simulated time follows the wall clock; lockstep: it moves by the step service.",
@@ -123,13 +129,16 @@ _PARAMETERS: dict[str, _Parameter] = {
     ),
     "backend": _Parameter(
         "auto",
-        "Renderer: gl = OpenGL, tiny = slow software fallback, auto = the first that works.",
-        choices=("auto", "gl", "tiny"),
+        "Renderer: gl = OpenGL, native = made for processors, tiny = slow fallback, auto = gl on "
+        "graphics hardware, else native.",
+        choices=BACKEND_NAMES,
     ),
     "render_device": _Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
-    "publish_clock": _Parameter(True, "True: publish simulated time on /clock."),
+    "publish_clock": _Parameter(
+        True, "True: publish simulated time on /clock, unless another simulator there does."
+    ),
     "gateway.port": _Parameter(
-        DEFAULT_PORT, "TCP port for clients of the original SAILenv; 0: none.", 0, 65535
+        DEFAULT_PORT, "TCP port for SAILenv clients; 0: none.", 0, 65535
     ),
     "gateway.host": _Parameter(
         DEFAULT_HOST, "Address that port listens on; 0.0.0.0: all, without any password."
@@ -138,7 +147,7 @@ _PARAMETERS: dict[str, _Parameter] = {
         "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
     ),
     "viewer.port": _Parameter(
-        VIEWER_PORT, "TCP port of the window in the browser; 0: none.", 0, 65535
+        VIEWER_PORT, "TCP port of the web viewer; 0: none.", 0, 65535
     ),
     "viewer.host": _Parameter(
         VIEWER_HOST, "Address that port listens on; 0.0.0.0: all, with a token in the URL."
@@ -185,6 +194,7 @@ def declare_parameters(node: Node) -> SimParameters:
         backend=cast(BackendName, values["backend"]),
         render_device=None if values["render_device"] < 0 else values["render_device"],
         scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
+        allow_modules=values["allow_modules"],
         publish_clock=values["publish_clock"],
         gateway_host=values["gateway.host"],
         gateway_port=values["gateway.port"],
@@ -201,7 +211,7 @@ Parameter = _Parameter
 
 
 def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
-    """Declare the parameters of any node of this package; give their values by name.
+    """Declare the parameters of any node of this package; return their values by name.
 
     Raises
     ------

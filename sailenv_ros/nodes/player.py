@@ -172,7 +172,7 @@ class Player:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Play until the end or until asked to end; give the exit status."""
+    """Play until the end or until asked to end; return the exit status."""
     return run_node(NODE_NAME, _play, argv)
 
 

@@ -25,7 +25,7 @@ from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.frame import ALWAYS_MADE, Frame
 from sailenv_ros.nodes.companions import Companions
 from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
@@ -38,9 +38,6 @@ _log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.05
 """How often it is looked whether somebody subscribes, while nothing is rendered [s]."""
-
-CHEAPEST_VIEW = "depth"
-"""Rendered when the infos of frames are subscribed to and no image is."""
 
 
 class AgentPublisher:
@@ -61,12 +58,15 @@ class AgentPublisher:
         self._node = node
         self._simulation = simulation
         self._spec = spec
-        self._images = {view: self._publisher(Image, view) for view in VIEWS}
+        # A topic that never carries anything would have its subscribers wait for ever.
+        views = simulation.supported_views
+        self._images = {view: self._publisher(Image, view) for view in views}
         self._camera_info = self._publisher(CameraInfo, "camera_info")
         self._frame_info = self._publisher(FrameInfo, "frame_info")
         self._pose = self._publisher(PoseStamped, "pose")
         self._companions = Companions(
             self._publisher,
+            views,
             depth_range_m=spec.depth_range_m,
             categories=lambda: simulation.info.categories,
         )
@@ -88,7 +88,7 @@ class AgentPublisher:
             self._begin_stream()
 
     def counts(self) -> AgentCounts:
-        """Give what was published since this was asked before."""
+        """Return what was published since this was asked before."""
         dropped = self.overtaken + (0 if self._stream is None else self._stream.dropped)
         return self._counter.take(self._spec.name, dropped)
 
@@ -99,7 +99,8 @@ class AgentPublisher:
 
     def subscribed(self, views: tuple[str, ...]) -> bool:
         """Say whether somebody subscribes to every one of these views."""
-        return all(_is_subscribed(self._images[view]) for view in views)
+        topics = [self._images.get(view) for view in views]
+        return all(topic is not None and _is_subscribed(topic) for topic in topics)
 
     def await_subscribed(self, views: tuple[str, ...], timeout_s: float) -> bool:
         """Wait a little for subscribers that are just being matched; say whether all are there."""
@@ -171,7 +172,7 @@ class AgentPublisher:
             view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
         )
         infos = _is_subscribed(self._camera_info) or _is_subscribed(self._frame_info)
-        return wanted or ((CHEAPEST_VIEW,) if infos else ())
+        return wanted or (ALWAYS_MADE if infos else ())
 
     def _publish_streamed(self, frame: Frame) -> None:
         with self._publishing:
@@ -190,7 +191,7 @@ class AgentPublisher:
         if self._stream is None or self._stream.views or not wanted:
             return
         try:
-            pose = self._simulation.get_pose(self._spec.name)
+            pose = self._simulation.get_agent_pose(agent=self._spec.name)
         except SailenvError:
             return  # the agent or the simulation is gone, which the stream says next
         with self._publishing:

@@ -1,4 +1,4 @@
-"""How a service handler asks the simulation without ever holding up the executor.
+"""Operations of a simulation as services of a node, which never hold up the executor.
 
 The simulation answers by futures of its own thread; here they are awaited on rclpy's executor.
 `answered` is the one place where an error becomes a refusal in a service's response.
@@ -7,37 +7,34 @@ The simulation answers by futures of its own thread; here they are awaited on rc
 from __future__ import annotations
 
 import logging
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from concurrent.futures import Future
-from typing import Any, Protocol, TypeAlias, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
-from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from rclpy.callback_groups import CallbackGroup
 from rclpy.executors import Executor
 from rclpy.node import Node
-from rclpy.service import Service
+from rclpy.service import Service as RosService
 from rclpy.task import Future as RosFuture
 
-from sailenv_ros.errors import SailenvError
+from sailenv_msgs_py.error_codes import error_to_response
+from sailenv_msgs_py.services import Service
+from sailenv_ros.errors import InternalFault, SailenvError
+from sailenv_ros.operations import Operation
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 
-__all__ = ["Requests", "ServiceTable", "answered", "offer"]
+__all__ = ["OperationRunner", "answered", "offer_services"]
 
 _log = logging.getLogger(__name__)
 
+P = ParamSpec("P")
+R = TypeVar("R")
 T = TypeVar("T")
 
-ServiceTable: TypeAlias = tuple[tuple[str, type, Callable[[Any, Any], Awaitable[None]]], ...]
-"""Name, type and handler of each service."""
 
-
-class _Response(Protocol):
-    success: bool
-    message: str
-
-
-class Requests:
-    """Asks one simulation on behalf of handlers that run in one executor."""
+class OperationRunner:
+    """Runs operations of one simulation for handlers in one executor."""
 
     def __init__(self, simulation: Simulation, executor: Executor) -> None:
         self._simulation = simulation
@@ -48,13 +45,9 @@ class Requests:
         """The scene as it was announced last."""
         return self._simulation.info
 
-    async def __call__(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
-        """Ask for something by its name and await the result; raises what the request raised."""
-        return await self.settled(self.begin(name, *args, **kwargs))
-
-    def begin(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Queue a request now; the order of these calls is the order of execution."""
-        return self._simulation.request(name, *args, **kwargs)
+    def submit(self, operation: Operation[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        """Queue an operation now; the order of these calls is the order of execution."""
+        return operation.submit_to(self._simulation, *args, **kwargs)
 
     async def settled(self, future: Future[T]) -> T:
         """Await a future of another thread."""
@@ -74,49 +67,70 @@ def answered(
 ) -> Callable[[Any, Any], Coroutine[Any, Any, Any]]:
     """Make a service callback of a handler that fills a response or raises.
 
-    Whatever the handler raises ends here: the response then holds nothing but the error's own
-    sentence.
+    Whatever the handler raises ends here: the response then holds nothing but the error.
     """
 
     async def callback(request: Any, response: Any) -> Any:
         try:
             await handler(request, response)
-            response.success = True
             return response
         except SailenvError as error:
-            return _refusal(type(response)(), str(error))
+            refusal = error
         except Exception as error:
             _log.exception("a service failed because of a fault in the simulator")
             what = f"{type(error).__name__}: {error}"
-            return _refusal(type(response)(), f"a fault in the simulator, see its log: {what}")
+            refusal = InternalFault(f"a fault in the simulator, see its log: {what}")
+        # A fresh response: what the handler filled in before it failed is not told.
+        response = type(response)()
+        error_to_response(refusal, response)
+        return response
 
     return callback
 
 
-def offer(
-    node: Node, table: ServiceTable, *, group: CallbackGroup | None = None, prefix: str = ""
-) -> list[Service]:
-    """Serve what a table lists, each service by its handler as `answered` wraps it.
+def offer_services(
+    node: Node,
+    runner: OperationRunner,
+    services: Iterable[Service],
+    *,
+    group: CallbackGroup,
+    agent: str = "",
+    before_response: Callable[[], None] = lambda: None,
+) -> list[RosService]:
+    """Serve operations.
 
     Parameters
     ----------
     node : Node
-    table : ServiceTable
-    group : CallbackGroup or None
-        None makes one. It must let calls overlap: handlers await, and in a mutually exclusive group
-        one that waits would hold up all others.
-    prefix : str
-        Put before each name.
+    runner : OperationRunner
+    services : iterable of Service
+    group : CallbackGroup
+        It must let calls overlap: handlers await, and in a mutually exclusive group one that waits
+        would hold up all others.
+    agent : str
+        The agent whose services they are; empty for those of the simulator.
+    before_response : callable
+        Called in the executor's thread when an operation was done, before it is answered.
     """
-    group = group or ReentrantCallbackGroup()
+
+    def handler(service: Service) -> Callable[[Any, Any], Awaitable[None]]:
+        async def handle(request: Any, response: Any) -> None:
+            args, kwargs = service.arguments(request)
+            if agent:
+                kwargs["agent"] = agent
+            result = await runner.settled(runner.submit(service.operation, *args, **kwargs))
+            before_response()
+            service.respond(response, result, runner.info)
+
+        return handle
+
+    prefix = f"{agent}/" if agent else ""
     return [
-        node.create_service(kind, f"{prefix}{name}", answered(handler), callback_group=group)
-        for name, kind, handler in table
+        node.create_service(
+            service.type,
+            f"{prefix}{service.name}",
+            answered(handler(service)),
+            callback_group=group,
+        )
+        for service in services
     ]
-
-
-def _refusal(response: _Response, text: str) -> _Response:
-    response.success = False
-    # Some errors list several faults, each on a line of its own.
-    response.message = "; ".join(line.strip() for line in text.splitlines() if line.strip())
-    return response

@@ -15,10 +15,10 @@ from rclpy.logging import get_logger
 from rclpy.node import Node
 
 from sailenv_ros.errors import InvalidRequest, SailenvError
-from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.lifecycle import StopRequest
 from sailenv_ros.nodes.log_bridge import LogBridge
-from sailenv_ros.transport import use_shared_memory_profile
+from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.transport import use_shared_memory_profile
 
 __all__ = ["run_node"]
 

@@ -1,78 +1,73 @@
-"""The services of the simulator itself, each a few lines around one request."""
+"""The services of the simulator itself, and the topic by which its mover is driven."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
+from concurrent.futures import Future
 
+from geometry_msgs.msg import Twist
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
-from std_srvs.srv import Trigger
 
-from sailenv_msgs.srv import ChangeScene, DeleteAgent, RegisterAgent, Reset, Step
-from sailenv_msgs_py.agents import agent_spec_from_msg, agent_spec_to_msg
-from sailenv_msgs_py.stamps import stamp_from_ns
-from sailenv_msgs_py.transforms import pose_from_msg
-from sailenv_ros.nodes.requests import Requests, ServiceTable, offer
+from sailenv_msgs_py.services import SIMULATOR_SERVICES
+from sailenv_msgs_py.transforms import twist_from_msg
+from sailenv_ros.errors import SailenvError, SimulationClosed
+from sailenv_ros.nodes.qos import command_qos
+from sailenv_ros.nodes.requests import OperationRunner, offer_services
+from sailenv_ros.operations import Operations
 
 __all__ = ["SimulatorServices"]
 
+WARN_INTERVAL_S = 2.0
+"""A command that is refused is logged so often: they come many times a second [s]."""
+
 
 class SimulatorServices:
-    """Serves the simulator.
+    """Serves the simulator, and follows ``mover/cmd_vel``.
 
     Parameters
     ----------
     node : Node
-    requests : Requests
+    runner : OperationRunner
     agents_changed : callable
-        Called in the executor's thread after agents came or went, before the answer: an agent's
+        Called in the executor's thread when an operation was done, before the response: an agent's
         topics and services are there when its registration is answered.
     """
 
-    def __init__(self, node: Node, requests: Requests, agents_changed: Callable[[], None]) -> None:
-        self._ask = requests
-        self._agents_changed = agents_changed
-        offer(node, self._table())
-
-    def _table(self) -> ServiceTable:
-        return (
-            ("register_agent", RegisterAgent, self._register_agent),
-            ("delete_agent", DeleteAgent, self._delete_agent),
-            ("change_scene", ChangeScene, self._change_scene),
-            ("reset", Reset, self._reset),
-            ("step", Step, self._step),
-            ("pause", Trigger, self._pause),
-            ("resume", Trigger, self._resume),
+    def __init__(
+        self, node: Node, runner: OperationRunner, agents_changed: Callable[[], None]
+    ) -> None:
+        self._node = node
+        self._runner = runner
+        self._warned_s = -WARN_INTERVAL_S
+        group = ReentrantCallbackGroup()
+        offer_services(
+            node, runner, SIMULATOR_SERVICES, group=group, before_response=agents_changed
+        )
+        node.create_subscription(
+            Twist, "mover/cmd_vel", self._drive, command_qos(), callback_group=group
         )
 
-    async def _register_agent(
-        self, request: RegisterAgent.Request, response: RegisterAgent.Response
-    ) -> None:
-        pose = pose_from_msg(request.pose) if request.has_pose else None
-        spec = agent_spec_from_msg(request.agent, pose=pose)
-        accepted = await self._ask("register_agent", spec)
-        self._agents_changed()
-        response.accepted = agent_spec_to_msg(accepted)
+    def _drive(self, command: Twist) -> None:
+        linear_m_s, angular_rad_s = twist_from_msg(command)
+        try:
+            driving = self._runner.submit(Operations.drive_mover, linear_m_s, angular_rad_s)
+        except SimulationClosed:
+            return
+        except SailenvError as problem:
+            self._warn(problem)
+            return
+        driving.add_done_callback(self._report)
 
-    async def _delete_agent(
-        self, request: DeleteAgent.Request, response: DeleteAgent.Response
-    ) -> None:
-        await self._ask("delete_agent", request.name)
-        self._agents_changed()
+    def _report(self, driving: Future[None]) -> None:
+        """Warn of a refused command; nobody waits for its answer."""
+        problem = None if driving.cancelled() else driving.exception()
+        if isinstance(problem, SailenvError):
+            self._warn(problem)
 
-    async def _change_scene(
-        self, request: ChangeScene.Request, response: ChangeScene.Response
-    ) -> None:
-        await self._ask("change_scene", request.scene)
-        self._agents_changed()
-
-    async def _reset(self, request: Reset.Request, response: Reset.Response) -> None:
-        response.epoch = await self._ask("reset", None if request.keep_seed else request.seed)
-
-    async def _step(self, request: Step.Request, response: Step.Response) -> None:
-        response.stamp = stamp_from_ns(await self._ask("step", request.steps))
-
-    async def _pause(self, request: Trigger.Request, response: Trigger.Response) -> None:
-        await self._ask("pause")
-
-    async def _resume(self, request: Trigger.Request, response: Trigger.Response) -> None:
-        await self._ask("resume")
+    def _warn(self, problem: SailenvError) -> None:
+        now_s = time.monotonic()
+        if now_s - self._warned_s >= WARN_INTERVAL_S:
+            self._warned_s = now_s
+            self._node.get_logger().warning(f"mover/cmd_vel: {problem}")

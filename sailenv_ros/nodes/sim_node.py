@@ -8,13 +8,14 @@ scene is wrong, 3 where another simulator has the namespace already.
 from __future__ import annotations
 
 import argparse
-import errno
+import contextlib
 import logging
 import os
 import sys
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from dataclasses import replace
 from typing import TypeVar
 
 from rclpy.context import Context
@@ -23,28 +24,30 @@ from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
-from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, SimulationClosed
+from sailenv_ros.errors import (
+    AddressInUse,
+    InvalidRequest,
+    NameTaken,
+    SailenvError,
+    SimulationClosed,
+)
 from sailenv_ros.gateway import GatewayServer
-from sailenv_ros.memory import keep_freed_memory
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.diagnostics import Diagnostics
-from sailenv_ros.nodes.edit_services import EditServices
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
-from sailenv_ros.nodes.light_services import LightServices
 from sailenv_ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.nodes.log_bridge import LogBridge
-from sailenv_ros.nodes.motion_services import MotionServices
-from sailenv_ros.nodes.object_services import ObjectServices
 from sailenv_ros.nodes.parameters import SimParameters, declare_parameters
-from sailenv_ros.nodes.requests import Requests
+from sailenv_ros.nodes.requests import OperationRunner
 from sailenv_ros.nodes.services import SimulatorServices
 from sailenv_ros.nodes.tf_tree import TfTree
-from sailenv_ros.presence import SimulatorLock
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.transport import use_shared_memory_profile
+from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.presence import ClockLock, SimulatorLock, clock_publisher
+from sailenv_ros.system.transport import use_shared_memory_profile, who_may_command
 from sailenv_ros.viewer import ViewerServer
 
 __all__ = ["SimNode", "main"]
@@ -85,19 +88,13 @@ class SimNode:
         self._node = node
         self._executor = executor
         self._simulation = simulation
-        requests = Requests(simulation, executor)
+        runner = OperationRunner(simulation, executor)
         self._tf = TfTree(node)
-        self._endpoints = AgentEndpoints(node, simulation, requests, self._tf)
+        self._endpoints = AgentEndpoints(node, simulation, runner, self._tf)
         self._announcements = Announcements(
             node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
         )
-        self._services = SimulatorServices(node, requests, self._reconcile)
-        self._more_services = (
-            ObjectServices(node, requests),
-            LightServices(node, requests),
-            MotionServices(node, requests),
-            EditServices(node, requests),
-        )
+        self._services = SimulatorServices(node, runner, self._reconcile)
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
@@ -112,7 +109,7 @@ class SimNode:
 
     @property
     def viewer_url(self) -> str:
-        """Address of the window in the browser; empty if there is none."""
+        """Address of the web viewer; empty if there is none."""
         return "" if self._viewer is None else self._viewer.url
 
     def start(self) -> None:
@@ -141,7 +138,7 @@ class SimNode:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the node until it is asked to end; give the exit status."""
+    """Run the node until it is asked to end; return the exit status."""
     stop = StopRequest()
     stop.install()
     arguments = list(sys.argv if argv is None else argv)
@@ -191,7 +188,10 @@ def _run(arguments: list[str], stop: StopRequest) -> int:
 
 def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -> int:
     parameters = declare_parameters(node)
-    with SimulatorLock(context.get_domain_id(), node.get_namespace()):
+    domain_id = context.get_domain_id()
+    with SimulatorLock(domain_id, node.get_namespace()), contextlib.ExitStack() as held:
+        if parameters.publish_clock and not _takes_clock(domain_id, held):
+            parameters = replace(parameters, publish_clock=False)
         simulation = _load(parameters, stop)
         if simulation is None:
             return 0
@@ -200,6 +200,7 @@ def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -
         try:
             sim_node.start()
             _greet(node, simulation.info, transport, sim_node.viewer_url)
+            node.get_logger().info(who_may_command(domain_id))
             while not stop.wait(0.25):
                 if simulation.closed:
                     raise SimulationClosed("of a fault, which the log shows")
@@ -210,6 +211,22 @@ def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -
         if not ended:
             _leave_at_once(node, context, status)
         return status
+
+
+def _takes_clock(domain_id: int, held: contextlib.ExitStack) -> bool:
+    """Take the right to publish /clock until the end; say so if another simulator has it."""
+    try:
+        held.enter_context(ClockLock(domain_id))
+    except NameTaken:
+        _log.warning(
+            "the simulator of process %s publishes /clock in ROS domain %d, so this one does not; "
+            "to have this one's time there: end the other, or start the other with -p "
+            "publish_clock:=false, or start this one in a domain of its own (ROS_DOMAIN_ID)",
+            clock_publisher(domain_id),
+            domain_id,
+        )
+        return False
+    return True
 
 
 def _load(parameters: SimParameters, stop: StopRequest) -> Simulation | None:
@@ -244,6 +261,7 @@ def _simulation(parameters: SimParameters) -> Simulation:
         backend=parameters.backend,
         render_device=parameters.render_device,
         scene_paths=parameters.scene_paths,
+        allow_modules=parameters.allow_modules,
     )
     try:
         agent = parameters.agent
@@ -264,7 +282,7 @@ def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer
             port=parameters.gateway_port,
             protocol=parameters.gateway_protocol,
         ),
-        "clients of the original SAILenv cannot connect here",
+        "SAILenv clients cannot connect here",
     )
 
 
@@ -287,10 +305,8 @@ def _unless_taken(port: int, serve: Callable[[], Server], otherwise: str) -> Ser
         return None
     try:
         return serve()
-    except InvalidRequest as problem:
+    except AddressInUse as problem:
         # Another simulator on this machine is no reason not to start; anything else is.
-        if getattr(problem.__cause__, "errno", None) != errno.EADDRINUSE:
-            raise
         _log.warning("%s: %s", otherwise, problem)
         return None
 

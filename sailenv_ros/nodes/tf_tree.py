@@ -1,7 +1,8 @@
 """`/tf` and `/tf_static`: world → agent → camera → optical frame, where tf2_msgs is installed.
 
-Frames and agents' names in, transforms out. Without tf2_msgs every call does nothing: it is no
-package of ours, and `pose` says the same.
+Frames and agents' names in, transforms out. package.xml declares tf2_msgs, so a ROS 2 installation
+has it; the ROS 2 packages on PyPI lack it. Without it every call does nothing, and the topic
+`<agent>/pose` holds the same poses.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ __all__ = ["TfTree", "camera_frame_id", "fixed_transforms", "transform_of"]
 
 
 def camera_frame_id(agent: str) -> str:
-    """Give the name of the frame of an agent's camera (x forward, y left, z up)."""
+    """Return the name of the frame of an agent's camera (x forward, y left, z up)."""
     return f"{agent}_camera"
 
 
@@ -39,7 +40,7 @@ def transform_of(pose: Pose, header: Header, child_frame_id: str) -> TransformSt
 
 
 def fixed_transforms(agent: str) -> list[TransformStamped]:
-    """Give what never changes: agent → camera (they coincide) → optical frame (REP 103)."""
+    """Return what never changes: agent → camera (they coincide) → optical frame (REP 103)."""
     camera = Camera(intrinsics=CameraIntrinsics(), pose=Pose())
     optical = Pose.from_matrix(camera.world_from_camera)
     return [

@@ -74,5 +74,5 @@ def _present(keys: NDArray[np.int64], lines: int, slots: int) -> NDArray[np.bool
 
 
 def _ends(present: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Give the first and the last line of each instance."""
+    """Return the first and the last line of each instance."""
     return present.argmax(axis=0), len(present) - 1 - present[::-1].argmax(axis=0)

@@ -6,14 +6,26 @@ Each function takes one view as `sailenv_ros.frame.VIEWS` describes it and gives
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.colour import srgb_from_linear
+from sailenv_ros.frame import ViewDisplay, view_spec
 from sailenv_ros.labels import CategoryTable, colour_instances
 
-__all__ = ["colour_categories", "colour_depth", "colour_flow", "grey_depth", "view_picture"]
+__all__ = [
+    "colour_categories",
+    "colour_depth",
+    "colour_directions",
+    "colour_flow",
+    "colour_mask",
+    "encoded_colour",
+    "grey_depth",
+    "view_picture",
+]
 
 Rgb = NDArray[np.uint8]
 
@@ -125,24 +137,52 @@ def view_picture(
     Returns
     -------
     rgb : (H, W, 3) uint8
+
+    Raises
+    ------
+    UnknownName
+        If there is no such view.
     """
-    if view == "rgb":
-        return values.copy()
-    if view == "depth":
+    spec = view_spec(view)
+    if spec.display == "depth":
         return colour_depth(values, near_m=near_m, range_m=depth_range_m)
-    if view == "category":
+    if spec.display == "category":
         return colour_categories(values, table)
-    if view == "instance":
-        return colour_instances(values)
-    if view == "flow":
-        return colour_flow(values)
-    if view == "normals":
-        return (127.5 * values + 128.0).astype(np.uint8)
-    return np.repeat(np.where(values, 255, 0).astype(np.uint8)[..., None], 3, axis=-1)
+    return _DISPLAYS[spec.display](values)
+
+
+def colour_directions(vectors: NDArray[np.float32]) -> Rgb:
+    """Show unit vectors (H, W, 3) with x, y, z from -1 to 1 as red, green, blue from 0 to 255."""
+    picture: Rgb = (127.5 * vectors + 128.0).astype(np.uint8)
+    return picture
+
+
+def colour_mask(mask: NDArray[np.bool_]) -> Rgb:
+    """Show truth values (H, W): white where true, black where false."""
+    return np.where(mask[..., None], _WHITE, _BLACK)
+
+
+def encoded_colour(colour: NDArray[Any]) -> Rgb:
+    """Show a colour (H, W, 3) by its sRGB codes.
+
+    Parameters
+    ----------
+    colour : (H, W, 3) uint8 or float32
+        Codes already, which are copied; or linear, where more than 1 is shown as 1 and NaN as 0.
+
+    Returns
+    -------
+    rgb : (H, W, 3) uint8
+        The nearest codes (IEC 61966-2-1).
+    """
+    if colour.dtype == np.uint8:
+        return np.array(colour, np.uint8)
+    codes = 255.0 * srgb_from_linear(np.nan_to_num(colour, posinf=1.0))
+    return np.asarray(np.rint(codes), np.uint8)
 
 
 def _cubehelix() -> Rgb:
-    """Give (256, 3): black to white through colours, brightness rising evenly.
+    """Return (256, 3): black to white through colours, brightness rising evenly.
 
     D. A. Green, "A colour scheme for the display of astronomical intensity images", 2011.
     """
@@ -158,3 +198,14 @@ def _cubehelix() -> Rgb:
 
 
 _RAMP = _cubehelix()
+
+_BLACK, _WHITE = np.zeros(3, np.uint8), np.full(3, 255, np.uint8)
+
+_DISPLAYS: Mapping[ViewDisplay, Callable[[NDArray[Any]], Rgb]] = {
+    "colour": encoded_colour,
+    "instance": colour_instances,
+    "flow": colour_flow,
+    "direction": colour_directions,
+    "mask": colour_mask,
+}
+"""How views are shown that need nothing but their values."""

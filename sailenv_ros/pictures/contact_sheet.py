@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.system.files import storage_errors, write_file
 
 __all__ = ["contact_sheet", "save_contact_sheet", "save_picture"]
 
@@ -71,7 +73,7 @@ def save_contact_sheet(
     columns: int = 3,
     tile_width: int | None = None,
 ) -> Path:
-    """Write a `contact_sheet` as a PNG or JPEG file; give its path.
+    """Write a `contact_sheet` as a PNG or JPEG file; return its path.
 
     Raises
     ------
@@ -83,15 +85,21 @@ def save_contact_sheet(
 
 
 def save_picture(path: str | Path, picture: NDArray[np.uint8]) -> Path:
-    """Write (H, W, 3) RGB pixels as they are, as a PNG or JPEG file; give its path.
+    """Write (H, W, 3) RGB pixels as they are, as a PNG or JPEG file; return its path.
 
     Raises
     ------
     InvalidRequest
         If the file's name ends in neither ``.png`` nor ``.jpg``.
+    StorageError
+        If it cannot be written.
     """
     file = _picture_file(path, "path of the picture")
-    Image.fromarray(picture).save(file, optimize=True, quality=88)
+    data = io.BytesIO()
+    kind = "PNG" if file.suffix.lower() == ".png" else "JPEG"
+    Image.fromarray(picture).save(data, kind, optimize=True, quality=88)
+    with storage_errors("the picture", file):
+        write_file(file, data.getvalue())
     return file
 
 

@@ -15,6 +15,7 @@ import yaml
 
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.topics import RecordedTopic
+from sailenv_ros.system.files import write_file
 
 __all__ = ["METADATA_FILE", "FileSummary", "metadata_text", "write_metadata"]
 
@@ -51,7 +52,7 @@ class FileSummary:
 
 
 def metadata_text(topics: Sequence[RecordedTopic], files: Sequence[FileSummary]) -> str:
-    """Give the text of `metadata.yaml`."""
+    """Return the text of `metadata.yaml`."""
     filled = [file for file in files if file.message_count]
     start_ns = min((file.start_ns for file in filled), default=_NEVER_NS)
     end_ns = max((file.end_ns for file in filled), default=start_ns)
@@ -78,7 +79,7 @@ def metadata_text(topics: Sequence[RecordedTopic], files: Sequence[FileSummary])
 def write_metadata(
     folder: Path, topics: Sequence[RecordedTopic], files: Sequence[FileSummary]
 ) -> Path:
-    """Write `metadata.yaml` whole or not at all; give its path.
+    """Write `metadata.yaml` whole or not at all; return its path.
 
     Raises
     ------
@@ -86,12 +87,9 @@ def write_metadata(
         If it cannot be written.
     """
     path = folder / METADATA_FILE
-    draft = folder / f".{METADATA_FILE}.new"
     try:
-        draft.write_text(metadata_text(topics, files), encoding="utf-8")
-        draft.replace(path)
+        write_file(path, metadata_text(topics, files).encode())
     except OSError as problem:
-        draft.unlink(missing_ok=True)
         raise RecordingError(
             f"{path} cannot be written: {problem.strerror}; once there is room,"
             f" `sailenv bag recover {folder}` writes it"

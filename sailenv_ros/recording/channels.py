@@ -19,11 +19,11 @@ from std_msgs.msg import Header
 from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
 from sailenv_msgs_py.images import image_from_view
-from sailenv_msgs_py.scene_info import scene_info_to_msg
+from sailenv_msgs_py.scene_msgs import scene_info_to_msg
 from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.recording.chunks import Buffer
+from sailenv_ros.recording.mcap.chunks import Buffer
 from sailenv_ros.recording.schemas import message_class, schema_text, type_hash
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
 from sailenv_ros.scene_info import SceneInfo
@@ -71,7 +71,7 @@ Parts = tuple[Buffer, ...]
 
 
 def topic(name: str, type_name: str, qos: OfferedQos | None = None) -> RecordedTopic:
-    """Give the topic of that name with everything a recording says of it."""
+    """Return the topic of that name with everything a recording says of it."""
     return RecordedTopic(
         name=name,
         type=type_name,
@@ -83,7 +83,7 @@ def topic(name: str, type_name: str, qos: OfferedQos | None = None) -> RecordedT
 
 
 def agent_topics(namespace: str, agent: str, views: Iterable[str]) -> list[RecordedTopic]:
-    """Give the topics that an agent's frames are recorded on."""
+    """Return the topics that an agent's frames are recorded on."""
     wanted = set(views)
     return [
         topic(f"{namespace}/{agent}/{name}", type_name)
@@ -93,7 +93,7 @@ def agent_topics(namespace: str, agent: str, views: Iterable[str]) -> list[Recor
 
 
 def frame_messages(frame: Frame, depth_range_m: float) -> Iterator[tuple[str, Parts]]:
-    """Give everything that is recorded of a frame, by topics' names below the agent's.
+    """Return everything that is recorded of a frame, by topics' names below the agent's.
 
     The images' bytes are the frame's own; the info closes the frame, as it does on DDS.
     """
@@ -110,7 +110,7 @@ def frame_messages(frame: Frame, depth_range_m: float) -> Iterator[tuple[str, Pa
 
 
 def scene_info_message(info: SceneInfo) -> Parts:
-    """Give the message that tells of the scene."""
+    """Return the message that tells of the scene."""
     return (serialize_message(scene_info_to_msg(info)),)
 
 
@@ -216,7 +216,7 @@ class _CdrReader:
 
 
 def stamp_of(type_name: str, data: Buffer) -> int | None:
-    """Give the simulated time of a serialized message of an agent [ns]; None of other types."""
+    """Return the simulated time of a serialized message of an agent [ns]; None of other types."""
     if type_name not in _STAMPED or bytes(data[:2]) != _LITTLE_ENDIAN_CDR or len(data) < 12:
         return None
     seconds, rest = struct.unpack_from("<iI", data, 4)
@@ -224,6 +224,6 @@ def stamp_of(type_name: str, data: Buffer) -> int | None:
 
 
 def clock_message(time_ns: int) -> bytes:
-    """Give a serialized message that says what time it is [ns]."""
+    """Return a serialized message that says what time it is [ns]."""
     seconds, rest = divmod(time_ns, 1_000_000_000)
     return _LITTLE_ENDIAN_CDR + b"\0\0" + struct.pack("<iI", seconds, rest)

@@ -38,7 +38,7 @@ _KITTI_ZERO = 2**15
 
 
 def backward_px(flow: Flow, dt_s: float) -> Flow:
-    """Give the displacement to the previous frame, as OpenCV's backward flow has it.
+    """Return the displacement to the previous frame, as OpenCV's backward flow has it.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def backward_px(flow: Flow, dt_s: float) -> Flow:
 
 
 def flow_from_backward(backward: Flow, dt_s: float) -> Flow:
-    """Give the velocity [px/s] of a displacement to the previous frame [px].
+    """Return the velocity [px/s] of a displacement to the previous frame [px].
 
     Raises
     ------
@@ -70,7 +70,7 @@ def flow_from_backward(backward: Flow, dt_s: float) -> Flow:
 
 
 def kubric_from_flow(flow: Flow, dt_s: float) -> Flow:
-    """Give what Kubric calls backward flow: (delta_row, delta_column) of p_t - p_{t-1} [px].
+    """Return what Kubric calls backward flow: (delta_row, delta_column) of p_t - p_{t-1} [px].
 
     Kubric's "backward" points the way the surface moved, as its forward flow does, and names
     rows first.
@@ -79,7 +79,7 @@ def kubric_from_flow(flow: Flow, dt_s: float) -> Flow:
 
 
 def flow_from_kubric(kubric: Flow, dt_s: float) -> Flow:
-    """Give the velocity [px/s] of Kubric's backward flow [px].
+    """Return the velocity [px/s] of Kubric's backward flow [px].
 
     Raises
     ------
@@ -90,7 +90,7 @@ def flow_from_kubric(kubric: Flow, dt_s: float) -> Flow:
 
 
 def carla_from_flow(flow: Flow, dt_s: float) -> Flow:
-    """Give CARLA's optical flow: p_t - p_{t-1} in normalised device coordinates, y up.
+    """Return CARLA's optical flow: p_t - p_{t-1} in normalised device coordinates, y up.
 
     The picture is 2 wide and 2 high there: c = (2 d_u / W, -2 d_v / H).
     """
@@ -100,7 +100,7 @@ def carla_from_flow(flow: Flow, dt_s: float) -> Flow:
 
 
 def flow_from_carla(carla: Flow, dt_s: float) -> Flow:
-    """Give the velocity [px/s] of CARLA's optical flow.
+    """Return the velocity [px/s] of CARLA's optical flow.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def flow_from_carla(carla: Flow, dt_s: float) -> Flow:
 
 
 def flo_from_backward(backward: Flow) -> bytes:
-    """Give a Middlebury .flo file: "PIEH", width, height, then u and v of each pixel, row by row.
+    """Return a Middlebury .flo file: "PIEH", width, height, then u and v of each pixel, row by row.
 
     D. Scharstein, https://vision.middlebury.edu/flow/code/flow-code/README.txt
     """
@@ -142,7 +142,7 @@ def backward_from_flo(data: bytes) -> Flow:
 
 
 def kitti_from_backward(backward: Flow) -> NDArray[np.uint16]:
-    """Give KITTI's picture of a flow: channels u, v, valid, of 16 bits.
+    """Return KITTI's picture of a flow: channels u, v, valid, of 16 bits.
 
     u = (R - 2^15) / 64 [px], so that steps are 1/64 px and ±512 px the ends; 0, 0, 0 where there
     is no flow or it does not fit. M. Menze, A. Geiger, "Object scene flow", 2015 (devkit).

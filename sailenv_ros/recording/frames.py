@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sailenv_msgs_py.camera_info import intrinsics_from_camera_info
 from sailenv_msgs_py.frame_info import camera_of_frame_info
 from sailenv_msgs_py.images import view_from_image
-from sailenv_msgs_py.scene_info import scene_info_from_msg
+from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
@@ -24,19 +24,20 @@ from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.recording.channels import FRAME_INFO, IMAGE, SCENE_INFO, message_of
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.validation import is_integer
 
 __all__ = ["RecordedFrames", "recorded_agents"]
 
 
 def recorded_agents(reader: RecordingReader) -> dict[str, str]:
-    """Give the agents whose frames were recorded, with what their topics' names begin with."""
+    """Return the agents whose frames were recorded, with what their topics' names begin with."""
     suffix = "/frame_info"
     names = [t.name for t in reader.topics if t.type == FRAME_INFO and t.name.endswith(suffix)]
     return {name.split("/")[-2]: name[: -len(suffix)] for name in sorted(names)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Entry:
+class _FrameEntry:
     """Where a frame's messages lie: rows of the reader."""
 
     log_ns: int
@@ -79,7 +80,7 @@ class RecordedFrames(Sequence[Frame]):
             if getattr(self._topics.get(f"{self._prefix}/{view}"), "type", "") == IMAGE
         )
         self._infos = self._scene_infos()
-        self._entries: list[_Entry] = []
+        self._entries: list[_FrameEntry] = []
         self.incomplete = 0
         self._find_frames()
         self._stamps = np.array([entry.stamp_ns for entry in self._entries], np.int64)
@@ -95,15 +96,19 @@ class RecordedFrames(Sequence[Frame]):
         return self._stamps.copy()
 
     def index_at(self, time_s: float) -> int:
-        """Give the number of the last frame at or before a simulated time [s].
+        """Return the number of the last frame at or before a simulated time [s].
 
         Where the scene began anew several times, that of the last time.
 
         Raises
         ------
+        InvalidRequest
+            If the time is no finite number.
         RecordingError
             If all are later.
         """
+        if not isinstance(time_s, int | float | np.number) or not np.isfinite(time_s):
+            raise InvalidRequest("time_s", time_s, "a finite number [s]")
         earlier = np.flatnonzero(self._stamps <= round(time_s * 1e9))
         if not len(earlier):
             raise RecordingError(f"{self._reader.path} has no frame at or before {time_s:g} s")
@@ -118,7 +123,7 @@ class RecordedFrames(Sequence[Frame]):
         InvalidRequest, IndexError
             If it is no integer, or there is no such frame.
         """
-        if isinstance(index, bool) or not isinstance(index, int | np.integer):
+        if not is_integer(index):
             raise InvalidRequest("index", index, "an integer")
         if not -len(self) <= index < len(self):
             # Python's own: it is what ends a loop over a sequence.
@@ -155,16 +160,16 @@ class RecordedFrames(Sequence[Frame]):
         return entry.info, {view: self._message(entry.images[view]) for view in entry.images}
 
     def scene_info(self, index: int) -> SceneInfo | None:
-        """Give what was told of the scene when the frame was made; None if it was not recorded."""
+        """Return what was told of the scene when the frame was made; None if not recorded."""
         entry = self._entries[self.position(index)]
-        told = [info for log_ns, info in self._infos if log_ns <= entry.log_ns]
-        if told and told[-1].revision >= entry.info.revision:
-            return told[-1]
+        known = [info for log_ns, info in self._infos if log_ns <= entry.log_ns]
+        if known and known[-1].revision >= entry.info.revision:
+            return known[-1]
         newer = [info for _, info in self._infos if info.revision >= entry.info.revision]
-        return newer[0] if newer else (told[-1] if told else None)
+        return newer[0] if newer else (known[-1] if known else None)
 
     def intrinsics(self, index: int) -> CameraIntrinsics:
-        """Give the intrinsics of the camera that a frame was seen by."""
+        """Return the intrinsics of the camera that a frame was seen by."""
         info = self._entries[self.position(index)].info
         return self._intrinsics(info, self.scene_info(index))
 
@@ -212,7 +217,7 @@ class RecordedFrames(Sequence[Frame]):
             if set(images) == set(info.views) & set(self.views) and images:
                 stamp_ns = ns_from_stamp(info.header.stamp)
                 self._entries.append(
-                    _Entry(log_ns=log_ns, stamp_ns=stamp_ns, info=info, images=images)
+                    _FrameEntry(log_ns=log_ns, stamp_ns=stamp_ns, info=info, images=images)
                 )
             else:
                 self.incomplete += 1

@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest, UnknownName
@@ -25,7 +24,7 @@ from sailenv_ros.recording.channels import (
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.calls import wait_for
+from sailenv_ros.system.futures import wait_for
 
 __all__ = ["FrameRecorder", "due_steps", "record_lockstep"]
 
@@ -92,7 +91,7 @@ class _Shot:
 
 
 def due_steps(rate_hz: float, count: int) -> list[int]:
-    """Give the physics steps at which an agent's frames fall due, from 0 on."""
+    """Return the physics steps at which an agent's frames fall due, from 0 on."""
     # A step late rather than early, as the streams of a simulation do it.
     return [math.ceil(number * STEPS_PER_S / rate_hz - 1e-9) for number in range(count)]
 
@@ -181,14 +180,14 @@ def _chosen(info: SceneInfo, names: Sequence[str]) -> list[AgentSpec]:
 def _frames(
     simulation: Simulation, shots: Sequence[_Shot], views: tuple[str, ...] | None
 ) -> Iterator[Frame]:
-    """Give the frames in order; each is asked for before the one before is used."""
+    """Return the frames in order; each is asked for before the one before is used."""
     step = 0
-    asked: Future[Any] | None = None
+    asked: Future[Frame] | None = None
     for shot in shots:
         if shot.step > step:
-            simulation.request("step", shot.step - step)
+            simulation.step.submit(shot.step - step)
             step = shot.step
-        following = simulation.request("capture", shot.spec.name, views)
+        following = simulation.capture.submit(views, agent=shot.spec.name)
         if asked is not None:
             yield _await(asked)
         asked = following
@@ -196,6 +195,6 @@ def _frames(
         yield _await(asked)
 
 
-def _await(asked: Future[Any]) -> Frame:
+def _await(asked: Future[Frame]) -> Frame:
     frame: Frame = wait_for(asked, "a frame to be rendered", FRAME_TIMEOUT_S)
     return frame

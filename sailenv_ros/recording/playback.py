@@ -14,6 +14,7 @@ import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.recording.reader import RecordingReader
+from sailenv_ros.validation import is_finite_number
 
 __all__ = ["PlaybackClock", "Programme", "programme"]
 
@@ -53,7 +54,7 @@ class PlaybackClock:
         return self._since_s is None
 
     def position_ns(self, now_s: float) -> float:
-        """Give the log time that is played now [ns]."""
+        """Return the log time that is played now [ns]."""
         if self._since_s is None:
             return self._position_ns
         return self._position_ns + (now_s - self._since_s) * self.rate * 1e9
@@ -75,7 +76,7 @@ class PlaybackClock:
             self._since_s = now_s
 
     def wait_s(self, log_ns: int, now_s: float) -> float:
-        """Give how long to wait for that log time [s]; infinite while paused, 0 if it has come."""
+        """Return how long to wait for that log time [s]; infinite while paused, 0 if it is due."""
         left_ns = log_ns - self.position_ns(now_s)
         if left_ns <= 0.0 and not self.paused:
             return 0.0
@@ -121,7 +122,7 @@ def programme(reader: RecordingReader, topics: Sequence[str], start_s: float = 0
     RecordingError
         If there is nothing at or after the start.
     """
-    if not (math.isfinite(start_s) and start_s >= 0.0):
+    if not (is_finite_number(start_s) and start_s >= 0.0):
         raise InvalidRequest("start", start_s, "0 or more [s]")
     latched = [t for t in topics if reader.topic(t).qos.durability == "transient_local"]
     moving = [t for t in topics if t not in latched] or list(topics)

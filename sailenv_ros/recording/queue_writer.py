@@ -19,7 +19,7 @@ __all__ = ["QueueWriter"]
 _log = logging.getLogger(__name__)
 
 
-class _Entry(NamedTuple):
+class _QueuedMessage(NamedTuple):
     topic: str
     data: bytes
     log_ns: int
@@ -39,7 +39,7 @@ class QueueWriter:
     def __init__(self, writer: RecordingWriter, limit_bytes: int) -> None:
         self._writer = writer
         self._limit_bytes = limit_bytes
-        self._queue: deque[_Entry] = deque()
+        self._queue: deque[_QueuedMessage] = deque()
         self._waiting_bytes = 0
         self._changed = threading.Condition()
         self._closing = False
@@ -66,7 +66,7 @@ class QueueWriter:
             if full or self.failure is not None or self._closing:
                 self.dropped += 1
                 return
-            self._queue.append(_Entry(topic, data, log_ns))
+            self._queue.append(_QueuedMessage(topic, data, log_ns))
             self._waiting_bytes += len(data)
             self._changed.notify()
 
@@ -104,7 +104,7 @@ class QueueWriter:
                     self._queue.clear()
                 return
 
-    def _write(self, entry: _Entry, left: int) -> None:
+    def _write(self, entry: _QueuedMessage, left: int) -> None:
         try:
             self._writer.write(entry.topic, (entry.data,), entry.log_ns)
         except RecordingError:
@@ -114,7 +114,7 @@ class QueueWriter:
         with self._changed:
             self._waiting_bytes -= len(entry.data)
 
-    def _take(self) -> tuple[list[RecordedTopic], list[_Entry]] | None:
+    def _take(self) -> tuple[list[RecordedTopic], list[_QueuedMessage]] | None:
         """Wait for messages; None once all were given and no more will come."""
         with self._changed:
             while not self._queue and not self._closing:

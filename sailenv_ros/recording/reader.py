@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.recording.bag_metadata import METADATA_FILE
-from sailenv_ros.recording.file_index import ENTRY, FileIndex, RawMessage
+from sailenv_ros.recording.mcap.file_index import ENTRY, FileIndex, RawMessage
 from sailenv_ros.recording.topics import RecordedTopic, qos_of_yaml
 
 __all__ = ["RecordingReader", "files_of"]
@@ -76,7 +76,7 @@ class RecordingReader:
         return len(self._entries)
 
     def topic(self, name: str) -> RecordedTopic:
-        """Give the topic of that name.
+        """Return the topic of that name.
 
         Raises
         ------
@@ -88,12 +88,12 @@ class RecordingReader:
         return self._topics[name]
 
     def rows(self, topic: str) -> NDArray[np.int64]:
-        """Give the numbers of a topic's messages, in order of time."""
+        """Return the numbers of a topic's messages, in order of time."""
         place = self._places[self.topic(topic).name]
         return np.flatnonzero(self._entries["topic"] == place)
 
     def log_ns(self, rows: NDArray[np.int64] | int) -> NDArray[np.uint64]:
-        """Give the log times of messages by their numbers [ns]."""
+        """Return the log times of messages by their numbers [ns]."""
         times: NDArray[np.uint64] = self._entries["log_ns"][rows]
         return times
 
@@ -138,7 +138,7 @@ class RecordingReader:
         self.close()
 
     def _take(self, number: int, file: FileIndex) -> NDArray[np.void]:
-        """Give a file's entries with the bag's own numbers of topics."""
+        """Return a file's entries with the bag's own numbers of topics."""
         entries = np.empty(len(file.entries), _ENTRY)
         for key in ENTRY.names or ():
             entries[key] = file.entries[key]
@@ -170,7 +170,7 @@ _ORDER = ("offset", "chunk", "file", "rank", "log_ns")
 
 
 def files_of(path: Path) -> list[Path]:
-    """Give the MCAP files of a bag folder in their order, or the file itself.
+    """Return the MCAP files of a bag folder in their order, or the file itself.
 
     Raises
     ------

@@ -30,7 +30,7 @@ _PRIMITIVE = frozenset({"bool", "byte", "char", "string", "wstring", "float32", 
 
 @cache
 def message_class(name: str) -> Any:
-    """Give the Python class of a type, e.g. ``"sensor_msgs/msg/Image"``.
+    """Return the Python class of a type, e.g. ``"sensor_msgs/msg/Image"``.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def message_class(name: str) -> Any:
 
 @cache
 def schema_text(name: str) -> str:
-    """Give the definition of a type, followed by those of all types that it consists of.
+    """Return the definition of a type, followed by those of all types that it consists of.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def schema_text(name: str) -> str:
 
 @cache
 def type_hash(name: str) -> str:
-    """Give the hash by which ROS compares types; empty where it is not installed."""
+    """Return the hash by which ROS compares types; empty where it is not installed."""
     try:
         description = json.loads(_definition(_split(name), ".json"))
     except (RecordingError, ValueError):
@@ -87,7 +87,7 @@ def _split(name: str) -> tuple[str, str]:
 
 
 def _parts(text: str, package: str) -> list[tuple[str, str]]:
-    """Give the types of a definition's fields that are messages themselves."""
+    """Return the types of a definition's fields that are messages themselves."""
     found = []
     for line in text.splitlines():
         matched = _FIELD.match(line.split("#")[0])

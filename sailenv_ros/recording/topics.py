@@ -1,4 +1,4 @@
-"""What is recorded, as nouns: a topic of a recording, and how a recording shall be written.
+"""What is recorded, as data types: a topic of a recording, and how a recording shall be written.
 
 Made by the table of channels or read from a file; goes to the writer and to `metadata.yaml`.
 Knows neither ROS nor files.
@@ -6,18 +6,17 @@ Knows neither ROS nor files.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import yaml
 
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.recording.mcap import Compression
+from sailenv_ros.validation import is_finite_number
 
-__all__ = ["Compression", "OfferedQos", "RecordedTopic", "RecordingOptions", "qos_of_yaml"]
-
-Compression = Literal["zstd", "lz4", "none"]
+__all__ = ["OfferedQos", "RecordedTopic", "RecordingOptions", "qos_of_yaml"]
 
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}
 """How rosbag2 writes a duration that never ends."""
@@ -42,7 +41,7 @@ class OfferedQos:
     durability: str = "volatile"
 
     def profile(self) -> dict[str, Any]:
-        """Give the profile as rosbag2 lists it."""
+        """Return the profile as rosbag2 lists it."""
         return {
             "history": "keep_last",
             "depth": self.depth,
@@ -56,7 +55,7 @@ class OfferedQos:
         }
 
     def yaml(self) -> str:
-        """Give the text that a channel of the file carries."""
+        """Return the text that a channel of the file carries."""
         return yaml.safe_dump([self.profile()], sort_keys=False)
 
 
@@ -146,5 +145,5 @@ class RecordingOptions:
             raise InvalidRequest("chunk_bytes", self.chunk_bytes, "from 1 to 2^30 [B]")
         if self.split_bytes < 0:
             raise InvalidRequest("split_bytes", self.split_bytes, "0 (one file) or more [B]")
-        if not (math.isfinite(self.split_s) and self.split_s >= 0.0):
+        if not (is_finite_number(self.split_s) and self.split_s >= 0.0):
             raise InvalidRequest("split_s", self.split_s, "0 (one file) or more [s]")

@@ -15,8 +15,8 @@ from mcap.records import Channel, Metadata, Schema
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.recording.bag_metadata import FileSummary, metadata_text, write_metadata
-from sailenv_ros.recording.chunks import Buffer, ChunkBuilder
-from sailenv_ros.recording.mcap_file import McapFile
+from sailenv_ros.recording.mcap.chunks import Buffer, ChunkBuilder
+from sailenv_ros.recording.mcap.file_writer import McapFile
 from sailenv_ros.recording.topics import RecordedTopic, RecordingOptions
 
 __all__ = ["RecordingWriter", "WriterStatistics"]
@@ -78,6 +78,7 @@ class RecordingWriter:
         self._pending = {id(self._bulky): 0, id(self._small): 0}
         self._failed = False
         self._closed = False
+        self._problem: RecordingError | None = None
         _make_folder(self.folder)
         self._file = McapFile(self._path(0))
 
@@ -171,19 +172,18 @@ class RecordingWriter:
         if self._closed:
             return
         self._closed = True
-        problem: RecordingError | None = None
         if not self._failed:
             try:
                 self.flush()
             except RecordingError as error:
-                problem = error
+                self._problem = self._problem or error
         for builder in (self._bulky, self._small):
             # Gathered after the disk was full.
             self._lost += self._pending[id(builder)]
         self._finish_file()
         write_metadata(self.folder, self.topics, self._files)
-        if problem is not None:
-            raise problem
+        if self._problem is not None:
+            raise self._problem
 
     def __enter__(self) -> RecordingWriter:
         return self
@@ -197,7 +197,7 @@ class RecordingWriter:
         return self.folder / f"{self.folder.resolve().name}_{number}.mcap"
 
     def _channel(self, topic: RecordedTopic) -> int:
-        """Give the channel's number in the present file; write its schema where it is new."""
+        """Return the channel's number in the present file; write its schema where it is new."""
         number = self._channels.get(topic.name)
         if number is not None:
             return number
@@ -241,7 +241,11 @@ class RecordingWriter:
             self._file.add_metadata(self._embedded())
         except RecordingError as problem:
             _log.warning("%s", problem)  # readers of files do without it
-        self._lost += self._file.finish()
+        try:
+            self._lost += self._file.finish()
+        except RecordingError as problem:
+            # The files are closed and described all the same; `close` tells of it.
+            self._problem = self._problem or problem
         start_ns, end_ns = self._file.span_ns()
         counts = {topics[number]: count for number, count in self._file.counts().items()}
         summary = FileSummary(
@@ -251,7 +255,7 @@ class RecordingWriter:
         self._closed_bytes += self._file.path.stat().st_size
 
     def _embedded(self) -> Metadata:
-        """Give the bag's metadata as rosbag2 puts it into the file, for a file that travels alone.
+        """Return the bag's metadata as rosbag2 puts it into the file, for a file that is alone.
 
         It says what is in this file.
         """
@@ -272,8 +276,9 @@ def _make_folder(folder: Path) -> None:
         raise RecordingError(
             f"{folder} exists already; a recording is never overwritten, choose another name"
         ) from None
-    except OSError as problem:
-        raise RecordingError(f"{folder} cannot be made: {problem.strerror}") from None
+    except (OSError, ValueError) as problem:  # a NUL in the name is no OSError
+        why = getattr(problem, "strerror", None) or str(problem)
+        raise RecordingError(f"{str(folder)!r} cannot be made: {why}") from None
 
 
 def _schema(topic: RecordedTopic, number: int) -> Schema:

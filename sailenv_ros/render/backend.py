@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol, TypeAlias
+from typing import Any, Literal, Protocol, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +15,12 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
-__all__ = ["BackendName", "RenderBackend", "RenderedViews"]
+__all__ = ["BACKEND_NAMES", "BackendName", "RenderBackend", "RenderedViews"]
 
-BackendName: TypeAlias = Literal["auto", "gl", "tiny"]
+BackendName: TypeAlias = Literal["auto", "native", "gl", "tiny"]
+
+BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
+"""What can be asked for."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -50,6 +53,10 @@ class RenderBackend(Protocol):
     def software(self) -> bool:
         """True if no graphics hardware is used."""
 
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that it can make, in the order of `frame.VIEWS`."""
+
     def render(
         self,
         snapshot: WorldSnapshot,
@@ -68,6 +75,11 @@ class RenderBackend(Protocol):
         camera : Camera
         views : iterable of str
             Names in `frame.VIEWS`.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            If there is no such view, or none that this renderer can make.
         """
 
     def close(self) -> None:

@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bloomed"]
+__all__ = ["add_bloom"]
 
 LEVELS = 5
 """Halvings of the picture: each doubles how far light is spread."""
 
 
-def bloomed(radiance: NDArray[np.float16], share: float) -> NDArray[np.float16]:
+def add_bloom(radiance: NDArray[np.float16], share: float) -> NDArray[np.float16]:
     """Spread light.
 
     Parameters

@@ -13,17 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.model import Mesh
-from sailenv_ros.render import clusters
-from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
+from sailenv_ros.render import cluster_culling
+from sailenv_ros.render.drawn_meshes import chart_table, drawn_meshes
+from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.materials import BatchKind, MaterialBuffers
-from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.render.shadow_plan import casts
+from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
-__all__ = ["ROWS", "Batch", "DrawList", "casts"]
-
-LARGEST_SHEET_M = 12.0
-LARGEST_CASTER_M = 40.0
-"""Bodies with a longer diagonal (sheets without thickness: grounds; and still larger solids)
-receive shadows and cast none: they would stretch the shadow map to their own size."""
+__all__ = ["ROWS", "Batch", "DrawList"]
 
 ROWS = 12
 """Vectors of four in a part's block of uniforms; `draw.glsl` says what each holds.
@@ -67,7 +64,7 @@ class Batch:
         self.chosen = kept[np.argsort(distance[kept], kind="stable")].tolist()
 
     def least(self, distance: NDArray[np.float64]) -> float:
-        """Give the least of its parts' distances."""
+        """Return the least of its parts' distances."""
         return float(distance[self._parts].min())
 
 
@@ -130,7 +127,7 @@ class DrawList:
         self.batches = tuple(_batches(kinds, everything, apart=see_through))
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
         self.casters = Batch(_CASTER, everything[casting])
-        self._charts, self._baked_poses = _charts(contents)
+        self._charts, self._baked_poses = chart_table(contents)
         self._one_sided = np.array([not kind.double_sided for kind in kinds], bool)
         self._clip = np.zeros((len(parts), 4, 4))
         self._eye_from_object = np.zeros((len(contents.instances), 4, 4))
@@ -196,16 +193,14 @@ class DrawList:
             return np.zeros(0, np.uint32), [(0, 0)] * len(self.lies)
         linear, offset = self._eye_from_object[:, :3, :3], self._eye_from_object[:, :3, 3:]
         eyes = np.linalg.solve(linear, -offset)[:, :, 0].astype(np.float64)
-        # A mirrored body's triangles run the other way around.
-        upright = np.linalg.det(linear) > 0.0
         rows = self._instance_rows
-        seen, lies = clusters.seen_indices(
+        seen, lies = cluster_culling.seen_indices(
             np.array(chosen, np.intp),
             self._geometry.clusters,
             self._ranges,
             self._clip,
             eyes[rows],
-            self._one_sided & upright[rows],
+            self._one_sided,
             self._geometry.indices,
             self._geometry.corner_indices,
             np.array([by_corner(kind) for kind in self._kinds], bool),
@@ -218,7 +213,7 @@ class DrawList:
         return same
 
     def farthest_first(self) -> list[Batch]:
-        """Give the batches that the eye of `place` may see, the most distant first."""
+        """Return the batches that the eye of `place` may see, the most distant first."""
         seen = [batch for batch in self.batches if batch.chosen]
         return sorted(seen, key=lambda batch: -batch.least(self._distance))
 
@@ -227,28 +222,8 @@ class DrawList:
         self.casters.choose(self._visible & instances[self._instance_rows], self._distance)
 
 
-def _charts(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give each instance's offset and scale in the light map, and the pose that it is good for."""
-    count = len(contents.instances)
-    charts, poses = np.zeros((count, 4)), np.full((count, 4, 4), np.nan)
-    baked = contents.baked.charts if contents.baked is not None else {}
-    for row, drawn in enumerate(contents.instances):
-        chart = baked.get(drawn.instance.id)
-        if chart is not None:
-            charts[row] = *chart.offset, *chart.scale
-            poses[row] = chart.world_from_body
-    return charts, poses
-
-
-def casts(drawn: DrawnInstance) -> bool:
-    """Tell if a body casts a shadow: walls and ceilings of halls do, grounds do not."""
-    low, high = drawn.model.bounds() * np.asarray(drawn.scale)
-    largest = LARGEST_SHEET_M if (high - low).min() < 1e-3 else LARGEST_CASTER_M
-    return float(np.linalg.norm(high - low)) <= largest
-
-
 def _corners(mesh: Mesh) -> NDArray[np.float64]:
-    """Give (8, 4): the homogeneous corners of the box around a mesh."""
+    """Return (8, 4): the homogeneous corners of the box around a mesh."""
     low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1).reshape(8, 3)
     return np.concatenate([corners, np.ones((8, 1))], axis=1).astype(np.float64)

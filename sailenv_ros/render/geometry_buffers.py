@@ -13,78 +13,10 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.baked_light import Unwrapping
-from sailenv_ros.model import Mesh
 from sailenv_ros.render.clusters import CLUSTER, clusters_of
-from sailenv_ros.snapshot import SceneContents
+from sailenv_ros.render.drawn_meshes import VERTEX, DrawnMesh, corners_of
 
-__all__ = ["DrawnMesh", "GeometryBuffers", "MeshSlice", "corners_of", "drawn_meshes"]
-
-VERTEX = np.dtype(
-    [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("light_uv", "<f4", 2)]
-)
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class DrawnMesh:
-    """A mesh as it is drawn: with places in a light map if its model was unwrapped.
-
-    Attributes
-    ----------
-    mesh : Mesh
-    unwrapping : Unwrapping or None
-    part : int
-        Number of the mesh among its model's parts.
-    """
-
-    mesh: Mesh
-    unwrapping: Unwrapping | None
-    part: int
-
-    @property
-    def key(self) -> tuple[int, int]:
-        """What tells drawn meshes apart while both objects live."""
-        return id(self.mesh), id(self.unwrapping)
-
-    @property
-    def triangles(self) -> NDArray[np.uint32]:
-        """(M, 3) uint32: indices into `vertices`."""
-        return (
-            self.mesh.triangles if self.unwrapping is None else self.unwrapping.triangles[self.part]
-        )
-
-    @property
-    def vertex_count(self) -> int:
-        """How many vertices are drawn."""
-        return len(
-            self.mesh.positions if self.unwrapping is None else self.unwrapping.vertices[self.part]
-        )
-
-    def interleaved(self) -> NDArray[np.void]:
-        """Give the vertices as the buffer holds them."""
-        mesh = self.mesh
-        result = np.zeros(self.vertex_count, VERTEX)
-        chosen: slice | NDArray[np.uint32] = slice(None)
-        if self.unwrapping is not None:
-            chosen = self.unwrapping.vertices[self.part]
-            result["light_uv"] = self.unwrapping.uvs[self.part]
-        result["position"] = mesh.positions[chosen]
-        result["normal"] = mesh.normals[chosen]
-        result["uv"] = mesh.uvs[chosen]
-        return result
-
-
-def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
-    """Give the meshes of each instance's parts, in their order."""
-    charts = contents.baked.charts if contents.baked is not None else {}
-    result = []
-    for drawn in contents.instances:
-        chart = charts.get(drawn.instance.id)
-        flat = chart.unwrapping if chart is not None else None
-        result.append(
-            [DrawnMesh(part.mesh, flat, place) for place, part in enumerate(drawn.model.parts)]
-        )
-    return result
+__all__ = ["GeometryBuffers", "MeshSlice"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,40 +108,6 @@ class GeometryBuffers:
             self.corner_index_buffer,
         ):
             buffer.release()
-
-
-def corners_of(
-    positions: NDArray[np.float32], triangles: NDArray[np.uint32]
-) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Give each place that triangles use a number, in the order in which they do.
-
-    Parameters
-    ----------
-    positions : (V, 3) float32
-    triangles : (M, 3) uint32
-
-    Returns
-    -------
-    corners : (K, 3) float32
-        Places, each once, bit for bit.
-    triangles : (M, 3) uint32
-        The same triangles of corners.
-    """
-    if not triangles.size:
-        return np.zeros((0, 3), np.float32), triangles
-    bits = np.ascontiguousarray(positions).view(np.uint32)
-    order = np.lexsort(bits.T)
-    differs = (np.diff(bits[order], axis=0) != 0).any(axis=1)
-    place_of = np.empty(len(positions), np.int64)
-    place_of[order] = np.concatenate([[0], np.cumsum(differs)])
-    used, first, corner_of = np.unique(
-        place_of[triangles.reshape(-1)], return_index=True, return_inverse=True
-    )
-    rank = np.empty(len(used), np.uint32)
-    by_use = np.argsort(first)
-    rank[by_use] = np.arange(len(used), dtype=np.uint32)
-    corners = positions[triangles.reshape(-1)[first[by_use]]]
-    return corners, rank[corner_of.reshape(-1)].reshape(-1, 3)
 
 
 def _or_one(

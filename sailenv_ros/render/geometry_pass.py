@@ -6,25 +6,33 @@ pictures normal and material, go out. Only the attachments that are asked for ex
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.frame import views_of
 from sailenv_ros.render.draw_list import ROWS, Batch, DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.materials import BatchKind, MaterialBuffers
-from sailenv_ros.render.programs import ProgramCache, set_uniform
+from sailenv_ros.render.programs import ProgramCache, set_uniform, shader_source
 
-__all__ = ["GeometryPass", "Targets"]
+__all__ = ["GeometryPass", "Targets", "written_views"]
 
 GL_DEPTH_CLAMP = 0x864F
 GL_CLIP_DISTANCE0 = 0x3000
 
 _VERTEX_FORMAT = {"in_position": "3f", "in_normal": "3f", "in_uv": "2f", "in_light_uv": "2f"}
 _PADDING = {"in_position": "3x4", "in_normal": "3x4", "in_uv": "2x4", "in_light_uv": "2x4"}
+
+
+def written_views() -> tuple[str, ...]:
+    """Return the views of source 'geometry' that the pass can write: its shader has an output."""
+    outputs = re.findall(r"location = OUT_(\w+)", shader_source("geometry.frag"))
+    return tuple(view for view in views_of("geometry") if view.upper() in outputs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,19 +45,19 @@ class Targets:
         Depth along the optical axis [m] and instance id, 2 x float32.
     shape, albedo, light_at : Texture or None
         Normal, roughness, metallic; square root of albedo, emission; place in the light map.
-    normals : Texture or None
-        Unit normals in the optical frame, 4 x float32.
+    outputs : dict of str to Texture
+        Views that are written as they are, 4 x float32; the fourth is 0 where nothing was hit.
     framebuffer : Framebuffer
         What the geometry pass draws into.
     picture : Framebuffer or None
-        What the lighting pass draws into, on the same depth buffer; see `develop`.
+        What the lighting pass draws into, on the same depth buffer; see `tone_map`.
     """
 
     surface: moderngl.Texture
     shape: moderngl.Texture | None
     albedo: moderngl.Texture | None
     light_at: moderngl.Texture | None
-    normals: moderngl.Texture | None
+    outputs: Mapping[str, moderngl.Texture]
     depth: moderngl.Renderbuffer
     framebuffer: moderngl.Framebuffer
     picture: moderngl.Framebuffer | None
@@ -66,7 +74,7 @@ class Targets:
             self.shape,
             self.albedo,
             self.light_at,
-            self.normals,
+            *self.outputs.values(),
             self.depth,
         ):
             if attached is not None:
@@ -91,15 +99,17 @@ class GeometryPass:
         height: int,
         *,
         shaded: bool,
-        normals: bool,
+        outputs: Sequence[str] = (),
         baked: bool = False,
     ) -> Targets:
         """Make the textures of a picture size.
 
         Parameters
         ----------
-        shaded, normals : bool
-            What is wanted besides depth and ids.
+        shaded : bool
+            True if a picture is wanted.
+        outputs : sequence of str
+            Views of `written_views` that are wanted.
         baked : bool
             True to leave places in a light map.
         """
@@ -108,19 +118,20 @@ class GeometryPass:
         shape = self._context.texture(size, 4, dtype="f2") if shaded else None
         albedo = self._context.texture(size, 4) if shaded else None
         light_at = self._context.texture(size, 2, dtype="nu2") if shaded and baked else None
-        normal = self._context.texture(size, 4, dtype="f4") if normals else None
-        textures = (surface, shape, albedo, light_at, normal)
-        for texture in textures:
+        written = {view: self._context.texture(size, 4, dtype="f4") for view in outputs}
+        textures = (surface, shape, albedo, light_at)
+        for texture in (*textures, *written.values()):
             if texture is not None:
                 texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         depth = self._context.depth_renderbuffer(size)
         attached = [texture for texture in textures if texture is not None]
+        attached += written.values()
         framebuffer = self._context.framebuffer(attached, depth)
         picture = None
         if shaded:
             colour = self._context.texture(size, 4, dtype="f2")
             picture = self._context.framebuffer([colour], depth)
-        return Targets(*textures, depth, framebuffer, picture)
+        return Targets(*textures, written, depth, framebuffer, picture)
 
     def draw(
         self,
@@ -141,9 +152,7 @@ class GeometryPass:
         # The projection turns the picture upside down, so that row 0 of OpenGL's window is the
         # picture's top row and no array is ever flipped; front faces turn the other way with it.
         context.front_face = "cw"
-        # Masked materials need their alpha even where no picture is made.
-        plain = targets.shape is None and targets.normals is None
-        lies = self._choose(draws, lambda kind: plain and not kind.masked)
+        lies = self._choose(draws, targets)
         try:
             for batch in draws.batches:
                 if not any(lies[part][1] for part in batch.chosen):
@@ -156,7 +165,7 @@ class GeometryPass:
                     context.disable(moderngl.CULL_FACE)
                 else:
                     context.enable(moderngl.CULL_FACE)
-                by_corner = plain and not batch.kind.masked
+                by_corner = _by_corner(batch.kind, targets)
                 array = bound(context, program, geometry, self._index_buffer, by_corner=by_corner)
                 issue(program, array, draws, batch, lies)
         finally:
@@ -164,11 +173,9 @@ class GeometryPass:
             context.disable_direct(GL_DEPTH_CLAMP)
             context.front_face = "ccw"
 
-    def _choose(
-        self, draws: DrawList, by_corner: Callable[[BatchKind], bool]
-    ) -> list[tuple[int, int]]:
+    def _choose(self, draws: DrawList, targets: Targets) -> list[tuple[int, int]]:
         """Upload the indices of what may be seen; say where each part's lie."""
-        seen, lies = draws.seen_indices(by_corner)
+        seen, lies = draws.seen_indices(lambda kind: _by_corner(kind, targets))
         if seen.nbytes > self._index_buffer.size:
             self._index_buffer.release()
             self._index_buffer = self._context.buffer(reserve=2 * seen.nbytes, dynamic=True)
@@ -179,7 +186,7 @@ class GeometryPass:
     def _program(self, kind: BatchKind, targets: Targets) -> moderngl.Program:
         switches: dict[str, int] = {}
         shaded = targets.shape is not None
-        if shaded or kind.masked or targets.normals is not None:
+        if not _by_corner(kind, targets):
             switches["SHADED"] = 1
             if kind.masked:
                 switches["MASKED"] = 1
@@ -190,12 +197,18 @@ class GeometryPass:
         baked = targets.light_at is not None
         if baked:
             switches["BAKED"] = 1
-        if targets.normals is not None:
-            switches["NORMALS"] = 1
-            switches["LOCATION_NORMALS"] = (4 if baked else 3) if shaded else 1
+        first = (4 if baked else 3) if shaded else 1
+        for location, view in enumerate(targets.outputs, first):
+            switches[f"OUT_{view.upper()}"] = location
         if "SHADED" in switches and not shaded:
             switches["UNLIT"] = 1
         return self._programs.get("geometry.vert", "geometry.frag", ROWS=ROWS, **switches)
+
+
+def _by_corner(kind: BatchKind, targets: Targets) -> bool:
+    """Tell if nothing is read of a kind's vertices but their positions."""
+    # Masked materials need their alpha even where no picture is made.
+    return targets.shape is None and not targets.outputs and not kind.masked
 
 
 def bound(

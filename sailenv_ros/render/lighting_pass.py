@@ -18,17 +18,15 @@ from sailenv_ros.camera import Camera
 from sailenv_ros.lights import Environment, Light, SkyMap
 from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.geometry_pass import Targets
-from sailenv_ros.render.light_mixing import strength
+from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
 from sailenv_ros.render.programs import ProgramCache, set_uniform
-from sailenv_ros.render.reflection_map import ReflectionMap
-from sailenv_ros.render.shadow_pass import SIZE_PX, ShadowPass
+from sailenv_ros.render.reflection_texture import ReflectionTexture
+from sailenv_ros.render.shadow_pass import ShadowPass
+from sailenv_ros.render.shadow_plan import SIZE_PX
 
-__all__ = ["MAX_LIGHTS", "Illumination", "LightingPass", "set_camera"]
+__all__ = ["Illumination", "LightingPass", "set_camera"]
 
 _log = logging.getLogger(__name__)
-
-MAX_LIGHTS = 16
-"""Lights that are taken into account, the strongest first."""
 
 PENUMBRA_TEXELS = 1.6
 
@@ -37,8 +35,6 @@ SKY_UNIT = 7
 
 LIGHT_AT_UNIT, STATIC_SHADOW_UNIT = 11, 12
 """Texture units beyond those of materials."""
-
-_KINDS = {"directional": 0.0, "point": 1.0, "spot": 2.0, "area": 3.0}
 
 ROW = np.dtype(
     [
@@ -68,9 +64,9 @@ class Illumination:
     baked : BakedTextures or None
     main_baked : bool
         True if the light map knows the main light's shadows.
-    main_clear : float
+    main_transmittance : float
         Share of the main light that glass lets through to what is not in the light map.
-    reflections : ReflectionMap or None
+    reflections : ReflectionTexture or None
     """
 
     main: Light | None
@@ -80,8 +76,8 @@ class Illumination:
     static_shadow: ShadowPass | None = None
     baked: BakedTextures | None = None
     main_baked: bool = False
-    main_clear: float = 1.0
-    reflections: ReflectionMap | None = None
+    main_transmittance: float = 1.0
+    reflections: ReflectionTexture | None = None
 
 
 class LightingPass:
@@ -128,7 +124,7 @@ class LightingPass:
                 resource.release()
 
     def _chosen(self, illumination: Illumination) -> tuple[moderngl.Program, moderngl.Program]:
-        """Give the programs for surfaces and sky."""
+        """Return the programs for surfaces and sky."""
         lit: dict[str, int] = {}
         seen: dict[str, int] = {}
         if any(light.intensity > 0.0 for light in illumination.lamps):
@@ -182,11 +178,11 @@ class LightingPass:
         set_uniform(program, "main_colour", tuple(colour))
         set_uniform(program, "main_towards", tuple(towards))
         shadow = illumination.shadow
-        matrix = shadow.map_from_world @ camera.world_from_camera
+        matrix = shadow.plan.map_from_world @ camera.world_from_camera
         set_uniform(program, "shadow_from_optical", _columns(matrix))
-        set_uniform(program, "shadow_texel", (shadow.texel_m, 1.0 / SIZE_PX, PENUMBRA_TEXELS))
+        set_uniform(program, "shadow_texel", (shadow.plan.texel_m, 1.0 / SIZE_PX, PENUMBRA_TEXELS))
         set_uniform(program, "main_baked", float(illumination.main_baked))
-        set_uniform(program, "main_clear", illumination.main_clear)
+        set_uniform(program, "main_transmittance", illumination.main_transmittance)
 
 
 def _set_textures(program: moderngl.Program, targets: Targets, illumination: Illumination) -> None:
@@ -230,13 +226,8 @@ def set_camera(program: moderngl.Program, camera: Camera, environment: Environme
 
 def _light_rows(lamps: Sequence[Light], camera: Camera) -> NDArray[np.void]:
     rows = np.zeros(MAX_LIGHTS, ROW)
-    strongest = sorted(lamps, key=strength, reverse=True)[:MAX_LIGHTS]
-    for row, light in zip(rows, strongest, strict=False):
-        power = np.asarray(light.colour) * light.intensity
-        if light.type == "area":
-            # Seen from afar an area light is a point with the area's radiant intensity.
-            power = power * light.width_m * light.height_m
-        row["colour_kind"] = [*power, _KINDS[light.type]]
+    for row, light in zip(rows, strongest_lamps(lamps), strict=False):
+        row["colour_kind"] = [*lamp_power(light), LAMP_KINDS[light.type]]
         position = camera.camera_from_world @ [*light.position_m, 1.0]
         row["position_range"] = [*position[:3], max(light.range_m, 1e-3)]
         direction = camera.camera_from_world[:3, :3] @ np.asarray(light.direction)
@@ -246,5 +237,5 @@ def _light_rows(lamps: Sequence[Light], camera: Camera) -> NDArray[np.void]:
 
 
 def _columns(matrix: NDArray[np.float64]) -> tuple[float, ...]:
-    """Give a matrix in GLSL's order of numbers."""
+    """Return a matrix in GLSL's order of numbers."""
     return tuple(float(number) for number in matrix.T.reshape(-1))

@@ -13,14 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.model import Material, Texture
-from sailenv_ros.render.coverage import cutoff_by_level
-from sailenv_ros.render.fine_maps import fine_map
-from sailenv_ros.render.textures import SIZES_PX, TextureArrays, array_of
+from sailenv_ros.render.material_factors import EMISSION_SCALE, material_factors
+from sailenv_ros.render.packed_maps import pack_maps
+from sailenv_ros.render.texture_images import array_of
+from sailenv_ros.render.textures import TextureArrays
 
 __all__ = ["BatchKind", "MaterialBuffers"]
-
-EMISSION_SCALE = 16.0
-"""Radiance, in units of the base colour, that the G-buffer's 8 bits can hold."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -30,9 +28,10 @@ class BatchKind:
     Attributes
     ----------
     maps : (2,) tuple of int
-        Array that the base colour map and the fine map lie in, -1 for no map.
+        Array that the base colour map and the packed normal-roughness-metallic map (packed map,
+        for short) lie in, -1 for no map.
     finish, relief : bool
-        True if the fine map holds roughness and metallic; if it holds normals.
+        True if the packed map holds roughness and metallic; if it holds normals.
     masked : bool
         True if pixels may be dropped by alpha.
     double_sided : bool
@@ -62,12 +61,12 @@ class MaterialBuffers:
         if wanted.keys() <= self._shown.keys():
             return
         joined: dict[tuple[int, int], Texture | None] = {
-            _fine_key(material): self._fine[key] for key, material in self._shown.items()
+            _packed_key(material): self._fine[key] for key, material in self._shown.items()
         }
         for material in wanted.values():
-            if _fine_key(material) not in joined:
-                joined[_fine_key(material)] = fine_map(material)
-        self._fine = {key: joined[_fine_key(material)] for key, material in wanted.items()}
+            if _packed_key(material) not in joined:
+                joined[_packed_key(material)] = pack_maps(material)
+        self._fine = {key: joined[_packed_key(material)] for key, material in wanted.items()}
         self._shown = wanted
         maps = [self._maps(material) for material in wanted.values()]
         self._textures.show(
@@ -77,7 +76,7 @@ class MaterialBuffers:
         self._vectors = {key: self._described(material) for key, material in wanted.items()}
 
     def vectors(self, material: Material) -> NDArray[np.float32]:
-        """Give (4, 4) float32: how `draw.glsl` has a material that is shown."""
+        """Return (4, 4) float32: how `draw.glsl` has a material that is shown."""
         return self._vectors[id(material)]
 
     def kind(self, material: Material) -> BatchKind:
@@ -100,20 +99,21 @@ class MaterialBuffers:
         self._textures.close()
 
     def _described(self, material: Material) -> NDArray[np.float32]:
-        base = np.asarray(material.base_colour, dtype=np.float64)
-        glow = float(max(material.emission))
-        if glow > 0.0:
-            # The G-buffer holds one colour and one strength: what glows has the glow's colour.
-            base[:3] = np.asarray(material.emission) / glow
-        glow = min(1.0, glow / EMISSION_SCALE)
-        base[:3] = np.sqrt(base[:3])
-        edge = SIZES_PX[array_of(material.base_colour_texture)]
+        factors = material_factors(material)
         return np.array(
             [
-                [0.0, *cutoff_by_level(material, edge), 0.0],
-                [*(self._textures.layer(texture) for texture in self._maps(material)), 0.0, 0.0],
-                base,
-                [material.roughness, material.metallic, material.alpha_cutoff, glow],
+                [0.0, factors.cutoff_fall, factors.least_cutoff, factors.base[0]],
+                [
+                    *(self._textures.layer(texture) for texture in self._maps(material)),
+                    *factors.base[1:],
+                ],
+                factors.colour,
+                [
+                    factors.roughness,
+                    factors.metallic,
+                    factors.alpha_cutoff,
+                    factors.emission / EMISSION_SCALE,
+                ],
             ],
             np.float32,
         )
@@ -122,6 +122,6 @@ class MaterialBuffers:
         return material.base_colour_texture, self._fine[id(material)]
 
 
-def _fine_key(material: Material) -> tuple[int, int]:
+def _packed_key(material: Material) -> tuple[int, int]:
     """Tell joined maps apart, while the materials live."""
     return id(material.metallic_roughness_texture), id(material.normal_texture)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.frame import VIEWS
 from sailenv_ros.render.geometry_pass import GeometryPass, Targets
 
 __all__ = ["PictureBuffers"]
@@ -26,20 +27,22 @@ class PictureBuffers:
 
     def __init__(self, geometry_pass: GeometryPass) -> None:
         self._geometry_pass = geometry_pass
-        self._targets: OrderedDict[tuple[int, int, bool, bool, bool], Targets] = OrderedDict()
+        self._targets: OrderedDict[tuple[int, int, bool, tuple[str, ...], bool], Targets] = (
+            OrderedDict()
+        )
 
     def targets(
-        self, intrinsics: CameraIntrinsics, *, shaded: bool, normals: bool, baked: bool
+        self, intrinsics: CameraIntrinsics, *, shaded: bool, outputs: tuple[str, ...], baked: bool
     ) -> Targets:
-        """Give the targets of the geometry pass."""
+        """Return the targets of the geometry pass."""
         width, height = intrinsics.width, intrinsics.height
         baked = baked and shaded
-        key = (width, height, shaded, normals, baked)
+        key = (width, height, shaded, outputs, baked)
         if key not in self._targets:
             while len(self._targets) >= KEPT_SIZES:
                 self._targets.popitem(last=False)[1].close()
             self._targets[key] = self._geometry_pass.make_targets(
-                width, height, shaded=shaded, normals=normals, baked=baked
+                width, height, shaded=shaded, outputs=outputs, baked=baked
             )
         self._targets.move_to_end(key)
         return self._targets[key]
@@ -56,12 +59,12 @@ class PictureBuffers:
         """Read depth and instance id; a fresh (H, W, 2) array."""
         return _read_float(targets.surface, 2)
 
-    def read_normals(self, targets: Targets) -> NDArray[Any]:
-        """Read unit normals, 0 where nothing was hit; a fresh (H, W, 3) array."""
-        assert targets.normals is not None
-        four = _read_float(targets.normals, 4)
+    def read_output(self, targets: Targets, view: str) -> NDArray[Any]:
+        """Read a view that is written as it is, 0 where nothing was hit; a fresh array."""
+        four = _read_float(targets.outputs[view], 4)
         # The clear colour's fourth component is 0, a surface's is 1.
-        return np.where(four[..., 3:] > 0.0, four[..., :3], np.float32(0.0))
+        values = np.where(four[..., 3:] > 0.0, four[..., : VIEWS[view].channels], np.float32(0.0))
+        return values.reshape(VIEWS[view].shape(*four.shape[:2]))
 
     def close(self) -> None:
         """Free all textures."""

@@ -23,7 +23,7 @@ def _read(name: str) -> str:
 
 
 def shader_source(name: str, switches: tuple[tuple[str, int], ...] = ()) -> str:
-    """Give a shader's text with its includes, the version line and the switches defined."""
+    """Return a shader's text with its includes, the version line and the switches defined."""
     defines = "".join(f"#define {key} {value}\n" for key, value in switches)
     return f"#version 430\n{defines}{_read(name)}"
 
@@ -36,7 +36,7 @@ class ProgramCache:
         self._programs: dict[Any, moderngl.Program] = {}
 
     def get(self, vertex: str, fragment: str, **switches: int) -> moderngl.Program:
-        """Give the program of two shader files.
+        """Return the program of two shader files.
 
         Raises
         ------

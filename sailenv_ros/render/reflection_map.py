@@ -6,24 +6,29 @@ world laid flat on an octahedron, for several roughnesses one behind the other.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TypeAlias
+
 import cv2
-import moderngl
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
-from sailenv_ros.render.programs import set_uniform
 
 __all__ = [
     "EDGE",
-    "ReflectionMap",
+    "Blur",
+    "ROUGHNESSES",
     "cube_cameras",
     "flattened",
+    "layers_per_roughness",
     "light_from_around",
     "octahedral_directions",
     "prefilter",
+    "view_point",
 ]
 
 EDGE = 96
@@ -36,7 +41,8 @@ SAMPLES = 96
 
 LUMA = np.array([0.299, 0.587, 0.114])
 
-UNIT = 6
+EYE_HEIGHT_M = 1.4
+"""From where reflections are seen, above the floor of the probes' box."""
 
 _FACE_PX = 96
 _FACE_FOV_DEG = 92.0
@@ -46,7 +52,7 @@ _HEADINGS = ((0.0, 0.0), (90.0, 0.0), (180.0, 0.0), (270.0, 0.0), (0.0, 90.0), (
 
 
 def cube_cameras(position_m: NDArray[np.float64]) -> list[Camera]:
-    """Give six cameras that together see everything around a point."""
+    """Return six cameras that together see everything around a point."""
     intrinsics = CameraIntrinsics(
         width=_FACE_PX, height=_FACE_PX, vertical_fov_deg=_FACE_FOV_DEG, near_m=0.02
     )
@@ -57,15 +63,18 @@ def cube_cameras(position_m: NDArray[np.float64]) -> list[Camera]:
     ]
 
 
+@lru_cache(maxsize=4)
 def octahedral_directions(edge: int) -> NDArray[np.float32]:
-    """Give (edge, edge, 3): the unit direction of each texel's centre."""
+    """Return (edge, edge, 3) read-only: the unit direction of each texel's centre."""
     at = (np.arange(edge, dtype=np.float32) + 0.5) / edge * 2.0 - 1.0
     x, y = np.meshgrid(at, at)
     z = 1.0 - np.abs(x) - np.abs(y)
     fold = np.maximum(-z, 0.0)
     directions = np.stack([x - np.copysign(fold, x), y - np.copysign(fold, y), z], axis=-1)
     unit: NDArray[np.float32] = directions / np.linalg.norm(directions, axis=-1, keepdims=True)
-    return unit.astype(np.float32)
+    result = unit.astype(np.float32)
+    result.flags.writeable = False
+    return result
 
 
 def flattened(
@@ -99,12 +108,20 @@ def flattened(
     return result
 
 
-def prefilter(radiance: NDArray[np.float32]) -> NDArray[np.float16]:
+Blur: TypeAlias = Callable[
+    [NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]], None
+]
+"""``blur(radiance, directions, lobe, result)``: averages over a lobe about each direction."""
+
+
+def prefilter(radiance: NDArray[np.float32], *, blur: Blur | None = None) -> NDArray[np.float16]:
     """Blur a map of all directions as rough surfaces would.
 
     Parameters
     ----------
     radiance : (N, N, 3) float32
+    blur : Blur or None
+        Does it for one roughness; None for this module's own.
 
     Returns
     -------
@@ -116,13 +133,18 @@ def prefilter(radiance: NDArray[np.float32]) -> NDArray[np.float16]:
     Importance sampling of the GGX distribution with the viewer along the normal (Karis 2013, "Real
     shading in Unreal Engine 4").
     """
+    if blur is None:
+        # Imported here: numba takes a quarter of a second, and the native renderer has a kernel.
+        from sailenv_ros.render.reflection_blur import blur_with_numba
+
+        blur = blur_with_numba
     edge = len(radiance)
     layers = np.zeros((len(ROUGHNESSES), edge + 2, edge + 2, 4), np.float16)
     directions = octahedral_directions(edge)
     for layer, roughness in zip(layers, ROUGHNESSES, strict=True):
         blurred = radiance if roughness == 0.0 else np.empty_like(radiance)
         if roughness > 0.0:
-            _blur(radiance, directions, _lobe(roughness), blurred)
+            blur(radiance, directions, _lobe(roughness), blurred)
         layer[1:-1, 1:-1, :3] = np.minimum(blurred, 6e4)
         # Beyond an edge of the square lies the same edge, mirrored about its middle.
         layer[0, 1:-1], layer[-1, 1:-1] = layer[1, -2:0:-1], layer[-2, -2:0:-1]
@@ -133,7 +155,7 @@ def prefilter(radiance: NDArray[np.float32]) -> NDArray[np.float16]:
 
 
 def light_from_around(radiance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the light that arrives on surfaces amidst a map of all directions.
+    """Return the light that arrives on surfaces amidst a map of all directions.
 
     Parameters
     ----------
@@ -152,53 +174,30 @@ def light_from_around(radiance: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([weighted.sum(), *(2.0 * along)])
 
 
-class ReflectionMap:
-    """The texture, in one context; black until `write`."""
+def layers_per_roughness() -> float:
+    """Return by how many layers a roughness of 1 would lie behind the first."""
+    return (len(ROUGHNESSES) - 1) / ROUGHNESSES[-1]
 
-    def __init__(self, context: moderngl.Context) -> None:
-        size = (EDGE + 2, EDGE + 2, len(ROUGHNESSES))
-        self._texture = context.texture3d(size, 4, dtype="f2")
-        self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-        self._texture.repeat_x = self._texture.repeat_y = self._texture.repeat_z = False
-        self._box = np.zeros((3, 3))
-        self._light = np.zeros(4)
 
-    def write(
-        self, layers: NDArray[np.float16], position_m: NDArray[np.float64], box: NDArray[np.float64]
-    ) -> None:
-        """Take the layers of `prefilter`.
+def view_point(probes: ProbeGrid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return from where a room is looked at for reflections, and its box.
 
-        Parameters
-        ----------
-        position_m : (3,) float64
-            From where it was seen.
-        box : (2, 3) float64
-            Walls of the room; what is mirrored is looked for on them.
-        """
-        self._texture.write(np.ascontiguousarray(layers))
-        self._box = np.stack([position_m, *box])
-        self._light = light_from_around(layers[0, 1:-1, 1:-1, :3].astype(np.float64))
-
-    def bind(self, program: moderngl.Program) -> None:
-        """Make it readable for a program."""
-        self._texture.use(UNIT)
-        set_uniform(program, "reflections", UNIT)
-        for name, value in zip(
-            ("reflection_from", "room_low", "room_high"), self._box, strict=True
-        ):
-            set_uniform(program, name, tuple(value))
-        set_uniform(program, "room_light", tuple(self._light))
-        scale = EDGE / (EDGE + 2)
-        last = len(ROUGHNESSES) - 1
-        set_uniform(program, "reflection_texel", (scale, last / ROUGHNESSES[-1], last + 1.0))
-
-    def close(self) -> None:
-        """Free the texture."""
-        self._texture.release()
+    Returns
+    -------
+    position_m : (3,) float64
+        In the middle of the probes' box, at the height of eyes.
+    box : (2, 3) float64
+        Lowest and highest corner [m].
+    """
+    low = np.asarray(probes.origin_m)
+    high = low + np.asarray(probes.spacing_m) * (np.array(probes.shape[::-1]) - 1)
+    middle = 0.5 * (low + high)
+    middle[2] = min(low[2] + EYE_HEIGHT_M, middle[2] + 0.5 * (high[2] - middle[2]))
+    return middle, np.stack([low, high])
 
 
 def _lobe(roughness: float) -> NDArray[np.float32]:
-    """Give (S, 4): directions about the z axis, and how much each counts."""
+    """Return (S, 4): directions about the z axis, and how much each counts."""
     index = np.arange(SAMPLES)
     turn = 2.0 * np.pi * ((index * 0.6180339887498949) % 1.0)
     share = (index + 0.5) / SAMPLES
@@ -209,38 +208,3 @@ def _lobe(roughness: float) -> NDArray[np.float32]:
     light = 2.0 * cosine[:, None] * half - np.array([0.0, 0.0, 1.0])
     weight = np.maximum(light[:, 2], 0.0)
     return np.concatenate([light, weight[:, None]], axis=1).astype(np.float32)
-
-
-@numba.njit(cache=True, nogil=True)
-def _blur(radiance, directions, lobe, result):  # type: ignore[no-untyped-def]  # compiled
-    edge = radiance.shape[0]
-    for row in range(edge):
-        for column in range(edge):
-            nx, ny, nz = directions[row, column]
-            # A frame about the normal without trigonometry (Duff et al. 2017).
-            sign = 1.0 if nz >= 0.0 else -1.0
-            a = -1.0 / (sign + nz)
-            b = nx * ny * a
-            r = g = bl = total = 0.0
-            for k in range(lobe.shape[0]):
-                lx, ly, lz, weight = lobe[k]
-                if weight <= 0.0:
-                    continue
-                x = lx * (1.0 + sign * nx * nx * a) + ly * b + lz * nx
-                y = lx * sign * b + ly * (sign + ny * ny * a) + lz * ny
-                z = -lx * sign * nx - ly * ny + lz * nz
-                s = abs(x) + abs(y) + abs(z)
-                px, py = x / s, y / s
-                if z < 0.0:
-                    qx = (1.0 - abs(py)) * (1.0 if px >= 0.0 else -1.0)
-                    py = (1.0 - abs(px)) * (1.0 if py >= 0.0 else -1.0)
-                    px = qx
-                u = min(max(int((px * 0.5 + 0.5) * edge), 0), edge - 1)
-                v = min(max(int((py * 0.5 + 0.5) * edge), 0), edge - 1)
-                r += weight * radiance[v, u, 0]
-                g += weight * radiance[v, u, 1]
-                bl += weight * radiance[v, u, 2]
-                total += weight
-            result[row, column, 0] = r / total
-            result[row, column, 1] = g / total
-            result[row, column, 2] = bl / total

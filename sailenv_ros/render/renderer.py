@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -19,15 +18,16 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
-from sailenv_ros.frame import checked_views
+from sailenv_ros.frame import VIEWS, checked_views, views_of
 from sailenv_ros.render import annotate as ground_truth
-from sailenv_ros.render import clusters, post_pass
+from sailenv_ros.render import cluster_culling
 from sailenv_ros.render.backend import RenderedViews
-from sailenv_ros.render.bands import beside
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
-from sailenv_ros.render.geometry_buffers import GeometryBuffers, drawn_meshes
-from sailenv_ros.render.geometry_pass import GeometryPass, Targets
+from sailenv_ros.render.drawn_meshes import drawn_meshes
+from sailenv_ros.render.finishing import Finisher
+from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.geometry_pass import GeometryPass, Targets, written_views
 from sailenv_ros.render.glass_pass import GlassPass
 from sailenv_ros.render.lighting_pass import Illumination, LightingPass
 from sailenv_ros.render.materials import MaterialBuffers
@@ -71,14 +71,11 @@ class Renderer:
         except BaseException:
             self._context.release()
             raise
+        self._outputs = written_views()
         self._draws: DrawList | None = None
-        self._beside = ThreadPoolExecutor(1, thread_name_prefix="sailenv-annotate")
-        self._bands = beside(self._beside)
-        self._post = post_pass.PostPass(self._bands)
+        self._finisher = Finisher()
         self._closed = False
-        clusters.warm_up()
-        ground_truth.warm_up()
-        post_pass.warm_up()
+        cluster_culling.warm_up()
 
     @property
     def description(self) -> str:
@@ -92,6 +89,12 @@ class Renderer:
         """True if no graphics hardware is used."""
         return self._device.software
 
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that it can make, in the order of `frame.VIEWS`."""
+        made = {*views_of("lighting", "annotation"), *self._outputs}
+        return tuple(view for view in VIEWS if view in made)
+
     def render(
         self,
         snapshot: WorldSnapshot,
@@ -102,40 +105,21 @@ class Renderer:
         """Make the wanted views of one camera; see `RenderBackend.render`."""
         if self._closed:
             raise RenderError("the renderer was closed")
-        wanted = frozenset(checked_views(views))
+        wanted = frozenset(checked_views(views, supported=self.supported_views))
+        needs_past_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         timings: dict[str, float] = {}
         with self._context:
-            if "occlusion" in wanted and previous is not None and previous.depth is None:
+            if needs_past_depth and previous is not None and previous.depth is None:
                 previous = self._with_depth(previous)
             arrays = self._draw(snapshot, camera, wanted, timings)
-        began = time.perf_counter()
-        surface = arrays.pop("surface")
-        annotate = partial(ground_truth.annotate, surface, snapshot, previous, camera, wanted)
-        if "rgb" in wanted:
-            still = self._draws_of(snapshot).at_baked_pose(snapshot)
-            arrays["rgb"] = self._post.developed(
-                arrays["rgb"], surface, snapshot, camera, still, arrays.pop("samples", None)
-            )
-            timings["develop"] = time.perf_counter() - began
-            began = time.perf_counter()
-            # Both walks leave Python's lock alone: the labels are made beside the picture.
-            walk = self._beside.submit(annotate)
-            arrays["rgb"] = self._post.finished(arrays["rgb"], camera)
-            truth = walk.result()
-        else:
-            truth = annotate(self._bands)
-        timings["annotate"] = time.perf_counter() - began
-        arrays.update(truth)
-        depth: NDArray[np.float32] = truth["depth"]
-        return RenderedViews(
-            views={name: arrays[name] for name in wanted},
-            # A caller may write into its own views; the past must stay what it was.
-            depth=depth
-            if "depth" not in wanted
-            else depth.copy()
-            if "occlusion" in wanted
-            else None,
-            timings_s=timings,
+        return self._finisher.finish(
+            arrays,
+            snapshot,
+            previous,
+            camera,
+            wanted,
+            lambda: self._draws_of(snapshot).at_baked_pose(snapshot),
+            timings,
         )
 
     def close(self) -> None:
@@ -143,7 +127,6 @@ class Renderer:
         if self._closed:
             return
         self._closed = True
-        self._beside.shutdown()
         with self._context:
             for resource in (
                 self._pictures,
@@ -187,15 +170,15 @@ class Renderer:
         sampled = shaded and camera.picture.supersampling > 1
         clip_from_optical = _UPSIDE_DOWN @ camera.intrinsics.clip_from_optical()
         draws.place(snapshot, clip_from_optical, camera.camera_from_world)
-        normals = "normals" in wanted
-        targets = self._surfaces(snapshot, camera, shaded=shaded and not sampled, normals=normals)
+        outputs = tuple(view for view in self._outputs if view in wanted)
+        targets = self._surfaces(snapshot, camera, shaded=shaded and not sampled, outputs=outputs)
         mark("geometry")
         arrays: dict[str, NDArray[Any]] = {}
         if illumination is not None:
             seen, lit = camera, targets
             if sampled:
                 seen = camera.of_samples()
-                lit = self._surfaces(snapshot, seen, shaded=True, normals=False)
+                lit = self._surfaces(snapshot, seen, shaded=True)
                 mark("geometry")
             self._lighting_pass.draw(lit, seen, illumination)
             self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
@@ -213,22 +196,27 @@ class Renderer:
             if sampled and camera.picture.occlusion_strength > 0.0:
                 arrays["samples"] = self._pictures.read_surface(lit)
         arrays["surface"] = self._pictures.read_surface(targets)
-        if targets.normals is not None:
-            arrays["normals"] = self._pictures.read_normals(targets)
+        for view in outputs:
+            arrays[view] = self._pictures.read_output(targets, view)
         mark("readback")
         for (_, start), (stage, end) in itertools.pairwise(marks):
             timings[stage] = timings.get(stage, 0.0) + end - start
         return arrays
 
     def _surfaces(
-        self, snapshot: WorldSnapshot, camera: Camera, *, shaded: bool, normals: bool
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        *,
+        shaded: bool,
+        outputs: tuple[str, ...] = (),
     ) -> Targets:
         """Draw the surfaces of what has been placed for a camera."""
         intrinsics = camera.intrinsics
         targets = self._pictures.targets(
             intrinsics,
             shaded=shaded,
-            normals=normals,
+            outputs=outputs,
             baked=snapshot.contents.baked is not None,
         )
         draws = self._draws_of(snapshot)
@@ -247,7 +235,7 @@ class Renderer:
         clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
         draws.place(snapshot, clip_from_optical, camera.camera_from_world, only=only)
         targets = self._geometry_pass.make_targets(
-            intrinsics.width, intrinsics.height, shaded=True, normals=False, baked=True
+            intrinsics.width, intrinsics.height, shaded=True, baked=True
         )
         try:
             self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
@@ -259,7 +247,7 @@ class Renderer:
             targets.close()
 
     def _draws_of(self, snapshot: WorldSnapshot) -> DrawList:
-        """Give the draw list of the snapshot's contents; kept until the contents change."""
+        """Return the draw list of the snapshot's contents; kept until the contents change."""
         contents = snapshot.contents
         if self._draws is not None and self._draws.contents is contents:
             return self._draws

@@ -19,16 +19,17 @@ from sailenv_ros.lights import Light
 from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
-from sailenv_ros.render.light_mixing import MixedLight, main_light
 from sailenv_ros.render.lighting_pass import Illumination
+from sailenv_ros.render.lightmap_compositing import CompositedLight, main_light
 from sailenv_ros.render.programs import ProgramCache
 from sailenv_ros.render.reflection_map import (
     EDGE,
-    ReflectionMap,
     cube_cameras,
     flattened,
     prefilter,
+    view_point,
 )
+from sailenv_ros.render.reflection_texture import ReflectionTexture
 from sailenv_ros.render.shadow_pass import ShadowPass
 from sailenv_ros.snapshot import WorldSnapshot
 
@@ -36,9 +37,6 @@ __all__ = ["Radiance", "SceneLight"]
 
 Radiance = Callable[[Camera, Illumination, NDArray[np.bool_]], NDArray[np.float32]]
 """``radiance(camera, illumination, only)`` gives (H, W, 3): a picture of some instances."""
-
-EYE_HEIGHT_M = 1.4
-"""From where reflections are seen, above the floor of the probes' box."""
 
 
 class SceneLight:
@@ -50,8 +48,8 @@ class SceneLight:
         self._static_shadow: ShadowPass | None = None
         self._programs = programs
         self._baked = BakedTextures(context)
-        self._reflections: ReflectionMap | None = None
-        self._reflected: MixedLight | None = None
+        self._reflections: ReflectionTexture | None = None
+        self._reflected: CompositedLight | None = None
 
     def at(
         self,
@@ -63,8 +61,8 @@ class SceneLight:
         """Bring everything up to date for a snapshot; `draws` must be placed anew afterwards."""
         contents = snapshot.contents
         main = main_light(contents.lights)
-        mixed = self._baked.show(snapshot)
-        if mixed is None or contents.baked is None:
+        composited = self._baked.show(snapshot)
+        if composited is None or contents.baked is None:
             if main is not None:
                 self._shadow.draw(main, snapshot, draws, geometry)
             return Illumination(
@@ -75,11 +73,11 @@ class SceneLight:
             )
         still = draws.at_baked_pose(snapshot)
         static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still)
-        if self._reflected is not mixed:
-            plain = self._illumination(snapshot, mixed, static_shadow, None)
+        if self._reflected is not composited:
+            plain = self._illumination(snapshot, composited, static_shadow, None)
             self._reflect(plain, contents.baked.probes, radiance, still)
-            self._reflected = mixed
-        return self._illumination(snapshot, mixed, static_shadow, self._reflections)
+            self._reflected = composited
+        return self._illumination(snapshot, composited, static_shadow, self._reflections)
 
     def close(self) -> None:
         """Free everything on the GPU."""
@@ -105,20 +103,20 @@ class SceneLight:
     def _illumination(
         self,
         snapshot: WorldSnapshot,
-        mixed: MixedLight,
+        composited: CompositedLight,
         static_shadow: ShadowPass,
-        reflections: ReflectionMap | None,
+        reflections: ReflectionTexture | None,
     ) -> Illumination:
         contents = snapshot.contents
         return Illumination(
             main=main_light(contents.lights),
-            lamps=mixed.live,
+            lamps=composited.live,
             environment=contents.environment,
             shadow=self._shadow,
             static_shadow=static_shadow,
             baked=self._baked,
-            main_baked=mixed.main_baked,
-            main_clear=mixed.main_clear,
+            main_baked=composited.main_baked,
+            main_transmittance=composited.main_transmittance,
             reflections=reflections,
         )
 
@@ -130,13 +128,10 @@ class SceneLight:
         still: NDArray[np.bool_],
     ) -> None:
         """Look around from the middle of the room, at what stands still."""
-        low = np.asarray(probes.origin_m)
-        high = low + np.asarray(probes.spacing_m) * (np.array(probes.shape[::-1]) - 1)
-        middle = 0.5 * (low + high)
-        middle[2] = min(low[2] + EYE_HEIGHT_M, middle[2] + 0.5 * (high[2] - middle[2]))
+        middle, box = view_point(probes)
         cameras = cube_cameras(middle)
         pictures = [radiance(camera, plain, still) for camera in cameras]
         if self._reflections is None:
-            self._reflections = ReflectionMap(self._context)
+            self._reflections = ReflectionTexture(self._context)
         layers = prefilter(flattened(cameras, pictures, EDGE))
-        self._reflections.write(layers, middle, np.stack([low, high]))
+        self._reflections.write(layers, middle, box)

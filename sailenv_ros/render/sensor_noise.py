@@ -1,6 +1,6 @@
 """The noise of a camera's sensor: photons come one by one, and reading adds some.
 
-Radiance comes in, noisy radiance goes out. A pixel of exposed radiance x collects n = x ·
+Radiance comes in, radiance with noise goes out. A pixel of exposed radiance x collects n = x ·
 full_well electrons, give or take √n (shot noise; a normal distribution stands for Poisson's), and
 reading it adds `read_noise` electrons: the variance is x / full_well + (read_noise / full_well)².
 The same camera at the same simulated time has the same noise.
@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.picture_settings import PictureSettings
 
-__all__ = ["noisy"]
+__all__ = ["add_sensor_noise"]
 
 
-def noisy(
+def add_sensor_noise(
     radiance: NDArray[np.float16], settings: PictureSettings, name: str, sim_time_ns: int
 ) -> NDArray[np.float16]:
     """Add noise.

@@ -9,21 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import cv2
 import moderngl
-import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.model import Texture
 from sailenv_ros.render.programs import set_uniform
+from sailenv_ros.render.texture_images import SIZES_PX, array_of, square_texels
 
-__all__ = ["SIZES_PX", "TextureArrays", "array_of"]
-
-SIZES_PX = (128, 512, 1024)
-"""Edge lengths of the three texture arrays."""
+__all__ = ["TextureArrays"]
 
 ANISOTROPY = (4.0, 1.0)
-"""Of colour and fine maps, on graphics hardware: only in colours is it seen.
+"""Of colour and packed maps, on graphics hardware: only in colours is it seen.
 
 On the CPU there is none. llvmpipe walks over every texel of a pixel's footprint: one textured wall
 seen edge-on has held up a frame for more than 30 s.
@@ -35,18 +30,8 @@ _SOFTWARE_FILTERS = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR_MIPMAP_NEARE
 SPARE = 0.25
 """Share of layers that a new array has in reserve, for what is spawned later."""
 
-_UNIFORMS = ("colour_maps", "fine_maps")
+_UNIFORMS = ("colour_maps", "packed_maps")
 _FIRST_TEXTURE_UNIT = 8
-
-
-def _root_of_linear() -> NDArray[np.uint8]:
-    """Tabulate the square root of linear colour, 0 to 255, over the sRGB code."""
-    code = np.arange(256) / 255.0
-    linear = np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
-    return np.round(255.0 * np.sqrt(linear)).astype(np.uint8)
-
-
-_ROOT_OF_LINEAR = _root_of_linear()
 
 
 class TextureArrays:
@@ -88,7 +73,7 @@ class TextureArrays:
             array.show(wanted)
 
     def layer(self, texture: Texture | None) -> int:
-        """Give the layer of a texture that is there; 0 for none."""
+        """Return the layer of a texture that is there; 0 for none."""
         return 0 if texture is None else self._arrays[array_of(texture)].layer(texture)
 
     def bind(self, program: moderngl.Program, maps: tuple[int, int]) -> None:
@@ -162,28 +147,5 @@ class _Layers:
         # The number of an object is unique only while the object lives: it is kept.
         self._textures[layer] = texture
         self._layer_of[id(texture)] = layer
-        pixels = _resized(texture, self._edge)
-        if is_colour:
-            pixels = np.concatenate([_ROOT_OF_LINEAR[pixels[..., :3]], pixels[..., 3:]], axis=2)
+        pixels = square_texels(texture, self._edge, is_colour=is_colour)
         self._array.write(pixels, viewport=(0, 0, layer, self._edge, self._edge, 1))
-
-
-def array_of(texture: Texture | None) -> int:
-    """Give the place in `SIZES_PX` of the size that holds a texture; the last for larger ones.
-
-    No texture lies in array -1.
-    """
-    if texture is None:
-        return -1
-    longest = max(texture.shape[:2])
-    return next((i for i, edge in enumerate(SIZES_PX) if longest <= edge), len(SIZES_PX) - 1)
-
-
-def _resized(texture: Texture, edge: int) -> NDArray[np.uint8]:
-    """Bring a texture to a square, its bottom row first as OpenGL has it."""
-    flipped = np.ascontiguousarray(texture[::-1])
-    if flipped.shape[:2] == (edge, edge):
-        return flipped
-    shrinks = max(flipped.shape[:2]) > edge
-    method = cv2.INTER_AREA if shrinks else cv2.INTER_CUBIC
-    return np.asarray(cv2.resize(flipped, (edge, edge), interpolation=method), dtype=np.uint8)

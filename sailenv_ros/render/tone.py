@@ -11,9 +11,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.picture_settings import PictureSettings, ToneCurve
 
-__all__ = ["code_table", "filmic", "srgb", "tone_mapped"]
+__all__ = ["code_table", "filmic", "tone_mapped"]
 
 
 def filmic(radiance: ArrayLike) -> NDArray[np.float64]:
@@ -27,16 +28,10 @@ def filmic(radiance: ArrayLike) -> NDArray[np.float64]:
     return np.clip(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0)
 
 
-def srgb(linear: ArrayLike) -> NDArray[np.float64]:
-    """Encode linear light, 0 to 1, by the curve of IEC 61966-2-1."""
-    c = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
-    return np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.power(c, 1.0 / 2.4) - 0.055)
-
-
 def tone_mapped(
     radiance: ArrayLike, curve: ToneCurve = "filmic", exposure: float = 0.0
 ) -> NDArray[np.float64]:
-    """Give the sRGB value, 0 to 1, of a radiance.
+    """Return the sRGB value, 0 to 1, of a radiance.
 
     Parameters
     ----------
@@ -47,11 +42,11 @@ def tone_mapped(
         Stops.
     """
     exposed = np.asarray(radiance, np.float64) * 2.0**exposure
-    return srgb(filmic(exposed) if curve == "filmic" else exposed)
+    return srgb_from_linear(filmic(exposed) if curve == "filmic" else exposed)
 
 
 def code_table(settings: PictureSettings) -> NDArray[np.uint8]:
-    """Give (65536,) uint8 read-only: the picture's value of each half-precision radiance.
+    """Return (65536,) uint8 read-only: the picture's value of each half-precision radiance.
 
     The index is the number's bits; what is negative or no number is black.
     """

@@ -1,7 +1,7 @@
 """Objects described outside a scene file, checked as those inside one.
 
 Plain mappings with the keys of a scene's `objects` in, `ObjectSpec`s out, or an `InvalidEntry`
-with every fault. Knows no file; what exists is told by a `SceneKnowledge`.
+with every error. Knows no file; what exists is told by a `SceneKnowledge`.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest
-from sailenv_ros.scene.checks import Finding, findings
 from sailenv_ros.scene.knowledge import SceneKnowledge
+from sailenv_ros.scene.scene_diagnostics import Diagnostic, diagnose
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.scene.spec_objects import ObjectSpec
 from sailenv_ros.scene.yaml_nodes import Loc, compose
@@ -28,7 +28,7 @@ __all__ = [
     "read_document",
 ]
 
-MAX_FAULTS = 20
+MAX_DIAGNOSTICS = 20
 """So many are told at most; a hostile description must not cost minutes."""
 
 MAX_OBJECTS = 10000
@@ -56,7 +56,7 @@ def checked_objects(
     Raises
     ------
     InvalidEntry
-        With every fault, by its place.
+        With every error, by its place.
     """
     if len(entries) > MAX_OBJECTS:
         raise InvalidRequest("number of objects", len(entries), f"at most {MAX_OBJECTS}")
@@ -78,12 +78,12 @@ def checked_scene(data: Mapping[str, Any], knowledge: SceneKnowledge, *, what: s
     Raises
     ------
     InvalidEntry
-        With every fault, by its place.
+        With every error, by its place.
     """
     spec, found = _validated(data, knowledge)
     if spec is None or found:
-        faults = [(_field(finding.loc), finding.message) for finding in found]
-        raise InvalidEntry(what, data, dict.fromkeys(faults))
+        diagnostics = [(_field(diagnostic.loc), diagnostic.message) for diagnostic in found]
+        raise InvalidEntry(what, data, dict.fromkeys(diagnostics))
     return spec
 
 
@@ -94,22 +94,24 @@ def _checked(
     data = {"version": 1, "objects": [plain_value(entry) for entry in entries]}
     spec, found = _validated(data, knowledge)
     if spec is None or found:
-        faults = [(_field(finding.loc[1:]), finding.message) for finding in found]
+        diagnostics = [(_field(diagnostic.loc[1:]), diagnostic.message) for diagnostic in found]
         if len(entries) == 1:
-            faults = [(field.removeprefix("[0]").lstrip("."), text) for field, text in faults]
-        raise InvalidEntry(what, entries, dict.fromkeys(faults))
+            diagnostics = [
+                (field.removeprefix("[0]").lstrip("."), text) for field, text in diagnostics
+            ]
+        raise InvalidEntry(what, entries, dict.fromkeys(diagnostics))
     return spec.objects
 
 
 def _validated(
     data: Mapping[str, Any], knowledge: SceneKnowledge
-) -> tuple[SceneSpec | None, list[Finding]]:
+) -> tuple[SceneSpec | None, list[Diagnostic]]:
     spec, error = None, None
     try:
         spec = SceneSpec.model_validate(data)
     except ValidationError as problem:
         error = problem
-    return spec, list(islice(findings(data, error, knowledge), MAX_FAULTS))
+    return spec, list(islice(diagnose(data, error, knowledge), MAX_DIAGNOSTICS))
 
 
 def read_document(text: str) -> Any:
@@ -122,21 +124,24 @@ def read_document(text: str) -> Any:
     """
     if len(text) > MAX_CHARACTERS:
         raise InvalidRequest("length of the document", len(text), f"at most {MAX_CHARACTERS}")
-    node, faults = compose(text)
-    if node is None or faults:
-        told = [(f"line {fault.mark.line}", fault.message) for fault in faults[:MAX_FAULTS]]
-        raise InvalidEntry("document", text, told or [("", "is empty")])
+    node, diagnostics = compose(text)
+    if node is None or diagnostics:
+        pairs = [
+            (f"line {diagnostic.mark.line}", diagnostic.message)
+            for diagnostic in diagnostics[:MAX_DIAGNOSTICS]
+        ]
+        raise InvalidEntry("document", text, pairs or [("", "is empty")])
     return node.plain()
 
 
 def free_name(asset: str, taken: Iterable[str]) -> str:
-    """Give the first of ``cube_1``, ``cube_2`` … that is not taken."""
+    """Return the first of ``cube_1``, ``cube_2`` … that is not taken."""
     known = frozenset(taken)
     return next(name for i in count(1) if (name := f"{asset[:50]}_{i}") not in known)
 
 
 def plain_value(value: Any, *, depth: int = 20) -> Any:
-    """Give a value as a scene file would hold it: dicts, lists, texts and numbers.
+    """Return a value as a scene file would hold it: dicts, lists, texts and numbers.
 
     Raises
     ------

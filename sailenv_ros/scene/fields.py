@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
-from sailenv_ros.scene.kinds import Colour, Number, Several, Text
+from sailenv_ros.scene.field_types import Colour, Number, Several, Text
 
 __all__ = [
     "BROKEN_RULE",
@@ -46,7 +46,7 @@ class SceneModel(BaseModel):
     """Base of all entries of a scene file: no unknown keys, immutable, finite numbers.
 
     `rules` are what must hold between the keys of an entry. They see plain data, so that the
-    loader can report them beside the faults of single values.
+    loader can report them beside the errors of single values.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-__all__ = ["Faults", "SceneKnowledge"]
+__all__ = ["Diagnostics", "SceneKnowledge"]
 
-Faults: TypeAlias = Iterable[tuple[tuple[str | int, ...], str]]
+Diagnostics: TypeAlias = Iterable[tuple[tuple[str | int, ...], str]]
 """Paths inside an entry, each with a sentence that says what is wrong there."""
 
 
-def _no_faults(entry: Mapping[str, Any]) -> Faults:
+def _no_errors(entry: Mapping[str, Any]) -> Diagnostics:
     return ()
 
 
@@ -26,10 +26,10 @@ class SceneKnowledge:
         Every name that an object's `asset` may have.
     categories : tuple of str
         Names of the fixed table.
-    behaviour_faults : callable
-        ``behaviour_faults(type, parameters)`` yields what is wrong with a behaviour.
-    object_faults : callable
-        ``object_faults(entry)`` yields why an object's asset cannot be placed as its entry says.
+    behaviour_errors : callable
+        ``behaviour_errors(type, parameters)`` yields what is wrong with a behaviour.
+    object_errors : callable
+        ``object_errors(entry)`` yields why an object's asset cannot be placed as its entry says.
         The entry is plain data; nothing in it is certain.
     surfaces : tuple of str
         Every name that the material of a room's walls, floor or ceiling may have.
@@ -39,7 +39,7 @@ class SceneKnowledge:
 
     assets: tuple[str, ...]
     categories: tuple[str, ...]
-    behaviour_faults: Callable[[str, Mapping[str, Any]], Faults]
-    object_faults: Callable[[Mapping[str, Any]], Faults] = _no_faults
+    behaviour_errors: Callable[[str, Mapping[str, Any]], Diagnostics]
+    object_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
     surfaces: tuple[str, ...] = ()
     skies: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""Scene file → `SceneSpec`, or a `SceneError` with every fault and its place in the file.
+"""Scene file → `SceneSpec`, or a `SceneError` with every error and its place in the file.
 
 Knows YAML text and the models; which assets, categories and behaviours exist is told by a
 `SceneKnowledge`.
@@ -13,20 +13,20 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sailenv_ros.errors import SceneError, SceneFault
-from sailenv_ros.scene.checks import Finding, findings
+from sailenv_ros.errors import SceneDiagnostic, SceneError
 from sailenv_ros.scene.knowledge import SceneKnowledge
+from sailenv_ros.scene.messages import shown
+from sailenv_ros.scene.scene_diagnostics import Diagnostic, diagnose
 from sailenv_ros.scene.spec import SceneSpec
-from sailenv_ros.scene.wording import shown
 from sailenv_ros.scene.yaml_nodes import Loc, Mark, Node, compose
 
 __all__ = ["MAX_BYTES", "SceneKnowledge", "load_scene"]
 
 MAX_BYTES = 4_000_000
-MAX_FAULTS = 100
+MAX_DIAGNOSTICS = 100
 """So many are told at most."""
 
-MAX_FINDINGS = 1000
+MAX_COLLECTED = 1000
 """So many are looked at before they are sorted: a hostile file must not cost minutes."""
 
 
@@ -43,47 +43,50 @@ def load_scene(path: Path, *, knowledge: SceneKnowledge | None = None) -> SceneS
     Raises
     ------
     SceneError
-        All faults, in the order of the file.
+        All errors, in the order of the file.
     """
     shown_path = str(path)
-    node, text_faults = compose(_read(path, shown_path))
-    faults = [_placed(shown_path, fault.mark, "", fault.message) for fault in text_faults]
+    node, text_diagnostics = compose(_read(path, shown_path))
+    diagnostics = [
+        _placed(shown_path, diagnostic.mark, "", diagnostic.message)
+        for diagnostic in text_diagnostics
+    ]
     spec = None
     if node is not None:
         data = node.plain()
         spec, found = _validated(data, path, knowledge)
-        faults += [_found(shown_path, node, finding) for finding in found]
-    elif not faults:
-        faults = [
+        diagnostics += [_found(shown_path, node, diagnostic) for diagnostic in found]
+    elif not diagnostics:
+        diagnostics = [
             _placed(shown_path, Mark(1, 1), "", "is empty; a scene is a mapping (key: value)")
         ]
-    if spec is None or faults:
-        raise SceneError(_in_order(faults))
+    if spec is None or diagnostics:
+        raise SceneError(_in_order(diagnostics))
     return spec
 
 
 def _validated(
     data: Any, path: Path, knowledge: SceneKnowledge | None
-) -> tuple[SceneSpec | None, list[Finding]]:
+) -> tuple[SceneSpec | None, list[Diagnostic]]:
     if not isinstance(data, dict):
-        top = Finding((), f"must be a mapping (key: value) at its top, got {shown(data)}")
+        top = Diagnostic((), f"must be a mapping (key: value) at its top, got {shown(data)}")
         return None, [top]
     stem = path.stem
-    faults = list(_name_faults(data, stem))
+    diagnostics = list(_name_diagnostics(data, stem))
     spec, error = None, None
     try:
         spec = SceneSpec.model_validate({"name": stem, **data})
     except ValidationError as problem:
         error = problem
-    faults.extend(islice(findings(data, error, knowledge), MAX_FINDINGS))
-    return spec, faults
+    diagnostics.extend(islice(diagnose(data, error, knowledge), MAX_COLLECTED))
+    return spec, diagnostics
 
 
-def _name_faults(data: dict[str, Any], stem: str) -> Iterator[Finding]:
+def _name_diagnostics(data: dict[str, Any], stem: str) -> Iterator[Diagnostic]:
     """Refuse a name other than the file's, by which the scene is found."""
     name = data.get("name")
     if isinstance(name, str) and name != stem:
-        yield Finding(
+        yield Diagnostic(
             ("name",), f"must be the file's name, {stem!r}, or be left out; got {shown(name)}"
         )
 
@@ -109,9 +112,9 @@ def _read(path: Path, shown_path: str) -> str:
         raise SceneError([_placed(shown_path, mark, "", message)]) from None
 
 
-def _found(shown_path: str, node: Node, finding: Finding) -> SceneFault:
-    mark = node.place(finding.loc, of_key=finding.of_key)
-    return _placed(shown_path, mark, _field(finding.loc), finding.message)
+def _found(shown_path: str, node: Node, diagnostic: Diagnostic) -> SceneDiagnostic:
+    mark = node.place(diagnostic.loc, of_key=diagnostic.of_key)
+    return _placed(shown_path, mark, _field(diagnostic.loc), diagnostic.message)
 
 
 def _field(loc: Loc) -> str:
@@ -122,21 +125,23 @@ def _field(loc: Loc) -> str:
     return text
 
 
-def _placed(shown_path: str, mark: Mark, field: str, message: str) -> SceneFault:
-    return SceneFault(
+def _placed(shown_path: str, mark: Mark, field: str, message: str) -> SceneDiagnostic:
+    return SceneDiagnostic(
         path=shown_path, line=mark.line, column=mark.column, field=field, message=message
     )
 
 
-def _unplaced(shown_path: str, message: str) -> SceneFault:
-    return SceneFault(path=shown_path, line=0, column=0, field="", message=message)
+def _unplaced(shown_path: str, message: str) -> SceneDiagnostic:
+    return SceneDiagnostic(path=shown_path, line=0, column=0, field="", message=message)
 
 
-def _in_order(faults: list[SceneFault]) -> list[SceneFault]:
+def _in_order(diagnostics: list[SceneDiagnostic]) -> list[SceneDiagnostic]:
     """Sort by place, without repetitions; a very long list is cut and says so."""
-    ordered = sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
-    if len(ordered) <= MAX_FAULTS:
+    ordered = sorted(
+        dict.fromkeys(diagnostics), key=lambda diagnostic: (diagnostic.line, diagnostic.column)
+    )
+    if len(ordered) <= MAX_DIAGNOSTICS:
         return ordered
-    count = len(ordered) - MAX_FAULTS
-    rest = f"and {count if len(ordered) < MAX_FINDINGS else 'many'} more faults"
-    return [*ordered[:MAX_FAULTS], _unplaced(ordered[0].path, rest)]
+    count = len(ordered) - MAX_DIAGNOSTICS
+    rest = f"and {count if len(ordered) < MAX_COLLECTED else 'many'} more errors"
+    return [*ordered[:MAX_DIAGNOSTICS], _unplaced(ordered[0].path, rest)]

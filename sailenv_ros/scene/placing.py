@@ -28,7 +28,7 @@ class Turned(SceneModel):
     )
 
     def pose_at(self, position_m: Vector3) -> Pose:
-        """Give the pose at a position [m]."""
+        """Return the pose at a position [m]."""
         if self.orientation is not None:
             return Pose(position_m, self.orientation)
         return Pose(position_m, quat_xyzw_from_rpy_deg(self.rotation or (0.0, 0.0, 0.0)))
@@ -48,7 +48,7 @@ class Aimed(Turned):
     )
 
     def pose_at(self, position_m: Vector3) -> Pose:
-        """Give the pose at a position [m]."""
+        """Return the pose at a position [m]."""
         if self.look_at is not None:
             return look_at(position_m, self.look_at)
         return super().pose_at(position_m)

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from sailenv_ros.system.files import write_file
+
 __all__ = ["MARKER", "is_stale", "reference", "write_reference"]
 
 MARKER = "<!-- All below is written by: sailenv scene schema. -->"
@@ -40,7 +42,7 @@ _TITLES = {
 
 
 def reference(schema: Mapping[str, Any]) -> str:
-    """Give the reference as Markdown.
+    """Return the reference as Markdown.
 
     Parameters
     ----------
@@ -60,7 +62,7 @@ def reference(schema: Mapping[str, Any]) -> str:
 def write_reference(path: Path, schema: Mapping[str, Any]) -> None:
     """Replace what stands below the marker."""
     head, _, _ = path.read_text(encoding="utf-8").partition(MARKER)
-    path.write_text(head + reference(schema), encoding="utf-8")
+    write_file(path, (head + reference(schema)).encode())
 
 
 def is_stale(path: Path, schema: Mapping[str, Any]) -> bool:

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias
 
-from sailenv_ros.scene.rules import is_number
-from sailenv_ros.scene.wording import shown, shown_number
+from sailenv_ros.scene.messages import shown, shown_number
+from sailenv_ros.validation import is_finite_number
 
 __all__ = [
     "DOOR_SIZE_M",
@@ -59,7 +59,7 @@ class _Opening:
 def inside_walls(room: Entry) -> Faults:
     """Refuse openings that are larger than their wall or leave it."""
     size = room.get("size")
-    if not isinstance(size, list | tuple) or len(size) != 3 or not all(map(is_number, size)):
+    if not isinstance(size, list | tuple) or len(size) != 3 or not all(map(is_finite_number, size)):
         return
     for opening in _openings(room):
         length = size[0] if opening.wall in ("north", "south") else size[1]
@@ -132,5 +132,5 @@ def _openings(room: Entry) -> Iterator[_Opening]:
             entry.get("height", height),
             entry.get("sill", sill),
         )
-        if all(map(is_number, (at, width, height, sill))):
+        if all(map(is_finite_number, (at, width, height, sill))):
             yield _Opening(index, str(entry["wall"]), at, width, sill, sill + height)

@@ -7,13 +7,13 @@ inside it and a sentence. Rules keep silent about values that are wrong in thems
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.fields import Rule
-from sailenv_ros.scene.wording import shown, shown_number, suggestion
+from sailenv_ros.scene.messages import shown, shown_number, suggestion
+from sailenv_ros.validation import is_finite_number
 
 __all__ = [
     "at_most_one",
@@ -23,7 +23,6 @@ __all__ = [
     "distinct",
     "distinct_values",
     "few_samples",
-    "is_number",
     "movers_exist",
     "only_beside",
     "static_never_moves",
@@ -55,7 +54,7 @@ def below(lower: str, upper: str, defaults: Mapping[str, float], *, equal: bool 
 
     def rule(entry: Entry) -> Faults:
         low, high = (entry.get(key, defaults[key]) for key in (lower, upper))
-        if not (is_number(low) and is_number(high)):
+        if not (is_finite_number(low) and is_finite_number(high)):
             return
         if low > high or (low == high and not equal):
             accepted = "at most" if equal else "less than"
@@ -75,11 +74,11 @@ def few_samples(most: int, defaults: Mapping[str, int]) -> Rule:
     def rule(entry: Entry) -> Faults:
         picture = entry.get("picture")
         times = picture.get("supersampling", 1) if isinstance(picture, Mapping) else 1
-        if not is_number(times) or times > LIMITS["supersampling"][1]:
+        if not is_finite_number(times) or times > LIMITS["supersampling"][1]:
             return
         for key in ("width", "height"):
             size = entry.get(key, defaults[key])
-            if is_number(size) and size <= most < times * size:
+            if is_finite_number(size) and size <= most < times * size:
                 yield (
                     ("picture", "supersampling"),
                     f"is refused: it must be at most {most // int(size)} with a {key} of "
@@ -235,14 +234,8 @@ def _repeated(values: Sequence[Any]) -> Iterator[tuple[int, int]]:
             yield index, first[value]
 
 
-def is_number(value: object) -> bool:
-    """Tell if a value is a finite number; integers may be beyond all floats, which is not."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    return number and -sys.float_info.max <= value <= sys.float_info.max  # type: ignore[operator]
-
-
 def _numbers(values: Any, count: int) -> list[float] | None:
-    """Give the numbers of a list of so many; ``None`` if it is anything else."""
+    """Return the numbers of a list of so many; ``None`` if it is anything else."""
     if not isinstance(values, list | tuple) or len(values) != count:
         return None
-    return list(values) if all(is_number(value) for value in values) else None
+    return list(values) if all(is_finite_number(value) for value in values) else None

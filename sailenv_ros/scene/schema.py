@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.system.files import write_file
 
 __all__ = ["SCHEMA_FILE", "is_stale", "scene_schema", "schema_text", "write_schema"]
 
@@ -35,13 +36,13 @@ def scene_schema(behaviours: Mapping[str, type[BaseModel]]) -> dict[str, Any]:
 
 
 def schema_text(behaviours: Mapping[str, type[BaseModel]]) -> str:
-    """Give the schema as the text that its file has."""
+    """Return the schema as the text that its file has."""
     return json.dumps(scene_schema(behaviours), indent=1, ensure_ascii=False) + "\n"
 
 
 def write_schema(path: Path, behaviours: Mapping[str, type[BaseModel]]) -> None:
     """Write the schema's file."""
-    path.write_text(schema_text(behaviours), encoding="utf-8")
+    write_file(path, schema_text(behaviours).encode())
 
 
 def is_stale(path: Path, behaviours: Mapping[str, type[BaseModel]]) -> bool:

@@ -1,7 +1,8 @@
 """What a scene file may hold: `SceneSpec`, validated and immutable.
 
-Noun out of `scene/`: the description that the world is built from. Units in a file are metres,
-kilograms, seconds and degrees; colours are ``#rrggbb`` (sRGB) or linear numbers, kept linear.
+Data type that leaves `scene/`: the description that the world is built from. Units in a file are
+metres, kilograms, seconds and degrees; colours are ``#rrggbb`` (sRGB) or linear numbers; they are
+kept linear.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from sailenv_ros.labels import Category
+from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
-from sailenv_ros.scene.kinds import Number, Text
 from sailenv_ros.scene.room_rules import names_beside_room
 from sailenv_ros.scene.rules import (
     at_most_one,
@@ -73,7 +74,7 @@ class CategorySpec(SceneModel):
     ) = Field(default=None, description="of its pictures (sRGB); chosen by the id if left out")
 
     def to_category(self) -> Category:
-        """Give the noun that labels take."""
+        """Return the data type that labels take."""
         if self.colour is not None:
             red, green, blue = bytes.fromhex(self.colour[1:])
             return Category(id=self.id, name=self.name, colour=(red, green, blue))

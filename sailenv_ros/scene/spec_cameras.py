@@ -10,8 +10,8 @@ from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS
 from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
-from sailenv_ros.scene.kinds import Choice, Number, Switch, Text
 from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_where_placed
 from sailenv_ros.scene.spec_picture import PictureSpec
@@ -42,7 +42,7 @@ class WaypointSpec(Aimed):
 
 
 class MoverSpec(Aimed):
-    """A moving stand that agents follow."""
+    """A mover: a rig that moves and that agents follow."""
 
     name: Name = Field(default="mover", description="unique among the movers of the scene")
     position: Position | None = Field(
@@ -124,7 +124,7 @@ class AgentSpecModel(Turned):
     )
 
     def to_agent_spec(self) -> AgentSpec:
-        """Give the noun that the simulation takes."""
+        """Return the data type that the simulation takes."""
         return AgentSpec(
             name=self.name,
             intrinsics=CameraIntrinsics(

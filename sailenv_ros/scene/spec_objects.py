@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import ConfigDict, Field
 
 from sailenv_ros.geometry import Pose
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import (
     DegreesPerSecond,
     Fraction,
@@ -20,7 +21,6 @@ from sailenv_ros.scene.fields import (
     Scale,
     SceneModel,
 )
-from sailenv_ros.scene.kinds import Choice, Number, Switch, Text
 from sailenv_ros.scene.placing import Turned
 from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.rules import at_most_one, only_beside, static_never_moves

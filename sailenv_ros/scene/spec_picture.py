@@ -7,8 +7,8 @@ from typing import Annotated, get_args
 from pydantic import Field
 
 from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
+from sailenv_ros.scene.field_types import Choice, Number, Switch
 from sailenv_ros.scene.fields import Fraction, SceneModel
-from sailenv_ros.scene.kinds import Choice, Number, Switch
 
 __all__ = ["PictureSpec"]
 
@@ -60,7 +60,7 @@ class PictureSpec(SceneModel):
     )
 
     def to_settings(self) -> PictureSettings:
-        """Give the noun that the renderer takes."""
+        """Return the data type that the renderer takes."""
         given = self.model_dump()
         given["occlusion_radius_m"] = given.pop("occlusion_radius")
         return PictureSettings(**given)

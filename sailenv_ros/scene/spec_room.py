@@ -20,8 +20,8 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
+from sailenv_ros.scene.field_types import Choice, Number, Several, Text
 from sailenv_ros.scene.fields import LinearColour, Rule, SceneModel
-from sailenv_ros.scene.kinds import Choice, Number, Several, Text
 from sailenv_ros.scene.room_rules import (
     DOOR_SIZE_M,
     WALLS,
@@ -62,7 +62,7 @@ class _OrNone:
         return None if value is False else value
 
     def written(self, value: object, handler: SerializerFunctionWrapHandler) -> object:
-        """Give the word for nothing or for the defaults, else the keys that are given."""
+        """Return the word for nothing or for the defaults, else the keys that are given."""
         return False if value is None else handler(value) or True
 
     def __get_pydantic_core_schema__(
@@ -219,6 +219,6 @@ class RoomSpec(SceneModel):
     )
 
     def surface_of(self, wall: WallName) -> SurfaceSpec:
-        """Give what a wall is made of."""
+        """Return what a wall is made of."""
         own: SurfaceSpec | None = getattr(self.wall_materials, wall)
         return self.walls if own is None else own

@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 from pydantic import Field
 
 from sailenv_ros.lights import Environment, Light
+from sailenv_ros.scene.field_types import Choice, Number
 from sailenv_ros.scene.fields import Direction, Fraction, Name, Position, Radiance, Rule, SceneModel
-from sailenv_ros.scene.kinds import Choice, Number
 from sailenv_ros.scene.rules import below, without_zero_length
 
 __all__ = [
@@ -61,7 +61,7 @@ class EnvironmentSpec(SceneModel):
     )
 
     def to_environment(self) -> Environment:
-        """Give the noun that the renderer takes."""
+        """Return the data type that the renderer takes."""
         return Environment(**self.model_dump())
 
 
@@ -80,7 +80,7 @@ class _LightBase(SceneModel):
     )
 
     def to_light(self) -> Light:
-        """Give the noun that the renderer takes."""
+        """Return the data type that the renderer takes."""
         units = {
             "position": "position_m",
             "range": "range_m",

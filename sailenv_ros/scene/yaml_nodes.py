@@ -1,4 +1,4 @@
-"""YAML text → plain data and the place of every part of it; all faults of the text at once.
+"""YAML text → plain data and the place of every part of it; all errors of the text at once.
 
 PyYAML parses, this module composes: without tags, merge keys or recursion of the text's own
 choosing, so hostile files cost no more than honest ones. Words mean what YAML 1.2 says:
@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 
 import yaml
 
-__all__ = ["Loc", "Mark", "Node", "TextFault", "compose", "plain_scalar"]
+__all__ = ["Loc", "Mark", "Node", "TextDiagnostic", "compose", "plain_scalar"]
 
 MAX_DEPTH = 32
 MAX_NODES = 200_000
@@ -32,7 +32,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class TextFault:
+class TextDiagnostic:
     """What is wrong with a text, and where."""
 
     mark: Mark
@@ -60,7 +60,7 @@ class Node:
     size: int = 1
 
     def plain(self) -> Any:
-        """Give dicts, lists and scalars; new objects each time."""
+        """Return dicts, lists and scalars; new objects each time."""
         if isinstance(self.value, dict):
             return {key: child.plain() for key, child in self.value.items()}
         if isinstance(self.value, list):
@@ -68,7 +68,7 @@ class Node:
         return self.value
 
     def child(self, part: str | int) -> Node | None:
-        """Give the value of a key or the entry of an index; ``None`` if there is none."""
+        """Return the value of a key or the entry of an index; ``None`` if there is none."""
         if isinstance(self.value, dict):
             found = self.value.get(part) if isinstance(part, str) else None
             return found if isinstance(found, Node) else None
@@ -97,14 +97,14 @@ class Node:
         return node.mark
 
 
-def compose(text: str) -> tuple[Node | None, list[TextFault]]:
+def compose(text: str) -> tuple[Node | None, list[TextDiagnostic]]:
     """Read a YAML text of one document.
 
     Returns
     -------
     node : Node or None
         The top of what could be read; ``None`` if nothing could.
-    faults : list of TextFault
+    diagnostics : list of TextDiagnostic
         In the order they were found; empty if all is well.
     """
     composer = _Composer(text)
@@ -114,19 +114,19 @@ def compose(text: str) -> tuple[Node | None, list[TextFault]]:
     except _ReadingError:
         pass
     except yaml.YAMLError as error:
-        composer.faults.append(_syntax_fault(error, text))
-    return node, composer.faults
+        composer.diagnostics.append(_syntax_diagnostic(error, text))
+    return node, composer.diagnostics
 
 
 class _ReadingError(Exception):
-    """Reading on makes no sense; the fault is in the list."""
+    """Reading on makes no sense; the error is in the list."""
 
 
 class _Composer:
     """Turns PyYAML's events into nodes."""
 
     def __init__(self, text: str) -> None:
-        self.faults: list[TextFault] = []
+        self.diagnostics: list[TextDiagnostic] = []
         self._events = _parse(text)
         self._anchors: dict[str, Node | None] = {}
         self._count = 0
@@ -140,7 +140,7 @@ class _Composer:
         next(self._events)  # the document's end
         event = next(self._events)
         if isinstance(event, yaml.DocumentStartEvent):
-            self._fault(event, "starts a second document; a file holds one")
+            self._report(event, "starts a second document; a file holds one")
         return node
 
     def _node(self, event: yaml.Event, depth: int) -> Node:
@@ -151,7 +151,7 @@ class _Composer:
         if depth > MAX_DEPTH:
             raise self._stop(event, f"is nested deeper than {MAX_DEPTH} levels")
         if event.tag is not None:
-            self._fault(event, f"tags such as {event.tag[:40]} are not accepted; leave it out")
+            self._report(event, f"tags such as {event.tag[:40]} are not accepted; leave it out")
         if event.anchor is not None:
             self._anchors[event.anchor] = None
         node = self._content(event, depth)
@@ -186,7 +186,7 @@ class _Composer:
                 continue
             if key in node.value:
                 first = node.key_marks[key]
-                self._fault(entry, f"the key {key[:40]!r} stands in line {first.line} already")
+                self._report(entry, f"the key {key[:40]!r} stands in line {first.line} already")
                 continue
             node.value[key] = child
             node.key_marks[key] = _mark(entry)
@@ -196,10 +196,10 @@ class _Composer:
     def _key(self, event: yaml.Event, depth: int) -> str | None:
         self._node(event, depth + 1)
         if not isinstance(event, yaml.ScalarEvent):
-            self._fault(event, "a key must be a word")
+            self._report(event, "a key must be a word")
             return None
         if event.value == "<<" and not event.style:
-            self._fault(event, "merge keys (<<) are not accepted; write the keys out")
+            self._report(event, "merge keys (<<) are not accepted; write the keys out")
             return None
         # A key such as 2 or true, too, is meant as a name.
         return str(event.value)
@@ -213,11 +213,11 @@ class _Composer:
         self._count += 1
         return node
 
-    def _fault(self, event: yaml.Event, message: str) -> None:
-        self.faults.append(TextFault(_mark(event), message))
+    def _report(self, event: yaml.Event, message: str) -> None:
+        self.diagnostics.append(TextDiagnostic(_mark(event), message))
 
     def _stop(self, event: yaml.Event, message: str) -> _ReadingError:
-        self._fault(event, message)
+        self._report(event, message)
         return _ReadingError(message)
 
 
@@ -232,18 +232,18 @@ def _mark(event: yaml.Event) -> Mark:
     return Mark(1, 1) if start is None else Mark(start.line + 1, start.column + 1)
 
 
-def _syntax_fault(error: yaml.YAMLError, text: str) -> TextFault:
+def _syntax_diagnostic(error: yaml.YAMLError, text: str) -> TextDiagnostic:
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
     context = getattr(error, "context", None)
     message = f"is not YAML: {context + ', ' if context else ''}{problem}"
     if mark is None:
-        return TextFault(Mark(1, 1), message)
+        return TextDiagnostic(Mark(1, 1), message)
     # libyaml does not say which character it stumbled over.
     lines = text.split("\n")
     if mark.line < len(lines) and lines[mark.line][mark.column : mark.column + 1] == "\t":
         message += " (indent with spaces, not tabs)"
-    return TextFault(Mark(mark.line + 1, mark.column + 1), message)
+    return TextDiagnostic(Mark(mark.line + 1, mark.column + 1), message)
 
 
 _INTEGER = re.compile(r"[-+]?[0-9]{1,400}")
@@ -268,7 +268,7 @@ _WORDS: dict[str, object] = {
 
 
 def plain_scalar(text: str) -> object:
-    """Give the value of an unquoted scalar (the core schema of YAML 1.2, without 0x and 0o)."""
+    """Return the value of an unquoted scalar (the core schema of YAML 1.2, without 0x and 0o)."""
     if text in _WORDS:
         return _WORDS[text]
     if _INTEGER.fullmatch(text):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
+from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.stream import FrameStream
@@ -54,7 +54,7 @@ class AgentRecord:
     streams: list[FrameStream] = field(default_factory=list)
 
     def past(self, sim_time_ns: int) -> Observation | None:
-        """Give the last observation before that instant."""
+        """Return the last observation before that instant."""
         if self.latest is not None and self.latest.snapshot.sim_time_ns < sim_time_ns:
             return self.latest
         return self.earlier
@@ -74,11 +74,11 @@ class AgentRecord:
         return frozenset(view for stream in self.streams for view in stream.views)
 
     def due_step(self) -> int:
-        """Give the physics step at which its next streamed frame is due."""
+        """Return the physics step at which its next streamed frame is due."""
         return self._step_of(self.due_count)
 
     def last_due_step(self, step: int) -> int:
-        """Give the last step not after `step` at which a frame is due; -1 if there is none."""
+        """Return the last step not after `step` at which a frame is due; -1 if there is none."""
         if not self.wanted_views or not self.spec.rate_hz or self.due_step() > step:
             return -1
         count = math.floor(step * self.spec.rate_hz / STEPS_PER_SECOND + 1e-9)
@@ -105,7 +105,12 @@ class AgentTable:
     def __iter__(self) -> Iterator[AgentRecord]:
         return iter(self._records.values())
 
-    def __getitem__(self, name: str) -> AgentRecord:
+    def __getitem__(self, name: str | None) -> AgentRecord:
+        """Return an agent by its name; None means the first."""
+        if name is None:
+            if not self._records:
+                raise InvalidState("there is no agent; register one first")
+            return next(iter(self._records.values()))
         if not isinstance(name, str) or name not in self._records:
             raise UnknownName("agent", str(name), self._records)
         return self._records[name]
@@ -116,7 +121,7 @@ class AgentTable:
         return tuple(record.spec for record in self)
 
     def add(self, spec: AgentSpec, world: World) -> AgentSpec:
-        """Register an agent; give the spec as accepted, with its mover's name filled in.
+        """Register an agent; return the spec as accepted, with its mover's name filled in.
 
         Raises
         ------
@@ -126,10 +131,8 @@ class AgentTable:
         if spec.name in self._records:
             raise NameTaken("agent", spec.name)
         if len(self._records) >= MAX_AGENTS:
-            raise InvalidRequest(
-                "number of agents",
-                len(self._records) + 1,
-                f"at most {MAX_AGENTS}; delete one first",
+            raise InvalidState(
+                f"there are {MAX_AGENTS} agents, which is the most; delete one first"
             )
         mover = world.mover(spec.mover)
         pose = spec.pose or mover.pose_at(world.sim_time_ns)
@@ -147,7 +150,7 @@ class AgentTable:
         for stream in record.streams:
             stream.end(f"agent {name!r} was deleted")
 
-    def pose(self, name: str, world: World) -> AgentPose:
+    def pose(self, name: str | None, world: World) -> AgentPose:
         """Say where an agent is."""
         record = self[name]
         return AgentPose(
@@ -158,7 +161,7 @@ class AgentTable:
         )
 
     def camera(self, record: AgentRecord, world: World) -> Camera:
-        """Give an agent's camera as it stands now."""
+        """Return an agent's camera as it stands now."""
         pose = record.pose
         if record.spec.following:
             pose = world.mover(record.spec.mover).pose_at(world.sim_time_ns)
@@ -179,7 +182,7 @@ class AgentTable:
             for other in moved:
                 other.forget()
 
-    def set_follow(self, name: str, following: bool, world: World) -> bool:
+    def set_follow(self, name: str | None, following: bool, world: World) -> bool:
         """Follow or stop; one that stops stays where it is."""
         record = self[name]
         if record.spec.following and not following:
@@ -187,7 +190,7 @@ class AgentTable:
         record.spec = replace(record.spec, following=following)
         return following
 
-    def set_rate(self, name: str, rate_hz: float, world: World) -> None:
+    def set_rate(self, name: str | None, rate_hz: float, world: World) -> None:
         """Change how often frames are streamed, from the next time on the new rate's grid."""
         record = self[name]
         record.spec = replace(record.spec, rate_hz=rate_hz)
@@ -196,7 +199,7 @@ class AgentTable:
         if rate_hz:
             record.skip_to(world.step_count)
 
-    def set_intrinsics(self, name: str, intrinsics: CameraIntrinsics) -> None:
+    def set_intrinsics(self, name: str | None, intrinsics: CameraIntrinsics) -> None:
         """Change what an agent's camera sees; what it saw before cannot be compared with it.
 
         Raises
@@ -234,8 +237,10 @@ class AgentTable:
         """
         count = len({*self._records, *(spec.name for spec in specs)})
         if count > MAX_AGENTS:
-            accepted = f"at most {MAX_AGENTS} with those of the scene; delete some first"
-            raise InvalidRequest("number of agents", count, accepted)
+            raise InvalidState(
+                f"with those of the scene there would be {count} agents, and {MAX_AGENTS} is the "
+                "most; delete some first"
+            )
 
     def add_missing(self, specs: Iterable[AgentSpec], world: World) -> None:
         """Add a scene's agents, but for those whose names are in use: they stay as they are."""

@@ -1,49 +1,46 @@
-"""The simulation without threads: one world, one renderer, its agents, and every request.
+"""The simulation without threads: one world, one renderer, its agents, and their frames.
 
-`SceneSpec` in, `Frame` and `SceneInfo` out. Each public method is one request of a client; it
-either does all of it or raises and leaves everything as it was. Used by one thread alone.
+`SceneSpec` in, `Frame` and `SceneInfo` out. What operations work on: each either does all that it
+says or raises and leaves everything as it was. Used by one thread alone.
 """
 
 from __future__ import annotations
 
+import inspect
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future
 from pathlib import Path
+from typing import Any, TypeAlias
 
-from sailenv_ros.errors import InvalidRequest
+import numpy as np
+from numpy.typing import NDArray
+
 from sailenv_ros.frame import Frame, checked_views
+from sailenv_ros.operations import Operation, WorldOperations
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
-from sailenv_ros.simulation.agent_requests import AgentRequests
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
-from sailenv_ros.simulation.motion_requests import MotionRequests
-from sailenv_ros.simulation.save_requests import SaveRequests
+from sailenv_ros.simulation.clock import Clock
+from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
-from sailenv_ros.simulation.world_requests import Entries, WorldRequests
+from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.world import World
 
-__all__ = ["MAX_STEPS", "SimulationCore"]
+__all__ = ["SimulationCore"]
 
-MAX_STEPS = 1_000_000
-"""Most steps that one request may ask for (over an hour of simulated time)."""
+Entries: TypeAlias = Sequence[Mapping[str, Any]]
+"""Objects as a scene file describes them, besides those of the scene."""
 
 SLICE_STEPS = 24
 """Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
 
 
-def checked_real_time_factor(factor: float) -> float:
-    """Give the factor as it was given, or raise `InvalidRequest`."""
-    value: object = factor
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not 0.1 <= factor <= 10.0:
-        raise InvalidRequest("real_time_factor", factor, "a number from 0.1 to 10")
-    return factor
-
-
-class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests):
-    """World, renderer and agents of one simulation.
+class SimulationCore(WorldOperations):
+    """World, renderer and agents of one simulation; carries operations out at once.
 
     Parameters
     ----------
@@ -53,8 +50,29 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
         The first scene.
     renderer : RenderBackend
         Owned from now on; closed with this.
+    clock : Clock
     should_end : callable
-        Asked during long requests; True breaks them off.
+        Asked during long operations; True breaks them off.
+
+    Attributes
+    ----------
+    library : SceneLibrary
+    clock : Clock
+    agents : AgentTable
+    world : World
+        The present one.
+    seed : int
+        Of the present world's random numbers.
+    epoch : int
+        Grows at each change of scene and each reset.
+    more_objects : sequence of mapping
+        What a scenario added to the scene's own objects.
+    editor : SceneEditor
+    scene_writer : SceneWriter
+    on_info, on_step : callable
+        Told each new `SceneInfo`, and the simulated time [ns] after physics advanced.
+    skipped_frames : int
+        Streamed frames that were never rendered because the wall clock was ahead.
     """
 
     def __init__(
@@ -69,68 +87,56 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
         paused: bool,
         should_end: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._library = library
-        self._renderer = renderer
-        self._mode: TimeMode = mode
-        self._real_time_factor = checked_real_time_factor(real_time_factor)
-        self._seed = seed
-        self._more: Entries = ()
-        self._paused = paused
-        self._should_end = should_end
-        self._agents = AgentTable()
-        self._revision = 0
-        self._epoch = 1
+        self.library = library
+        self.clock = Clock(mode, real_time_factor, paused=paused)
+        self.agents = AgentTable()
+        self.seed = seed
+        self.epoch = 1
+        self.more_objects: Entries = ()
+        self.editor = SceneEditor(self)
+        self.scene_writer = SceneWriter(self)
         self.on_info: Callable[[SceneInfo], None] = lambda info: None
         self.on_step: Callable[[int], None] = lambda sim_time_ns: None
         self.skipped_frames = 0
-        self._world = library.build(scene, seed, self._epoch, self._next_revision)
-        self._world.confines = self._confines
-        for spec in library.agents_of(self._world.scene):
-            self._agents.add(spec, self._world)
+        self._renderer = renderer
+        self._should_end = should_end
+        self._revision = 0
+        self.world: World = library.build(scene, seed, self.epoch, self._next_revision)
+        self.world.frustum_planes = self._frustum_planes
+        for spec in library.agents_of(self.world.scene):
+            self.agents.add(spec, self.world)
 
-    # -- state -----------------------------------------------------------------------------
+    # -- operations ------------------------------------------------------------------------
 
-    @property
-    def world(self) -> World:
-        """The present world."""
-        return self._world
-
-    @property
-    def library(self) -> SceneLibrary:
-        """Where scenes and assets come from."""
-        return self._library
-
-    @property
-    def runs_by_itself(self) -> bool:
-        """True if simulated time follows the wall clock now."""
-        return self._mode == "realtime" and not self._paused
-
-    @property
-    def real_time_factor(self) -> float:
-        """Simulated seconds per wall second that are aimed at."""
-        return self._real_time_factor
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Carry an operation out now."""
+        done: Future[Any] = Future()
+        done.set_result(operation.run(self, *arguments.args, **arguments.kwargs))
+        return done
 
     @property
     def info(self) -> SceneInfo:
         """The scene as clients see it; a new object with the present revision."""
-        contents = self._world.contents
+        contents = self.world.contents
         return SceneInfo(
-            scene=self._world.scene,
-            scenes=self._library.scene_names,
-            epoch=self._epoch,
+            scene=self.world.scene,
+            scenes=self.library.scene_names,
+            epoch=self.epoch,
             revision=self._revision,
-            sim_time_ns=self._world.sim_time_ns,
-            mode=self._mode,
-            paused=self._paused,
-            real_time_factor=self._real_time_factor,
-            seed=self._seed,
+            sim_time_ns=self.world.sim_time_ns,
+            mode=self.clock.mode,
+            paused=self.clock.paused,
+            real_time_factor=self.clock.real_time_factor,
+            seed=self.seed,
             categories=contents.categories,
             instances=tuple(drawn.instance for drawn in contents.instances),
-            moving=self._world.moving_ids,
-            spawnables=self._library.spawnables,
+            moving=self.world.moving_ids,
+            spawnables=self.library.spawnables,
             lights=contents.lights,
             environment=contents.environment,
-            agents=self._agents.specs,
+            agents=self.agents.specs,
             movers=tuple(
                 MoverInfo(
                     name=mover.name,
@@ -139,53 +145,53 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
                     total_time_s=mover.total_time_s,
                     loop=mover.loop,
                 )
-                for mover in self._world.movers.values()
+                for mover in self.world.movers.values()
             ),
             renderer=self._renderer.description,
         )
 
-    # -- scene and time --------------------------------------------------------------------
+    def announce(self) -> None:
+        """Tell the scene as it is now, under a new revision."""
+        self._next_revision()
+        self.on_info(self.info)
 
-    def change_scene(self, name: str) -> None:
-        """Leave the present world for another scene, at simulated time 0."""
-        self._begin(name, self._seed, as_registered=False)
+    def begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
+        """Leave the present world for a new one at simulated time 0.
 
-    def reset(self, seed: int | None = None) -> int:
-        """Begin the present scene anew, as it was at its start; give the new epoch."""
-        chosen = self._seed if seed is None else seed
-        if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
-            raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
-        self._begin(self._world.scene, chosen, as_registered=True, more=self._more)
-        return self._epoch
-
-    def pause(self) -> None:
-        """Hold simulated time; a second call does nothing."""
-        self._set_paused(True)
-
-    def resume(self) -> None:
-        """Let simulated time run on; a second call does nothing."""
-        self._set_paused(False)
-
-    def set_real_time_factor(self, factor: float) -> None:
-        """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
-        self._real_time_factor = checked_real_time_factor(factor)
-        self._announce()
-
-    def step(self, count: int = 1) -> int:
-        """Advance by physics steps of 1/240 s, with every streamed frame that falls due.
-
-        Returns
-        -------
-        sim_time_ns : int
-            Simulated time afterwards [ns].
+        Parameters
+        ----------
+        scene : str
+        seed : int
+        as_registered : bool
+            True puts the agents back to what they were on registration and keeps them alone;
+            False adds those that the scene brings along.
+        more : sequence of mapping
+            Objects besides those of the scene.
         """
-        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_STEPS:
-            raise InvalidRequest("steps", count, f"an integer from 1 to {MAX_STEPS}")
-        if self.runs_by_itself:
-            accepted = "paused (or in lockstep mode) to be stepped; pause it first"
-            raise InvalidRequest("simulation", "running", accepted)
-        self.advance_to(self._world.step_count + count, every_frame=True)
-        return self._world.sim_time_ns
+        world = self.library.build(scene, seed, self.epoch + 1, self._next_revision, more=more)
+        brought = () if as_registered else self.library.agents_of(world.scene)
+        try:
+            self.agents.require_room(brought)
+        except BaseException:
+            world.close()
+            raise
+        self.world.close()
+        world.frustum_planes = self._frustum_planes
+        self.world, self.seed, self.more_objects = world, seed, more
+        self.epoch += 1
+        self.agents.begin_epoch(world, as_registered=as_registered)
+        self.agents.add_missing(brought, world)
+        self.discard_frames()
+        self.announce()
+        self.on_step(world.sim_time_ns)
+
+    def discard_frames(self) -> None:
+        """Drop waiting frames whose ids the next scene_info will not know."""
+        for record in self.agents:
+            for stream in record.streams:
+                stream.discard()
+
+    # -- time ------------------------------------------------------------------------------
 
     def advance_to(self, step: int, *, every_frame: bool) -> None:
         """Run physics up to a step and render what falls due on the way.
@@ -196,7 +202,7 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
             False renders, of several frames of one agent that have fallen due, the last alone
             and counts the others as skipped: the wall clock is ahead.
         """
-        world = self._world
+        world = self.world
 
         def due() -> dict[str, int]:
             return {
@@ -214,48 +220,34 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
 
     def render_due(self) -> None:
         """Render each agent's streamed frame if its time has come; once each."""
-        now = self._world.step_count
+        now = self.world.step_count
         self._render_streams(r.spec.name for r in self._streamed() if r.due_step() <= now)
 
     def next_due_step(self) -> int | None:
-        """Give the step of the earliest streamed frame to come; None if nobody wants any."""
+        """Return the step of the earliest streamed frame to come; None if nobody wants any."""
         return min((record.due_step() for record in self._streamed()), default=None)
 
     # -- frames ----------------------------------------------------------------------------
 
-    def capture(self, agent: str, views: Iterable[str] | None = None) -> Frame:
-        """Render one frame of an agent now."""
-        record = self._agents[agent]
-        wanted = record.spec.views if views is None else checked_views(views)
-        return self._render(record, wanted)
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that the renderer can make, in the order of `frame.VIEWS`."""
+        return self._renderer.supported_views
 
-    def open_stream(
-        self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]
-    ) -> FrameStream:
-        """Begin to deliver an agent's frames at its rate."""
-        record = self._agents[agent]
-        stream = FrameStream(agent, views, on_change)
-        record.streams.append(stream)
-        if record.spec.rate_hz:
-            record.skip_to(self._world.step_count)
-        return stream
+    def render(self, record: AgentRecord, views: Iterable[str]) -> Frame:
+        """Render one frame of an agent now.
 
-    def close(self, why: str = "it was closed") -> None:
-        """End all streams; free the engine and the renderer."""
-        for record in self._agents:
-            for stream in record.streams:
-                stream.end(f"the simulation has ended: {why}")
-        self._world.close()
-        self._renderer.close()
-
-    # -- inside ----------------------------------------------------------------------------
-
-    def _render(self, record: AgentRecord, views: Iterable[str]) -> Frame:
+        Raises
+        ------
+        UnknownName
+            If the renderer cannot make a view, with those that it can.
+        """
+        wanted = checked_views(views, supported=self.supported_views)
         began = time.perf_counter()
-        snapshot = self._world.snapshot()
-        camera = self._agents.camera(record, self._world)
+        snapshot = self.world.snapshot()
+        camera = self.agents.camera(record, self.world)
         past = record.past(snapshot.sim_time_ns)
-        rendered = self._renderer.render(snapshot, past, camera, views)
+        rendered = self._renderer.render(snapshot, past, camera, wanted)
         record.remember(Observation(snapshot=snapshot, camera=camera, depth=rendered.depth))
         record.sequence += 1
         contents = snapshot.contents
@@ -268,74 +260,67 @@ class SimulationCore(AgentRequests, MotionRequests, SaveRequests, WorldRequests)
             stamp_ns=snapshot.sim_time_ns,
             dt_ns=0 if past is None else snapshot.sim_time_ns - past.snapshot.sim_time_ns,
             camera=camera,
+            depth_range_m=record.spec.depth_range_m,
             views=rendered.views,
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
         )
 
+    def open_stream(
+        self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]
+    ) -> FrameStream:
+        """Begin to deliver an agent's frames at its rate."""
+        record = self.agents[agent]
+        stream = FrameStream(agent, views, on_change, supported=self.supported_views)
+        record.streams.append(stream)
+        if record.spec.rate_hz:
+            record.skip_to(self.world.step_count)
+        return stream
+
+    def close(self, why: str = "it was closed") -> None:
+        """End all streams; free the engine and the renderer."""
+        for record in self.agents:
+            for stream in record.streams:
+                stream.end(f"the simulation has ended: {why}")
+        self.world.close()
+        self._renderer.close()
+
+    # -- inside ----------------------------------------------------------------------------
+
     def _streamed(self) -> list[AgentRecord]:
-        """Give the agents whose frames somebody wants now; forgets streams that were closed."""
+        """Return the agents whose frames somebody wants now; forgets streams that were closed."""
         wanted = []
-        for record in self._agents:
+        for record in self.agents:
             record.streams[:] = [stream for stream in record.streams if not stream.closed]
             if not record.spec.rate_hz:
                 continue
             if record.wanted_views:
                 wanted.append(record)
             else:
-                record.skip_to(self._world.step_count)
+                record.skip_to(self.world.step_count)
         return wanted
 
     def _render_streams(self, agents: Iterable[str]) -> None:
         """Render a frame of each agent for its streams, and count those it is too late for."""
-        now = self._world.step_count
+        now = self.world.step_count
         for name in agents:
-            record = self._agents[name]
+            record = self.agents[name]
             # Another frame of this walk may have taken so long that this stream was closed.
             if record.due_step() > now or not record.wanted_views:
                 continue
-            frame = self._render(record, record.wanted_views)
+            frame = self.render(record, record.wanted_views)
             # One of those that are passed over is the frame just made.
             self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
             for stream in record.streams:
                 if stream.views:
                     stream.put(frame)
 
-    def _begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
-        world = self._library.build(scene, seed, self._epoch + 1, self._next_revision, more=more)
-        brought = () if as_registered else self._library.agents_of(world.scene)
-        try:
-            self._agents.require_room(brought)
-        except BaseException:
-            world.close()
-            raise
-        self._world.close()
-        world.confines = self._confines
-        self._world, self._seed, self._more = world, seed, more
-        self._epoch += 1
-        self._agents.begin_epoch(world, as_registered=as_registered)
-        self._agents.add_missing(brought, world)
-        self._discard_frames()
-        self._announce()
-        self.on_step(world.sim_time_ns)
-
-    def _set_paused(self, paused: bool) -> None:
-        if self._mode == "lockstep":
-            accepted = "realtime to be paused or resumed; a lockstep simulation moves by step alone"
-            raise InvalidRequest("mode", self._mode, accepted)
-        if paused != self._paused:
-            self._paused = paused
-            self._announce()
-
-    def _discard_frames(self) -> None:
-        """Drop waiting frames whose ids the next scene_info will not know."""
-        for record in self._agents:
-            for stream in record.streams:
-                stream.discard()
+    def _frustum_planes(self, agent: str, distance_m: float) -> NDArray[np.float64]:
+        """Return the planes of an agent's view; none while there is no such agent."""
+        for record in self.agents:
+            if record.spec.name == agent:
+                return view_planes(self.agents.camera(record, self.world), distance_m)
+        return np.zeros((0, 4))
 
     def _next_revision(self) -> int:
         self._revision += 1
         return self._revision
-
-    def _announce(self) -> None:
-        self._next_revision()
-        self.on_info(self.info)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import logging
 
-from sailenv_ros.bake.files import load_baked
 from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.light_files import load_baked
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.world.world import World
 
@@ -26,7 +26,7 @@ class LightCache:
         self._last: BakedLight | None = None
 
     def hang(self, world: World, scene: str) -> None:
-        """Give a world its baked light, or say how to have it baked.
+        """Load a world's baked light, or say how to have it baked.
 
         Parameters
         ----------

@@ -39,7 +39,7 @@ class Pacer:
         self._step = step
 
     def target(self, step: int) -> int:
-        """Give the step that should have been reached; gives up what lies too far back.
+        """Return the step that should have been reached; gives up what lies too far back.
 
         Parameters
         ----------
@@ -58,6 +58,6 @@ class Pacer:
         return target
 
     def wait_s(self, step: int) -> float:
-        """Give the wall time until a step is due [s]; 0 if it is."""
+        """Return the wall time until a step is due [s]; 0 if it is."""
         due = self._wall_s + (step - self._step) / self._steps_per_s
         return max(0.0, due - self._clock())

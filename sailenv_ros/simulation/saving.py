@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.geometry import Pose
-from sailenv_ros.scene.describing import (
+from sailenv_ros.scene.serialisation import (
     PLACE_KEYS,
     VELOCITY_KEYS,
     agent_entry,
@@ -54,7 +54,7 @@ _SKY_COLOURS = ("sky_zenith", "sky_horizon", "sky_ground")
 
 
 def described_world(world: World, agents: AgentTable, *, cameras: Collection[str] = ()) -> Entry:
-    """Give the data of a scene file that this world can be built from.
+    """Return the data of a scene file that this world can be built from.
 
     Parameters
     ----------
@@ -68,6 +68,8 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
     spec = world.described
     assert spec is not None
     data: Entry = spec.model_dump(mode="json", exclude_unset=True, exclude={"name"})
+    if world.gravity != spec.gravity:
+        data["gravity"] = world.gravity
     changed: dict[str, Any] = {
         "environment": environment_entry(world),
         "lights": _lights(world, spec),
@@ -95,7 +97,7 @@ def unsaid(world: World) -> Iterator[tuple[str, str]]:
 
 
 def uploaded_models(world: World, is_uploaded: Callable[[str], bool]) -> tuple[str, ...]:
-    """Give the catalogue names of the models in a world that this simulator alone has.
+    """Return the catalogue names of the models in a world that this simulator alone has.
 
     Parameters
     ----------
@@ -110,7 +112,7 @@ def uploaded_models(world: World, is_uploaded: Callable[[str], bool]) -> tuple[s
 
 
 def environment_entry(world: World) -> Entry:
-    """Give the surroundings; colours of the sky are the file's, a photographed one has its own."""
+    """Return the surroundings; colours of the sky are the file's, a photographed sky keeps its."""
     assert world.described is not None
     told = world.described.environment
     now = world.contents.environment
@@ -124,7 +126,7 @@ def environment_entry(world: World) -> Entry:
 
 
 def _room(spec: SceneSpec, missing: Collection[str]) -> Entry:
-    """Give the room as its file has it, without those parts that it may do without."""
+    """Return the room as its file has it, without those parts that it may do without."""
     if spec.room is None:
         return {}
     entry: Entry = spec.room.model_dump(mode="json", exclude_unset=True)
@@ -196,7 +198,7 @@ def _stands_as_told(body: Body, begun: Mapping[str, Body], missing: Collection[s
 
 
 def _only_settled(body: Body) -> bool:
-    first, now = body.told_pose, body.pose()
+    first, now = body.entry_pose, body.pose()
     speeds = np.concatenate(body.velocity())
     at_first = (*body.placement.linear_velocity, *body.placement.angular_velocity)
     if _is_same(first, now) and np.array_equal(speeds, at_first):
@@ -221,7 +223,7 @@ def _angle_deg(first: Pose, second: Pose) -> float:
 
 
 def _velocities(body: Body) -> Entry:
-    """Give how it moves, if it does."""
+    """Return how it moves, if it does."""
     if body.placement.static:
         return {}
     linear, angular = body.velocity()
@@ -253,7 +255,7 @@ def _behaviours(body: Body, entry: ObjectSpec) -> list[Entry]:
 
 
 def _movers(world: World, spec: SceneSpec) -> Entry:
-    """Give `mover` or `movers`, as the file has it; nothing if it has none and none was changed."""
+    """Return `mover` or `movers`, as the file has it; nothing if none is there or changed."""
     entries = [_mover(world.movers[told.name], told, world.sim_time_ns) for told in spec.all_movers]
     if spec.movers:
         return {"movers": entries}

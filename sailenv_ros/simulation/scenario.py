@@ -1,4 +1,4 @@
-"""Scenarios as the original SAILenv writes them, turned into objects as scene files have them.
+"""Scenarios as SAILenv writes them, turned into objects as scene files have them.
 
 A mapping (of JSON or YAML) in, entries for a scene's `objects` out. Which assets there are and
 whether an entry is right is checked by whoever builds the scene.
@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from sailenv_ros.behaviours import behaviour_kinds
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
 from sailenv_ros.scene.entries import plain_value
+from sailenv_ros.validation import checked_flag, checked_number
 
 __all__ = ["SCENARIO_KEYS", "scenario_entries"]
 
@@ -30,7 +31,7 @@ Entry = dict[str, Any]
 
 
 def scenario_entries(scenario: Mapping[str, Any], *, viewer: str) -> list[Entry]:
-    """Give the objects of a scenario in their order.
+    """Return the objects of a scenario in their order.
 
     Parameters
     ----------
@@ -71,9 +72,7 @@ def _entry(number: int, given: object, frustum: Mapping[str, Any]) -> Entry:
     _rename(what, entry, "id", "name")
     if isinstance(entry.get("name"), int):
         entry["name"] = str(entry["name"])
-    limited = entry.pop("frustum_limited", False)
-    if not isinstance(limited, bool):
-        raise InvalidRequest(f"{what}.frustum_limited", limited, "true or false")
+    limited = checked_flag(f"{what}.frustum_limited", entry.pop("frustum_limited", False))
     dynamic = entry.pop("dynamic", None)
     if dynamic is not None:
         behaviours = entry.get("behaviours") or []
@@ -114,16 +113,15 @@ def _keep_in_view(what: str, entry: Entry, frustum: Mapping[str, Any]) -> None:
 
 
 def _frustum(given: object, viewer: str) -> dict[str, Any]:
-    """Give the parameters that keep an object in view; none where no frustum is asked for."""
+    """Return the parameters that keep an object in view; none where no frustum is asked for."""
     frustum = {"spawn": True} if given is None else given
     if not isinstance(frustum, Mapping) or not set(frustum) <= {"spawn", "far_clip_plane"}:
         raise InvalidRequest("frustum", given, "a mapping with spawn and far_clip_plane")
-    spawn = frustum.get("spawn", True)
-    if not isinstance(spawn, bool):
-        raise InvalidRequest("frustum.spawn", spawn, "true or false")
-    if not spawn:
+    if not checked_flag("frustum.spawn", frustum.get("spawn", True)):
         return {}
-    distance = _seconds_or_metres("frustum.far_clip_plane", frustum.get("far_clip_plane", 10.0))
+    distance = checked_number(
+        "frustum.far_clip_plane", frustum.get("far_clip_plane", 10.0), 0.0, 1e6
+    )
     if not distance:
         raise InvalidRequest("frustum.far_clip_plane", distance, "a number above 0 [m]")
     return {"keep_in_view": viewer, "view_distance": distance}
@@ -143,7 +141,7 @@ def _starts(given: object, entries: list[Entry]) -> list[float]:
         raise InvalidRequest("timings.description", wanted, f"a mapping with {key}")
     if type_ == "dict":
         return _told_times(wanted.get("times", {}), len(entries))
-    wait_s = _seconds_or_metres("timings.description.wait_time", wanted.get("wait_time", 0.0))
+    wait_s = checked_number("timings.description.wait_time", wanted.get("wait_time", 0.0), 0.0, 1e6)
     if type_ == "all_together":
         return [wait_s] * len(entries)
     return _one_after_another(entries, wait_s)
@@ -159,7 +157,7 @@ def _told_times(times: object, count: int) -> list[float]:
         if not 0 <= number < count:
             accepted = f"the index of an object, 0 to {count - 1}"
             raise InvalidRequest("key of timings.description.times", index, accepted)
-        starts[number] = _seconds_or_metres(f"timings.description.times[{index}]", seconds)
+        starts[number] = checked_number(f"timings.description.times[{index}]", seconds, 0.0, 1e6)
     return starts
 
 
@@ -179,7 +177,7 @@ def _one_after_another(entries: list[Entry], wait_s: float) -> list[float]:
 
 
 def _duration_s(entry: Entry) -> float | None:
-    """Give how long an object moves [s]; None without end, 0 for what does not move."""
+    """Return how long an object moves [s]; None without end, 0 for what does not move."""
     longest = 0.0
     for behaviour in entry.get("behaviours") or []:
         kind = (
@@ -204,13 +202,6 @@ def _delay(entry: Entry, start_s: float) -> None:
     for behaviour in entry.get("behaviours") or []:
         if isinstance(behaviour, dict) and isinstance(behaviour.get("start", 0.0), int | float):
             behaviour["start"] = behaviour.get("start", 0.0) + start_s
-
-
-def _seconds_or_metres(what: str, value: object) -> float:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not 0.0 <= value <= 1e6:  # type: ignore[operator]  # a number by now
-        raise InvalidRequest(what, value, "a number from 0 to 1e6")
-    return float(value)  # type: ignore[arg-type]  # as above
 
 
 def _listed(value: Any, key: str = "") -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from hashlib import blake2b
@@ -11,26 +11,32 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.agents import AgentSpec
+from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
-from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
-from sailenv_ros.assets.places import standard_pack_folder
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.bake.settings import BAKE_VERSION
-from sailenv_ros.behaviours import behaviour_faults, known_behaviour_faults
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.behaviours import (
+    behaviour_errors,
+    known_behaviour_errors,
+    readable_behaviour_errors,
+    refusing_behaviour_errors,
+)
+from sailenv_ros.errors import InvalidState
 from sailenv_ros.labels import CategoryTable
-from sailenv_ros.lights import Environment
+from sailenv_ros.lights import Environment, Light
 from sailenv_ros.model import Asset
-from sailenv_ros.scene.catalogue import SceneCatalogue
-from sailenv_ros.scene.entries import checked_object, checked_objects, free_name
+from sailenv_ros.scene.entries import checked_object, checked_objects, checked_scene, free_name
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
-from sailenv_ros.scene.places import user_scene_folder
+from sailenv_ros.scene.scene_catalogue import SceneCatalogue
+from sailenv_ros.scene.serialisation import light_entry
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
+from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.light_cache import LightCache
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
@@ -48,7 +54,7 @@ _log = logging.getLogger(__name__)
 
 
 def default_scene() -> str:
-    """Give the scene to begin with if none is asked for.
+    """Return the scene to begin with if none is asked for.
 
     `DEFAULT_SCENE`, or one without furniture where that has not been built, with a warning.
     """
@@ -71,9 +77,13 @@ class SceneLibrary:
     scene_paths : sequence of Path
         More folders with scenes, beside the user's and the package's own. Scenes are saved into
         the first of them, or into the user's where there is none.
+    allow_modules : bool
+        True lets scene files have behaviours of Python modules (``module:name``), whose code runs
+        when the scene is built.
     """
 
-    def __init__(self, scene_paths: Sequence[Path] = ()) -> None:
+    def __init__(self, scene_paths: Sequence[Path] = (), *, allow_modules: bool = False) -> None:
+        self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._packs = installed_packs()
@@ -110,12 +120,12 @@ class SceneLibrary:
 
     @property
     def knowledge(self) -> SceneKnowledge:
-        """What a scene file's names may refer to."""
+        """What a scene file's names may refer to; nothing of a file is run."""
         return SceneKnowledge(
             assets=self._assets.all_names,
             categories=tuple(category.name for category in self.categories.values()),
-            behaviour_faults=behaviour_faults,
-            object_faults=ObjectFit(self._assets),
+            behaviour_errors=readable_behaviour_errors,
+            object_errors=ObjectFit(self._assets),
             surfaces=surface_names(),
             skies=tuple(self._skies),
         )
@@ -123,17 +133,23 @@ class SceneLibrary:
     @property
     def _knowledge_of_strangers(self) -> SceneKnowledge:
         """What requests may refer to: they cannot have code imported, as files can."""
-        return replace(self.knowledge, behaviour_faults=known_behaviour_faults)
+        return replace(self.knowledge, behaviour_errors=known_behaviour_errors)
+
+    @property
+    def _knowledge_to_build(self) -> SceneKnowledge:
+        """What a scene that is built may refer to: code of modules where that is allowed."""
+        errors = behaviour_errors if self._allow_modules else refusing_behaviour_errors
+        return replace(self.knowledge, behaviour_errors=errors)
 
     def load(self, scene: str | Path) -> SceneSpec:
-        """Read a scene by its name or file; every fault at once.
+        """Read a scene by its name or file, every error at once; runs no code that it names.
 
         Raises
         ------
         UnknownName
             If there is no such scene.
         SceneError
-            If its file has faults.
+            If its file has errors.
         """
         return load_scene(self.path(scene), knowledge=self.knowledge)
 
@@ -150,7 +166,7 @@ class SceneLibrary:
 
         See `load`, `scene.entries.checked_objects` and `world.build.build_world` for errors.
         """
-        spec = self.load(scene)
+        spec = load_scene(self.path(scene), knowledge=self._knowledge_to_build)
         world = build_world(
             spec.model_copy(update={"objects": (*spec.objects, *self._described(more, spec))}),
             assets=self._assets,
@@ -168,7 +184,7 @@ class SceneLibrary:
         return world
 
     def stamp(self, scene: str | Path) -> str:
-        """Give a text that changes with the scene's file and with the packs it may use.
+        """Return a text that changes with the scene's file and with the packs it may use.
 
         Raises
         ------
@@ -185,7 +201,7 @@ class SceneLibrary:
         return digest.hexdigest()
 
     def canonical_asset(self, name: str) -> str:
-        """Give the catalogue name of an asset's catalogue or display name.
+        """Return the catalogue name of an asset's catalogue or display name.
 
         Raises
         ------
@@ -195,18 +211,18 @@ class SceneLibrary:
         return self._assets.canonical(name)
 
     def asset_fingerprint(self, name: str) -> str:
-        """Give what changes whenever an asset does; empty for one that came to this simulator."""
+        """Return what changes whenever an asset does; empty for one that came to this simulator."""
         source = self._assets.source(name)
         if isinstance(source, AssetPack):
             return source.fingerprint(name)
         return "" if name in self._uploaded else "of the package itself"
 
     def peek_asset(self, name: str) -> Asset:
-        """Give an asset without keeping one that no world needs; see `AssetLibrary.get`."""
+        """Return an asset without keeping one that no world needs; see `AssetLibrary.get`."""
         return self._assets.peek(name)
 
     def add_upload(self, asset: Asset, *, rename: bool) -> str:
-        """Add a user's asset to the catalogue; give its name there.
+        """Add a user's asset to the catalogue; return its name there.
 
         Parameters
         ----------
@@ -221,8 +237,9 @@ class SceneLibrary:
             If there are `MAX_UPLOADS` already.
         """
         if self._uploads >= MAX_UPLOADS:
-            accepted = f"at most {MAX_UPLOADS} in a simulator's life"
-            raise InvalidRequest("number of uploaded models", self._uploads + 1, accepted)
+            raise InvalidState(
+                f"{MAX_UPLOADS} models have been uploaded, which is the most in a simulator's life"
+            )
         taken = {*self._assets.all_names}
         names = ((asset.name, asset.display_name), *_numbered(asset)) if rename else ()
         for name, display_name in names:
@@ -269,7 +286,7 @@ class SceneLibrary:
         )
 
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
-        """Give the agents that a scene that was built brings along."""
+        """Return the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
 
     @property
@@ -297,7 +314,7 @@ class SceneLibrary:
         return self._files.get(str(scene)) or self._catalogue.path(scene)
 
     def environment(self, spec: EnvironmentSpec) -> Environment:
-        """Give the surroundings that an entry describes.
+        """Return the surroundings that an entry describes.
 
         Raises
         ------
@@ -305,6 +322,16 @@ class SceneLibrary:
             If there is no such sky, or it cannot be read.
         """
         return make_environment(spec, self._skies)
+
+    def check_lights(self, lights: Iterable[Light]) -> None:
+        """Check that a scene file can describe these lights: names, ranges, number.
+
+        Raises
+        ------
+        InvalidEntry
+        """
+        entries = [light_entry(light) for light in lights]
+        checked_scene({"version": 1, "lights": entries}, self.knowledge, what="light")
 
     # -- inside ----------------------------------------------------------------------------
 

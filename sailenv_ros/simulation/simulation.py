@@ -1,32 +1,39 @@
-"""The simulation as its clients use it: one loop thread, requests as futures, frame streams.
+"""The simulation as its clients use it: one loop thread, operations as futures, frame streams.
 
 The composition root without ROS. One thread owns PyBullet and the GL context; every method here
-may be called from any thread. Requests are executed between physics steps in the order they came.
+may be called from any thread. Operations are carried out between physics steps, in the order they
+came.
 """
 
 from __future__ import annotations
 
 import atexit
 import collections
+import contextlib
+import inspect
 import logging
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sailenv_ros.errors import DeadlineExceeded, SimulationClosed, UnknownName
+from sailenv_ros.agents import AgentSpec, check_frame_rate
+from sailenv_ros.backends.selection import make_backend
+from sailenv_ros.catalogue.thumbnails import Thumbnails
+from sailenv_ros.catalogue.upload_queue import UploadQueue
+from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
+from sailenv_ros.notebook import scene_html
+from sailenv_ros.operations import Operation, Operations
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo, TimeMode
-from sailenv_ros.simulation.backends import make_backend
-from sailenv_ros.simulation.calls import wait_for
-from sailenv_ros.simulation.core import SimulationCore, checked_real_time_factor
+from sailenv_ros.simulation.clock import Clock
+from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.model_workers import ModelWorkers
 from sailenv_ros.simulation.pacing import Pacer
-from sailenv_ros.simulation.requests import REQUESTS, Requests
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.simulation.stream import FrameStream
-from sailenv_ros.simulation.thumbnails import Thumbnails
-from sailenv_ros.simulation.upload_queue import UploadQueue
+from sailenv_ros.system.futures import wait_for
 from sailenv_ros.world.world import World
 
 __all__ = ["Simulation"]
@@ -42,7 +49,7 @@ _START_TIMEOUT_S = 120.0
 T = TypeVar("T")
 
 
-class Simulation(Requests):
+class Simulation(Operations):
     """A running simulation; a context manager.
 
     Parameters
@@ -59,12 +66,17 @@ class Simulation(Requests):
         Of every random number of the scene.
     paused : bool
         Start without moving (realtime mode).
-    backend : {'auto', 'gl', 'tiny'}
+    backend : {'auto', 'native', 'gl', 'tiny'}
         Renderer: OpenGL, the software fallback, or the first of them that works.
     render_device : int or None
         Number of the EGL device; None takes the first that works.
     scene_paths : sequence of Path
         More folders with scenes.
+    allow_modules : bool
+        True lets scene files have behaviours of Python modules, whose code then runs here.
+    agent : AgentSpec or None
+        An agent to begin with, and the one that operations mean if none is named; None means the
+        scene's first.
 
     Raises
     ------
@@ -83,10 +95,10 @@ class Simulation(Requests):
         backend: BackendName = "auto",
         render_device: int | None = None,
         scene_paths: Sequence[Path] = (),
+        allow_modules: bool = False,
+        agent: AgentSpec | None = None,
     ) -> None:
-        if mode not in ("realtime", "lockstep"):
-            raise UnknownName("mode", mode, ("realtime", "lockstep"))
-        checked_real_time_factor(real_time_factor)
+        Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
         self._wake = threading.Condition()
         self._queue: collections.deque[tuple[Future[Any], Callable[[SimulationCore], Any]]] = (
             collections.deque()
@@ -94,22 +106,27 @@ class Simulation(Requests):
         self._core: SimulationCore | None = None
         self._closing = False
         self._ended = ""
+        self._own_agent = None if agent is None else agent.name
         self._info: SceneInfo | None = None
         self._sim_time_ns = 0
         self._info_listeners: list[Callable[[SceneInfo], None]] = []
         self._step_listeners: list[Callable[[int], None]] = []
         self._pacer = Pacer(real_time_factor)
-        self._uploads = UploadQueue(
-            lambda asset, rename: self._submit(lambda core: core.add_model(asset, rename=rename))
+        self._workers = ModelWorkers(
+            uploads=UploadQueue(
+                lambda asset, rename: self._submit(
+                    lambda core: core.editor.add_model(asset, rename=rename)
+                )
+            ),
+            thumbnails=Thumbnails(self._library, backend, render_device),
         )
-        self._thumbnails = Thumbnails(self._library, backend, render_device)
         started: Future[None] = Future()
 
         def make_core() -> SimulationCore:
             renderer = make_backend(backend, render_device)
             try:
                 return SimulationCore(
-                    SceneLibrary(scene_paths),
+                    SceneLibrary(scene_paths, allow_modules=allow_modules),
                     default_scene() if scene is None else scene,
                     renderer,
                     mode=mode,
@@ -129,6 +146,12 @@ class Simulation(Requests):
         wait_for(started, "the simulation to start", _START_TIMEOUT_S)
         # The loop thread is a daemon; GL objects and the engine want an orderly end all the same.
         atexit.register(self.close)
+        if agent is not None:
+            try:
+                self.register_agent(agent)
+            except BaseException:
+                self.close()
+                raise
 
     # -- reading ---------------------------------------------------------------------------
 
@@ -139,9 +162,19 @@ class Simulation(Requests):
         return self._info
 
     @property
+    def own_agent(self) -> str | None:
+        """The agent that operations mean if none is named; None is the scene's first."""
+        return self._own_agent
+
+    @property
     def sim_time_ns(self) -> int:
         """Simulated time as of the last step [ns]; never blocks."""
         return self._sim_time_ns
+
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that the renderer can make, in the order of `frame.VIEWS`; never blocks."""
+        return () if self._core is None else self._core.supported_views
 
     @property
     def skipped_frames(self) -> int:
@@ -153,25 +186,61 @@ class Simulation(Requests):
         """True once the simulation has ended or is ending."""
         return self._closing
 
-    # -- requests --------------------------------------------------------------------------
+    # -- operations ------------------------------------------------------------------------
 
-    def request(self, name: str, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Queue a request by its name; the future gives its result or raises its error.
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Queue an operation for the loop; see `Operations` for all of them.
 
         Raises
         ------
-        UnknownName
-            If there is no request of that name.
         SimulationClosed
             If the simulation has ended.
         """
-        if name not in REQUESTS:
-            raise UnknownName("request", name, sorted(REQUESTS))
-        if name == "upload_model":
-            return self._uploads.begin(*args, **kwargs)
-        if name == "thumbnail":
-            return self._thumbnails.begin(*args, **kwargs)
-        return self._submit(lambda core: getattr(core, name)(*args, **kwargs))
+        args, kwargs = arguments.args, arguments.kwargs
+        if operation.background:
+            future: Future[Any] = operation.run(self._workers, *args, **kwargs)
+            return future
+        return self._submit(lambda core: operation.run(core, *args, **kwargs))
+
+    def frames(
+        self, rate_hz: float = 30.0, *, agent: str | None = None, timeout_s: float = 30.0
+    ) -> Iterator[dict[str, Any]]:
+        """Yield frame after frame at a rate of simulated time, the newest each time.
+
+        Whoever is slower than the rate misses frames, which shows in their `sequence`. The rate
+        ends with the iteration.
+
+        Parameters
+        ----------
+        rate_hz : float
+            Frames per simulated second, above 0 and up to 240.
+        agent : str or None
+            None means the first.
+        timeout_s : float
+            Deadline of each frame [s].
+
+        Yields
+        ------
+        frame : dict
+            As of `get_frame`.
+
+        Raises
+        ------
+        SimulationClosed, DeadlineExceeded
+            If no frame came in time.
+        """
+        check_frame_rate(rate_hz)
+        name = agent or self.own_agent or next((spec.name for spec in self.info.agents), "")
+        with self.stream(name, self._own_views(name)) as stream:
+            self.set_rate(rate_hz, agent=name)
+            try:
+                while True:
+                    yield stream.get(timeout_s).to_dict()
+            finally:
+                with contextlib.suppress(SailenvError):  # it has ended, or the agent is gone
+                    self.set_rate(0.0, agent=name)
 
     # -- streams and listeners -------------------------------------------------------------
 
@@ -202,14 +271,17 @@ class Simulation(Requests):
     def close(self) -> None:
         """End the simulation: break off what runs, free everything; a second call does nothing."""
         self._closing = True
-        self._uploads.close()
-        self._thumbnails.close()
+        self._workers.close()
         self._nudge()
         atexit.unregister(self.close)
         if threading.current_thread() is not self._thread:
             self._thread.join(_CLOSE_TIMEOUT_S)
             if self._thread.is_alive():
                 raise DeadlineExceeded("the simulation's thread to end", _CLOSE_TIMEOUT_S)
+
+    def _repr_html_(self) -> str:
+        """Return a table of what is simulated, for notebooks."""
+        return scene_html(type(self).__name__, self.info)
 
     def __enter__(self) -> Simulation:
         return self
@@ -228,8 +300,8 @@ class Simulation(Requests):
             started.set_exception(error)
             return
         self._core = core
-        core.on_info, core.on_step = self._told_info, self._told_step
-        self._told_info(core.info)
+        core.on_info, core.on_step = self._take_info, self._take_step
+        self._take_info(core.info)
         why = "it was closed"
         self._pacer.restart(core.world.step_count)
         started.set_result(None)
@@ -258,10 +330,10 @@ class Simulation(Requests):
             else:
                 future.set_result(result)
             if _pace(core) != before:
-                self._pacer.restart(core.world.step_count, factor=core.real_time_factor)
+                self._pacer.restart(core.world.step_count, factor=core.clock.real_time_factor)
 
     def _advance(self, core: SimulationCore) -> None:
-        if core.runs_by_itself:
+        if core.clock.runs_by_itself:
             target = self._pacer.target(core.world.step_count)
             if target > core.world.step_count:
                 core.advance_to(target, every_frame=False)
@@ -273,7 +345,7 @@ class Simulation(Requests):
         with self._wake:
             if self._queue or self._closing:
                 return
-            if not core.runs_by_itself:
+            if not core.clock.runs_by_itself:
                 self._wake.wait()
                 return
             due = core.next_due_step()
@@ -291,12 +363,12 @@ class Simulation(Requests):
                 future.set_exception(SimulationClosed(why))
         core.close(why)
 
-    def _told_info(self, info: SceneInfo) -> None:
+    def _take_info(self, info: SceneInfo) -> None:
         self._info = info
         for listener in tuple(self._info_listeners):
             listener(info)
 
-    def _told_step(self, sim_time_ns: int) -> None:
+    def _take_step(self, sim_time_ns: int) -> None:
         self._sim_time_ns = sim_time_ns
         for listener in tuple(self._step_listeners):
             listener(sim_time_ns)
@@ -321,8 +393,8 @@ class Simulation(Requests):
 
 
 def _pace(core: SimulationCore) -> tuple[World, bool, float]:
-    """Give what time's pace depends on: when it changes, the clock begins anew."""
-    return core.world, core.runs_by_itself, core.real_time_factor
+    """Return what time's pace depends on: when it changes, the clock begins anew."""
+    return core.world, core.clock.runs_by_itself, core.clock.real_time_factor
 
 
 def _discard(listeners: list[Any], listener: Any) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from sailenv_ros.errors import DeadlineExceeded, SimulationClosed
 from sailenv_ros.frame import Frame, checked_views
@@ -24,12 +24,24 @@ class FrameStream:
     agent : str
     views : iterable of str
         Views wanted; none at all means that nothing is rendered for this stream.
+    supported : collection of str
+        Views that the renderer can make.
     on_change : callable
         Called after the wanted views changed or the stream was closed.
+
+    Raises
+    ------
+    UnknownName, InvalidRequest
+        If there is no such view, or the renderer cannot make it.
     """
 
     def __init__(
-        self, agent: str, views: Iterable[str], on_change: Callable[[FrameStream], None]
+        self,
+        agent: str,
+        views: Iterable[str],
+        on_change: Callable[[FrameStream], None],
+        *,
+        supported: Collection[str],
     ) -> None:
         self.agent = agent
         self._on_change = on_change
@@ -38,7 +50,8 @@ class FrameStream:
         self._ended = ""
         self._delivered = 0
         self._dropped = 0
-        self._views = _wanted(views)
+        self._supported = supported
+        self._views = self._checked(views)
 
     @property
     def views(self) -> tuple[str, ...]:
@@ -61,8 +74,14 @@ class FrameStream:
         return bool(self._ended)
 
     def set_views(self, views: Iterable[str]) -> None:
-        """Change what is rendered for this stream, from the next frame on."""
-        wanted = _wanted(views)
+        """Change what is rendered for this stream, from the next frame on.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            If there is no such view, or the renderer cannot make it; nothing is changed then.
+        """
+        wanted = self._checked(views)
         if wanted != self._views:
             self._views = wanted
             self._on_change(self)
@@ -96,7 +115,7 @@ class FrameStream:
         return frame
 
     def put(self, frame: Frame) -> None:
-        """Give the newest frame; called by the loop."""
+        """Return the newest frame; called by the loop."""
         with self._ready:
             if self._ended:
                 return
@@ -131,7 +150,7 @@ class FrameStream:
     def __exit__(self, *exc: object) -> None:
         self.close()
 
-
-def _wanted(views: Iterable[str]) -> tuple[str, ...]:
-    names = tuple(views)
-    return checked_views(names) if names else ()
+    def _checked(self, views: Iterable[str]) -> tuple[str, ...]:
+        # Here, not when a frame is due: there is nobody then to whom it could be refused.
+        names = tuple(views)
+        return checked_views(names, supported=self._supported) if names else ()

@@ -16,7 +16,7 @@ __all__ = ["view_planes"]
 
 
 def view_planes(camera: Camera, distance_m: float) -> NDArray[np.float64]:
-    """Give the six planes around what a camera sees.
+    """Return the six planes around what a camera sees.
 
     Parameters
     ----------

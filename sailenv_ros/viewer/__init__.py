@@ -1,9 +1,9 @@
-"""The window: a page in the browser that shows what agents see and lets people walk and build.
+"""The web viewer: a page in the browser that shows what agents see and lets people walk and build.
 
 Frames of `simulation/` in, pictures over one WebSocket out; wishes of people in, requests out.
 Knows no ROS.
 """
 
-from sailenv_ros.viewer.server import DEFAULT_HOST, DEFAULT_PORT, ViewerServer
+from sailenv_ros.viewer.web_server import DEFAULT_HOST, DEFAULT_PORT, ViewerServer
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "ViewerServer"]

@@ -1,4 +1,4 @@
-"""One client's socket: its messages to commands and to its `Watch`, frames and news back.
+"""One client's socket: messages to commands and to its `ViewSubscription`, frames and news back.
 
 Runs in the viewer's event loop. Whatever a client sends is answered in words; what it leaves
 unread ends the conversation. Knows no other client.
@@ -10,30 +10,40 @@ import asyncio
 import contextlib
 import logging
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
-from sailenv_ros.errors import InvalidRequest, SailenvError, UnknownName
+from sailenv_ros.errors import (
+    DeadlineExceeded,
+    InvalidRequest,
+    InvalidState,
+    SailenvError,
+    UnknownName,
+)
 from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.operations import Operation, Operations
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import contact_sheet
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.viewer.arguments import Arguments, arguments_of_text
 from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.encoding import packed, picture_png, view_png
-from sailenv_ros.viewer.limits import ViewerLimits
 from sailenv_ros.viewer.outbox import Outbox
-from sailenv_ros.viewer.told import told_scene
-from sailenv_ros.viewer.watch import Watch
+from sailenv_ros.viewer.request_arguments import Arguments, arguments_of_text
+from sailenv_ros.viewer.scene_json import scene_to_json
+from sailenv_ros.viewer.view_subscription import ViewSubscription
+from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
 __all__ = ["Client"]
 
 _log = logging.getLogger(__name__)
 
 MAX_WORDS = 1000
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 class Client:
@@ -79,16 +89,16 @@ class Client:
         self._greeting = greeting
         self._touch, self._touched = touch, touched
         self._loop = asyncio.get_running_loop()
-        self._watch: Watch | None = None
+        self._subscription: ViewSubscription | None = None
         self._selected = 0
         self._outbox = Outbox(socket, drop=drop, send_s=limits.send_s)
         self._news = asyncio.Event()
-        self._told_revision = (-1, -1)
+        self._sent_revision = (-1, -1)
         self._stats: dict[str, Any] | None = None
         self._running: set[asyncio.Task[None]] = set()
         self._second, self._messages = 0.0, 0
 
-    # -- of the desk, for commands ---------------------------------------------------------
+    # -- as the context of commands ---------------------------------------------------------
 
     @property
     def info(self) -> SceneInfo:
@@ -96,30 +106,30 @@ class Client:
         return self._simulation.info
 
     def frame(self, number: object) -> Frame:
-        """Give a frame that this client was sent lately; None means the last one."""
-        if self._watch is None:
-            raise InvalidRequest("frame", number, "watched first")
-        return self._watch.frame(number)
+        """Return a frame that this client was sent lately; None means the last one."""
+        if self._subscription is None:
+            raise InvalidState("no agent is watched here yet; watch one first")
+        return self._subscription.frame(number)
 
     def select(self, instance_id: int) -> None:
         """Have an instance's outline told; 0 for none."""
         self._selected = instance_id
-        if self._watch is not None:
-            self._watch.selected = instance_id
+        if self._subscription is not None:
+            self._subscription.selected = instance_id
 
-    async def ask(self, request: str, /, *args: Any, **kwargs: Any) -> Any:
+    async def run(self, operation: Operation[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R:
         """Have the simulation do something; wait for its result."""
-        future = asyncio.wrap_future(self._simulation.request(request, *args, **kwargs))
+        future = asyncio.wrap_future(operation.submit_to(self._simulation, *args, **kwargs))
         try:
             return await asyncio.wait_for(future, self._limits.request_s)
         except asyncio.TimeoutError:
-            accepted = f"something that takes at most {self._limits.request_s:g} s"
-            raise InvalidRequest("request", request, accepted) from None
+            what = f"the operation {operation.name!r}"
+            raise DeadlineExceeded(what, self._limits.request_s) from None
 
     @property
     def rendered_views(self) -> tuple[str, ...]:
         """Views that are rendered for this client now."""
-        watch = self._watch
+        watch = self._subscription
         return () if watch is None else watch.rendered_views
 
     # -- of the server ---------------------------------------------------------------------
@@ -186,8 +196,8 @@ class Client:
 
     async def _shown(self, given: Arguments) -> None:
         try:
-            if self._watch is not None:
-                self._watch.shown(given.get("number"))
+            if self._subscription is not None:
+                self._subscription.shown(given.get("number"))
         except SailenvError as error:
             await self._refuse(None, error)
 
@@ -243,11 +253,11 @@ class Client:
         agent, views = given.text("agent"), given.entries("views")
         if not all(isinstance(view, str) for view in views):
             raise InvalidRequest("views", views, "names of views")
-        if self._watch is not None and self._watch.agent == agent:
-            self._watch.show(views)
+        if self._subscription is not None and self._subscription.agent == agent:
+            self._subscription.show(views)
             return
-        first = 1 if self._watch is None else self._watch.next_number
-        watch = Watch(
+        first = 1 if self._subscription is None else self._subscription.next_number
+        watch = ViewSubscription(
             self._simulation,
             self.debug_agent,
             agent=agent,
@@ -258,16 +268,16 @@ class Client:
             first_number=first,
         )
         self._end_watch()
-        self._watch = watch
+        self._subscription = watch
         watch.selected = self._selected
 
     def _end_watch(self) -> None:
-        if self._watch is not None:
-            self._watch.close()
-            self._watch = None
+        if self._subscription is not None:
+            self._subscription.close()
+            self._subscription = None
 
     async def _screenshot(self, given: Arguments) -> _File:
-        """Give one view as a PNG, without loss."""
+        """Return one view as a PNG, without loss."""
         view, frame = given.text("view"), self.frame(given.get("frame"))
         data = await asyncio.to_thread(
             view_png, frame, view, categories=self.info.categories, depth_range_m=self._range(frame)
@@ -275,9 +285,9 @@ class Client:
         return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_{view}.png", data)
 
     async def _sheet(self, given: Arguments) -> _File:
-        """Give the five views on one sheet, rendered together at the next instant."""
+        """Return the five views on one sheet, rendered together at the next instant."""
         last = self.frame(None)
-        frame: Frame = await self.ask("capture", last.agent, FIVE_VIEWS)
+        frame: Frame = await self.run(Operations.capture, FIVE_VIEWS, agent=last.agent)
         data = await asyncio.to_thread(self._sheet_of, frame)
         return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
 
@@ -311,9 +321,9 @@ class Client:
             await self._news.wait()
             self._news.clear()
             info = self._simulation.info
-            if (info.epoch, info.revision) != self._told_revision:
-                self._told_revision = (info.epoch, info.revision)
-                await self._outbox.send_json(told_scene(info))
+            if (info.epoch, info.revision) != self._sent_revision:
+                self._sent_revision = (info.epoch, info.revision)
+                await self._outbox.send_json(scene_to_json(info))
             if self._stats is not None:
                 stats, self._stats = self._stats, None
                 await self._outbox.send_json(stats)

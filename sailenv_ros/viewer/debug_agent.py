@@ -1,4 +1,4 @@
-"""The debug agent: a camera of the window's own that follows the mover while somebody watches.
+"""The debug agent: a camera of the web viewer's own that follows the mover while somebody watches.
 
 Blocking requests to a `Simulation`, from any thread but the simulation's.
 """
@@ -79,4 +79,4 @@ class DebugAgent:
         with self._guard:
             self._intrinsics = intrinsics
             if self._watchers:
-                self._simulation.set_intrinsics(NAME, intrinsics)
+                self._simulation.set_intrinsics(intrinsics, agent=NAME)

@@ -18,13 +18,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 
-__all__ = ["outline", "packed", "packed_frame", "picture_png", "view_png"]
-
-PNG_VIEWS = frozenset({"category", "instance", "flow_valid", "occlusion"})
+__all__ = ["outline", "packed", "packed_frame", "picture_png", "view_png", "views_to_json"]
 
 JPEG_QUALITY = 85
 
@@ -47,7 +45,7 @@ class _SharedPictures:
     def get(
         self, frame: Frame, view: str, make: Callable[[], tuple[str, bytes]]
     ) -> tuple[str, bytes]:
-        """Give the picture; made now, or waited for where another thread makes it."""
+        """Return the picture; made now, or waited for where another thread makes it."""
         with self._lock:
             pictures = self._made.setdefault(frame, {})
             known = pictures.get(view)
@@ -128,18 +126,38 @@ def packed_frame(
     return packed(head, (data for _, data in pictures))
 
 
+def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:
+    """Return what the page must know of views: which are shown at first, how values are written.
+
+    Parameters
+    ----------
+    views : iterable of str
+        Names in `sailenv_ros.frame.VIEWS`, in the order in which the page lays them out.
+    """
+    return [
+        {
+            "name": spec.name,
+            "meaning": spec.meaning,
+            "unit": spec.unit,
+            "display": spec.display,
+            "shown": spec.by_default,
+        }
+        for spec in map(view_spec, views)
+    ]
+
+
 def view_png(frame: Frame, view: str, *, categories: CategoryTable, depth_range_m: float) -> bytes:
-    """Give one view's picture as a PNG file."""
+    """Return one view's picture as a PNG file."""
     return picture_png(_picture(frame, view, categories, depth_range_m))
 
 
 def picture_png(picture: NDArray[np.uint8]) -> bytes:
-    """Give a picture (H, W, 3) as a PNG file."""
+    """Return a picture (H, W, 3) as a PNG file."""
     return _png(picture, ())
 
 
 def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:
-    """Give the closed lines around an instance's pixels: u, v, u, v, … of each [px].
+    """Return the closed lines around an instance's pixels: u, v, u, v, … of each [px].
 
     Specks beside the largest of them are left out.
     """
@@ -167,7 +185,7 @@ def _encoded(
     frame: Frame, view: str, categories: CategoryTable, depth_range_m: float
 ) -> tuple[str, bytes]:
     picture = _picture(frame, view, categories, depth_range_m)
-    if view in PNG_VIEWS:
+    if view_spec(view).is_label:
         return "image/png", _png(picture, _FAST_PNG)
     settings = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY)
     _, data = cv2.imencode(".jpg", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)

@@ -5,11 +5,13 @@ Arguments as JSON has them in, requests to a `Simulation` out. Part of the table
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.viewer.arguments import Arguments
-from sailenv_ros.viewer.desk import CommandTable, Desk
+from sailenv_ros.lights import LightType
+from sailenv_ros.operations import Operations
+from sailenv_ros.viewer.command_context import CommandContext, CommandTable
+from sailenv_ros.viewer.request_arguments import Arguments
 
 __all__ = ["LIGHT_COMMANDS"]
 
@@ -17,39 +19,47 @@ LIGHT_COMMANDS = CommandTable()
 
 
 @LIGHT_COMMANDS.changes
-async def add_light(desk: Desk, given: Arguments) -> Any:
+async def add_light(context: CommandContext, given: Arguments) -> Any:
     """Hang a light where the watched camera is, shining where it looks."""
-    camera = desk.frame(None).camera
+    camera = context.frame(None).camera
     place = {
         "position_m": camera.pose.position_m,
         "direction": tuple(float(x) for x in camera.pose.matrix()[:3, 0]),
     }
     attributes = {**place, **given.mapping("attributes")}
-    await desk.ask("add_light", given.text("light"), given.text("type"), **attributes)
+    await context.run(
+        Operations.add_light,
+        given.text("light"),
+        given.choice("type", get_args(LightType)),
+        **attributes,
+    )
 
 
 @LIGHT_COMMANDS.changes
-async def remove_light(desk: Desk, given: Arguments) -> Any:
+async def remove_light(context: CommandContext, given: Arguments) -> Any:
     """Take a light out of the scene."""
-    await desk.ask("remove_light", given.text("light"))
+    await context.run(Operations.remove_light, given.text("light"))
 
 
 @LIGHT_COMMANDS.changes
-async def set_light(desk: Desk, given: Arguments) -> Any:
+async def set_light(context: CommandContext, given: Arguments) -> Any:
     """Change attributes of a light."""
     changes = given.mapping("changes")
     if "name" in changes:
         raise InvalidRequest("change of a light", "name", "another attribute")
-    await desk.ask("set_light", given.text("light"), **changes)
+    await context.run(Operations.set_light, given.text("light"), **changes)
 
 
 @LIGHT_COMMANDS.changes
-async def set_environment(desk: Desk, given: Arguments) -> Any:
+async def set_environment(context: CommandContext, given: Arguments) -> Any:
     """Change the surroundings, by the keys of a scene file."""
-    await desk.ask("set_environment", **given.mapping("changes"))
+    await context.run(Operations.set_environment, **given.mapping("changes"))
 
 
 @LIGHT_COMMANDS.changes
-async def set_picture(desk: Desk, given: Arguments) -> Any:
+async def set_picture(context: CommandContext, given: Arguments) -> Any:
     """Change what is done to an agent's picture, by the names of its settings."""
-    await desk.ask("set_picture", given.text("agent"), **given.mapping("changes"))
+    changes = given.mapping("changes")
+    if "agent" in changes:
+        raise InvalidRequest("change of a picture", "agent", "a setting of pictures")
+    await context.run(Operations.set_picture, agent=given.text("agent"), **changes)

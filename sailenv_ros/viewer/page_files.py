@@ -18,7 +18,7 @@ _KINDS: Mapping[str, str] = MappingProxyType(
 
 
 def page_file(name: str) -> tuple[str, bytes] | None:
-    """Give a file's media type and bytes; None if the page has no such file."""
+    """Return a file's media type and bytes; None if the page has no such file."""
     return _files().get(name)
 
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.validation import checked_integer
 
 __all__ = ["pixel_of", "standing_point", "values_at"]
 
@@ -37,16 +37,11 @@ def pixel_of(frame: Frame, u: object, v: object) -> tuple[int, int]:
         If it is none of the frame's.
     """
     width, height = frame.camera.intrinsics.width, frame.camera.intrinsics.height
-    for what, value, end in (("column", u, width), ("row", v, height)):
-        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < end:
-            raise InvalidRequest(what, value, f"an integer from 0 to {end - 1}")
-    assert isinstance(u, int)
-    assert isinstance(v, int)
-    return u, v
+    return checked_integer("column", u, 0, width - 1), checked_integer("row", v, 0, height - 1)
 
 
 def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> dict[str, Any]:
-    """Give the values at a pixel, as the arrays have them.
+    """Return the values at a pixel, as the arrays have them.
 
     Parameters
     ----------
@@ -60,33 +55,29 @@ def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> dict[str, Any]:
     Returns
     -------
     values : dict
-        ``rgb`` three integers; ``depth`` [m], None for nothing hit and the text ``"near"`` for
-        nearer than the near plane; ``category``, ``category_id``; ``instance``, ``instance_id``;
-        ``flow`` [px/s], None where it does not exist.
+        By the views' names: integers as they are; real numbers, None where one of them is not
+        finite, and the text ``"near"`` for a depth nearer than the near plane. Beside
+        ``category_id`` and ``instance_id`` these two are the names, empty for none.
     """
     result: dict[str, Any] = {"u": u, "v": v, "sequence": frame.sequence}
-    views = frame.views
-    if "rgb" in views:
-        result["rgb"] = views["rgb"][v, u].tolist()
-    if "depth" in views:
-        depth = float(views["depth"][v, u])
-        result["depth"] = "near" if math.isnan(depth) else depth if math.isfinite(depth) else None
-    if "category" in views:
-        number = int(views["category"][v, u])
-        known = info.categories.get(number)
-        result |= {"category_id": number, "category": known.name if known else ""}
-    if "instance" in views:
-        number = int(views["instance"][v, u])
-        names = (instance.name for instance in info.instances if instance.id == number)
-        result |= {"instance_id": number, "instance": next(names, "")}
-    if "flow" in views:
-        flow = views["flow"][v, u].tolist()
-        result["flow"] = flow if all(map(math.isfinite, flow)) else None
+    for view, array in frame.views.items():
+        value = array[v, u].tolist()
+        display = VIEWS[view].display
+        if display == "category":
+            known = info.categories.get(value)
+            result |= {f"{view}_id": value, view: known.name if known else ""}
+        elif display == "instance":
+            names = (instance.name for instance in info.instances if instance.id == value)
+            result |= {f"{view}_id": value, view: next(names, "")}
+        elif display == "depth" and math.isnan(value):
+            result[view] = "near"
+        else:
+            result[view] = value if np.isfinite(value).all() else None
     return result
 
 
 def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:
-    """Give the place in the world [m] where something can stand that is wanted at a pixel.
+    """Return the place in the world [m] where something can stand that is wanted at a pixel.
 
     On what is seen there; a bit before it where that is upright; at a distance ahead where nothing
     near is seen.

@@ -14,21 +14,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import BodyState, RunningBehaviour
-from sailenv_ros.errors import InvalidRequest, PhysicsError
+from sailenv_ros.errors import InvalidRequest, InvalidState, PhysicsError
 from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.world import acting
+from sailenv_ros.world import actuation
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision import build_collision
 from sailenv_ros.world.placement import Placement
 
-__all__ = ["MAX_BEHAVIOURS", "Body", "Confines", "Placement"]
+__all__ = ["MAX_BEHAVIOURS", "Body", "FrustumPlanes", "Placement"]
 
 Vector3 = tuple[float, float, float]
 
-Confines: TypeAlias = Callable[[str, float], NDArray[np.float64]]
-"""``confines(agent, distance_m)`` gives the planes of an agent's view, as `BodyState` has them."""
+FrustumPlanes: TypeAlias = Callable[[str, float], NDArray[np.float64]]
+"""``frustum_planes(agent, distance_m)`` returns planes of an agent's view frustum."""
 
 MAX_BEHAVIOURS = 16
 
@@ -48,16 +48,16 @@ class Body:
         0 for what is static [kg].
     arranged : bool
         True until it is put elsewhere by hand: whatever moves it since is physics.
-    told_pose : Pose
+    entry_pose : Pose
         Where its entry puts it.
     behaves_as_told : bool
         True while its behaviours are those of its entry.
     """
 
-    def __init__(self, client: BulletClient, placement: Placement, gravity: Vector3) -> None:
+    def __init__(self, client: BulletClient, placement: Placement) -> None:
         self.placement = placement
         self.arranged = True
-        self.told_pose = placement.pose
+        self.entry_pose = placement.pose
         self.behaves_as_told = True
         self._behaviours = placement.behaviours
         self._is_fast = False
@@ -73,9 +73,7 @@ class Body:
         self._static_pose = placement.pose
         self._matrix = placement.pose.matrix()
         # PyBullet has no per-body gravity; the weight of those it must not pull is given back.
-        self._lift = None
-        if not placement.static and not placement.gravity:
-            self._lift = tuple(-self.mass_kg * g for g in gravity)
+        self._floats = not placement.static and not placement.gravity
 
     @property
     def bullet_id(self) -> int:
@@ -83,7 +81,7 @@ class Body:
         return self._id
 
     def world_from_body(self) -> NDArray[np.float64]:
-        """Give the (4, 4) pose now.
+        """Return the (4, 4) pose now.
 
         Raises
         ------
@@ -96,7 +94,7 @@ class Body:
         return self._matrix_of(position, quat)
 
     def pose(self) -> Pose:
-        """Give the pose of the body frame now; what has fallen out of the world is at its edge."""
+        """Return the pose of the body frame now; what fell out of the world is at its edge."""
         if self.placement.static:
             return self._static_pose
         if not any(self._centre):
@@ -122,14 +120,14 @@ class Body:
     def wake(self) -> None:
         """Let physics move it again, if it has come to rest and sleeps."""
         if not self.placement.static:
-            acting.wake(self._client, self._id)
+            actuation.wake(self._client, self._id)
 
     def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Give the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
-        return acting.velocity(self._client, self._id)
+        """Return the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
+        return actuation.velocity(self._client, self._id)
 
     def state(self, instance: Instance, sim_time_ns: int) -> ObjectState:
-        """Give all that clients may know of it now."""
+        """Return all that clients may know of it now."""
         placement = self.placement
         low, high = placement.asset.model.bounds()
         linear, angular = self.velocity()
@@ -148,13 +146,13 @@ class Body:
             linear_velocity=_three(linear),
             angular_velocity=_three(angular),
             behaviours=tuple(
-                {"type": running.kind.type, **running.parameters.told()}
+                {"type": running.kind.type, **running.parameters.to_json()}
                 for running in self._behaviours
             ),
             sim_time_ns=sim_time_ns,
         )
 
-    def rebuilt(self, placement: Placement, gravity: Vector3) -> Body:
+    def rebuilt(self, placement: Placement) -> Body:
         """Make the body that another placement says, in the place and the motion of this one.
 
         Both are in the engine then; `remove` takes this one out of it.
@@ -172,9 +170,9 @@ class Body:
             angular_velocity=_three(angular),
             behaviours=self._behaviours,
         )
-        new = Body(self._client, moving, gravity)
+        new = Body(self._client, moving)
         new.arranged = self.arranged and placement.scale == self.placement.scale
-        new.told_pose = self.told_pose
+        new.entry_pose = self.entry_pose
         new.behaves_as_told = self.behaves_as_told
         return new
 
@@ -197,10 +195,9 @@ class Body:
                 f"static of {name!r}", True, "false for an object that has behaviours"
             )
         if len(self._behaviours) >= MAX_BEHAVIOURS:
-            raise InvalidRequest(
-                f"number of behaviours of {name!r}",
-                len(self._behaviours) + 1,
-                f"at most {MAX_BEHAVIOURS}; detach them first",
+            raise InvalidState(
+                f"object {name!r} has {MAX_BEHAVIOURS} behaviours, which is the most; "
+                "remove them first"
             )
         self._behaviours = (*self._behaviours, running)
         self.behaves_as_told = False
@@ -210,22 +207,23 @@ class Body:
         self._behaviours = ()
         self.behaves_as_told = False
 
-    def act(self, time_s: float, confines: Confines) -> None:
+    def act(self, time_s: float, frustum_planes: FrustumPlanes) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""
         acted = False
         for running in self._behaviours:
             if not running.is_idle(time_s):
-                action = running.act(time_s, self._state(running, confines))
-                acting.apply_action(self._client, self._id, action)
+                action = running.act(time_s, self._state(running, frustum_planes))
+                actuation.apply_action(self._client, self._id, action)
                 acted = True
         # What rests is not asked for its speed: that would cost more than all else.
         if acted or self._is_fast:
-            self._is_fast = acting.tame(self._client, self._id)
-        if self._lift is not None:
-            acting.push(self._client, self._id, self._lift)
+            self._is_fast = actuation.limit_penetration(self._client, self._id)
+        if self._floats:
+            lift = tuple(-self.mass_kg * g for g in self._client.gravity)
+            actuation.push(self._client, self._id, lift)
 
     def touching_ids(self) -> frozenset[int]:
-        """Give PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
+        """Return PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
         low, high = self._client.getAABB(self._id)
         found = self._client.getOverlappingObjects(
             [edge - TOUCH_M for edge in low], [edge + TOUCH_M for edge in high]
@@ -240,7 +238,7 @@ class Body:
     @property
     def acts(self) -> bool:
         """True if `act` has anything to do."""
-        return self._lift is not None or bool(self._behaviours)
+        return self._floats or bool(self._behaviours)
 
     def remove(self) -> None:
         """Take the body out of the engine."""
@@ -283,17 +281,19 @@ class Body:
             )
         return int(body)
 
-    def _state(self, running: RunningBehaviour, confines: Confines) -> BodyState:
+    def _state(self, running: RunningBehaviour, frustum_planes: FrustumPlanes) -> BodyState:
         linear, angular = self.velocity()
         viewer = running.parameters.viewer
-        planes = confines(viewer, running.parameters.view_distance_m) if viewer else _NO_PLANES
+        planes = (
+            frustum_planes(viewer, running.parameters.view_distance_m) if viewer else _NO_PLANES
+        )
         return BodyState(
             pose=self.pose(),
             linear_velocity=linear,
             angular_velocity=angular,
             mass_kg=self.mass_kg,
             inertia_kg_m2=self._inertia,
-            confines=planes,
+            frustum_planes=planes,
         )
 
     def _centre_in_world(self, pose: Pose) -> list[float]:

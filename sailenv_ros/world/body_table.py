@@ -10,8 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, UnknownName
 from sailenv_ros.labels import MAX_INSTANCE_ID
+from sailenv_ros.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.placement import Placement
@@ -26,8 +27,6 @@ class BodyTable:
     ----------
     client : BulletClient
         The engine that they live in.
-    gravity : (3,) tuple
-        World frame [m/s²].
     placements : iterable of Placement
         What is there from the start; get the ids 1, 2, 3 … in this order.
     """
@@ -35,11 +34,9 @@ class BodyTable:
     def __init__(
         self,
         client: BulletClient,
-        gravity: tuple[float, float, float],
         placements: Iterable[Placement],
     ) -> None:
         self._client = client
-        self._gravity = gravity
         self._bodies: dict[int, Body] = {}
         self._histories: dict[int, int] = {}
         self._last_id = 0
@@ -67,26 +64,28 @@ class BodyTable:
         return self._bodies[instance_id]
 
     def items(self) -> Iterable[tuple[int, Body]]:
-        """Give ids and bodies."""
+        """Return ids and bodies."""
         return self._bodies.items()
 
     def find(self, obj: int | str) -> int:
-        """Give the instance id of an object that is named by its id or its name.
+        """Return the instance id of an object that is named by its id, also as a text, or its name.
 
         Raises
         ------
         UnknownName, InvalidRequest
             If there is no such object now.
         """
-        if isinstance(obj, int | np.integer) and not isinstance(obj, bool):
+        if is_integer(obj):
             self[int(obj)]
             return int(obj)
         if not isinstance(obj, str):
             raise InvalidRequest("object", obj, "an instance id, or the name of an object")
         ids = {body.placement.name: id_ for id_, body in self._bodies.items()}
-        if obj not in ids:
-            raise UnknownName("object", obj, ids)
-        return ids[obj]
+        if obj in ids:
+            return ids[obj]
+        if obj.isdecimal() and int(obj) in self._bodies:
+            return int(obj)  # scripts of the SAILenv client hold ids as texts
+        raise UnknownName("object", obj, ids)
 
     @property
     def firsts(self) -> Mapping[str, Body]:
@@ -100,16 +99,16 @@ class BodyTable:
         return self._room_parts.difference(body.placement.name for body in self)
 
     def world_from_body(self) -> NDArray[np.float64]:
-        """Give the (N, 4, 4) poses now."""
+        """Return the (N, 4, 4) poses now."""
         rows = [body.world_from_body() for body in self]
         return np.stack(rows) if rows else np.zeros((0, 4, 4))
 
     def histories(self) -> NDArray[np.int64]:
-        """Give (N,) numbers; a body's past before its number changed has been cut off."""
+        """Return (N,) numbers; a body's past before its number changed has been cut off."""
         return np.array([self._histories[id_] for id_ in self._bodies], dtype=np.int64)
 
     def add(self, placement: Placement) -> int:
-        """Put a body into the engine; give its instance id.
+        """Put a body into the engine; return its instance id.
 
         Raises
         ------
@@ -118,12 +117,11 @@ class BodyTable:
         """
         self._require_free_name(placement.name)
         if self._last_id >= MAX_INSTANCE_ID:
-            raise InvalidRequest(
-                "number of objects",
-                self._last_id + 1,
-                f"at most {MAX_INSTANCE_ID} in a scene's life; reset the scene to begin anew",
+            raise InvalidState(
+                f"a scene can have {MAX_INSTANCE_ID} objects in its life and has had them; "
+                "reset the scene to begin anew"
             )
-        body = Body(self._client, placement, self._gravity)
+        body = Body(self._client, placement)
         self._last_id += 1
         self._bodies[self._last_id] = body
         self.cut_off_past(self._last_id)
@@ -148,7 +146,7 @@ class BodyTable:
         old = self[instance_id]
         if placement.name != old.placement.name:
             self._require_free_name(placement.name)
-        new = old.rebuilt(placement, self._gravity)
+        new = old.rebuilt(placement)
         self.rouse_beside(old)
         old.remove()
         self._bodies[instance_id] = new

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sailenv_ros.assets.arranging import arranged
-from sailenv_ros.assets.library import AssetLibrary
+from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.assets.skies import load_sky
@@ -80,7 +80,7 @@ def build_world(
 
 
 def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Environment:
-    """Give the surroundings; under a photographed sky its means take the place of the colours.
+    """Return the surroundings; under a photographed sky its means take the place of the colours.
 
     Raises
     ------

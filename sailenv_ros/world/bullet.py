@@ -26,7 +26,7 @@ _import_lock = threading.Lock()
 
 
 def sim_time_ns(step: int) -> int:
-    """Give the simulated time after so many steps [ns]; exact to the nanosecond, never drifts."""
+    """Return the simulated time after so many steps [ns]; exact to the nanosecond, never drifts."""
     return step * 1_000_000_000 // STEPS_PER_SECOND
 
 
@@ -55,6 +55,17 @@ class BulletClient:
                 "PyBullet gave no physics server (too many are open in this process)"
             )
         self._bound: dict[str, Callable[..., Any]] = {}
+        self._gravity = (0.0, 0.0, 0.0)
+
+    @property
+    def gravity(self) -> tuple[float, float, float]:
+        """Acceleration that pulls every body, world frame [m/s²]; PyBullet cannot tell it."""
+        return self._gravity
+
+    @gravity.setter
+    def gravity(self, gravity: tuple[float, float, float]) -> None:
+        self.setGravity(*gravity)
+        self._gravity = gravity
 
     @property
     def constants(self) -> Any:

@@ -2,7 +2,7 @@
 
 While its waypoints drive it, its pose is a pure function of the simulated time it has run, so
 reading it twice gives the same bytes. Once it is put somewhere by hand it stays there until a
-command moves it (`world.stand` says how far) or the waypoints are given control again.
+command moves it (`world.collision_proxy` says how far) or the waypoints are given control again.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.geometry import Pose, interpolate, vector
+from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
+from sailenv_ros.geometry import Pose, interpolate
+from sailenv_ros.validation import vector
 
 __all__ = [
     "COMMAND_LASTS_NS",
@@ -112,7 +113,7 @@ class WaypointTrack:
         return interpolate(first, second, progress - leg)
 
     def progress_at(self, time_s: float) -> float:
-        """Give how many legs are behind it; a track that is closed begins at 0 again."""
+        """Return how many legs are behind it; a track that is closed begins at 0 again."""
         if not self.legs:
             return 0.0
         progress = time_s / self.total_time_s * self.legs
@@ -181,7 +182,7 @@ class Mover:
         return self._controller
 
     def pose_at(self, time_ns: int) -> Pose:
-        """Give the pose at a simulated time not before the last change [ns]."""
+        """Return the pose at a simulated time not before the last change [ns]."""
         if self._controller == "rigidbody" or self._track is None:
             return self._held
         return self._track.pose_at(self._ran_ns(time_ns) * 1e-9)
@@ -200,12 +201,16 @@ class Mover:
 
         Raises
         ------
+        InvalidState
+            If its waypoints drive it.
         InvalidRequest
-            If its waypoints drive it, or an angle is not from -π to π.
+            If an angle is not from -π to π.
         """
         if self._controller != "rigidbody":
-            accepted = "'rigidbody' to be turned; change it by set_mover_controller"
-            raise InvalidRequest(f"controller of {self.name!r}", self._controller, accepted)
+            raise InvalidState(
+                f"waypoints drive mover {self.name!r}; to turn it, make its controller 'rigidbody' "
+                "by set_mover_controller"
+            )
         given = vector("angles to turn by", (0.0, pitch_rad, yaw_rad), limit=math.pi)
         self._held = turned(self._held, given[1], given[2])
 
@@ -214,17 +219,19 @@ class Mover:
 
         Raises
         ------
-        InvalidRequest
+        InvalidState
             If its waypoints drive it.
         """
         if self._controller != "rigidbody":
-            accepted = "'rigidbody' to be driven by commands; change it by set_mover_controller"
-            raise InvalidRequest(f"controller of {self.name!r}", self._controller, accepted)
+            raise InvalidState(
+                f"waypoints drive mover {self.name!r}; to drive it, make its controller "
+                "'rigidbody' by set_mover_controller"
+            )
         self._command = command
         self._command_ends_ns = time_ns + COMMAND_LASTS_NS
 
     def command_at(self, time_ns: int) -> MoverCommand | None:
-        """Give the command that moves it at a simulated time [ns]; None if it stands still."""
+        """Return the command that moves it at a simulated time [ns]; None if it stands still."""
         command = self._command
         if command is None or not command.moves or time_ns >= self._command_ends_ns:
             return None
@@ -233,7 +240,7 @@ class Mover:
     def lead(
         self, waypoints: tuple[Pose, ...], *, total_time_s: float, loop: bool, time_ns: int
     ) -> None:
-        """Give it another track; on the leg that it has reached, it is as far as it was.
+        """Replace its track; on the leg that it has reached, it is as far as it was.
 
         Without waypoints it stays where it is.
         """

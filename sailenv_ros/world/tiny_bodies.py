@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.model import Material, Model, ModelPart, Texture
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.bullet import BulletClient
@@ -113,7 +114,7 @@ class TinyBodies:
         return body
 
     def _texture(self, texture: Texture) -> int:
-        """Give PyBullet's number of a texture; it reads textures from files alone."""
+        """Return PyBullet's number of a texture; it reads textures from files alone."""
         if id(texture) not in self._textures:
             with tempfile.TemporaryDirectory(prefix="sailenv_ros_") as folder:
                 path = Path(folder) / "texture.png"
@@ -123,7 +124,7 @@ class TinyBodies:
 
 
 def _chunks(part: ModelPart, scale: tuple[float, float, float]) -> Iterator[dict[str, Any]]:
-    """Give the arrays of a part's meshes as PyBullet takes them, scaled."""
+    """Return the arrays of a part's meshes as PyBullet takes them, scaled."""
     mesh = part.mesh
     factors = np.asarray(scale)
     normals = mesh.normals / factors
@@ -148,8 +149,7 @@ def _chunks(part: ModelPart, scale: tuple[float, float, float]) -> Iterator[dict
 
 
 def _displayed(material: Material) -> list[float]:
-    """Give a material's colour as sRGB: TinyRenderer shades in the display's values."""
+    """Return a material's colour as sRGB: TinyRenderer shades in the display's values."""
     emits = max(material.emission) > 0.0
-    linear = np.clip(np.asarray(material.emission if emits else material.base_colour[:3]), 0.0, 1.0)
-    curved = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return [*curved.tolist(), 1.0]
+    colour = material.emission if emits else material.base_colour[:3]
+    return [*srgb_from_linear(colour).tolist(), 1.0]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.bullet import BulletClient
@@ -88,7 +89,7 @@ class TinyRasteriser:
     def _shoot(
         self, intrinsics: CameraIntrinsics, near_m: float, contents: SceneContents, camera: Camera
     ) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.int64]]:
-        """Give colours (H, W, 4), depth [m] and PyBullet's body number, -1 for none."""
+        """Return colours (H, W, 4), depth [m] and PyBullet's body number, -1 for none."""
         constants = self._client.constants
         shape = (intrinsics.height, intrinsics.width)
         _, _, colours, window, body = self._client.getCameraImage(
@@ -114,7 +115,7 @@ class TinyRasteriser:
 
 
 def _projection(intrinsics: CameraIntrinsics, near_m: float) -> NDArray[np.float64]:
-    """Give the projection of eye coordinates.
+    """Return the projection of eye coordinates.
 
     TinyRenderer looks through the lower left corners of its window's pixels; half a pixel more in
     both directions makes that the centres.
@@ -153,7 +154,7 @@ def _lighting(contents: SceneContents, camera: Camera) -> dict[str, Any]:
 
 
 def _backdrop(camera: Camera, environment: Environment) -> NDArray[np.float64]:
-    """Give (H, W, 3) 0 to 255: the analytic sky, or the plain background."""
+    """Return (H, W, 3) 0 to 255: the analytic sky, or the plain background."""
     intrinsics = camera.intrinsics
     exposure = 2.0**environment.exposure
     if environment.background == "colour":
@@ -170,10 +171,9 @@ def _backdrop(camera: Camera, environment: Environment) -> NDArray[np.float64]:
 
 
 def _toned(radiance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give sRGB values 0 to 1 on the filmic curve of the other back end (Narkowicz 2015)."""
+    """Return sRGB values 0 to 1 on the filmic curve of the other back end (Narkowicz 2015)."""
     c = radiance * (2.51 * radiance + 0.03) / (radiance * (2.43 * radiance + 0.59) + 0.14)
-    c = np.clip(c, 0.0, 1.0)
-    return np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055)
+    return srgb_from_linear(c)
 
 
 def _strength(light: Light) -> float:

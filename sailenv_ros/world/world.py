@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -21,11 +22,11 @@ from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
-from sailenv_ros.world.bodies import Body, Confines, Placement
+from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
+from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.mover import Mover, MoverCommand
-from sailenv_ros.world.stand import Stand
 
 __all__ = ["World"]
 
@@ -51,9 +52,9 @@ class World:
     Attributes
     ----------
     described : SceneSpec or None
-    confines : callable
-        ``confines(agent, distance_m)`` gives the (N, 4) planes of an agent's view; none at all
-        unless whoever knows the agents has set it.
+    frustum_planes : callable
+        ``frustum_planes(agent, distance_m)`` returns the (N, 4) planes of an agent's view frustum;
+        none unless whoever knows the agents has set it.
     """
 
     def __init__(
@@ -75,19 +76,19 @@ class World:
         self.categories = categories
         self.described = described
         self._next_revision = next_revision
-        self._gravity = gravity
         self._lights = tuple(lights)
         self._environment = environment or Environment()
         self._baked: BakedLight | None = None
         self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
-        self._stands: dict[str, Stand] = {}
+        self._proxies: dict[str, CollisionProxy] = {}
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
-        self.confines: Confines = lambda agent, distance_m: np.zeros((0, 4))
+        self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
-            self._bodies = BodyTable(self._client, gravity, placements)
+            self._client.gravity = gravity
+            self._bodies = BodyTable(self._client, placements)
         except BaseException:
             self.close()
             raise
@@ -111,12 +112,12 @@ class World:
         for _ in range(count):
             time_s = self._step / STEPS_PER_SECOND
             for body in active:
-                body.act(time_s, self.confines)
-            for stand in self._stands.values():
-                stand.before_step(self.sim_time_ns)
+                body.act(time_s, self.frustum_planes)
+            for proxy in self._proxies.values():
+                proxy.before_step(self.sim_time_ns)
             self._client.stepSimulation()
-            for stand in self._stands.values():
-                stand.after_step(self.sim_time_ns)
+            for proxy in self._proxies.values():
+                proxy.after_step(self.sim_time_ns)
             self._step += 1
         if count:
             self._snapshot = None
@@ -194,7 +195,7 @@ class World:
         return self._bodies[instance_id]
 
     def find(self, obj: int | str) -> int:
-        """Give the instance id of an object that is named by its id or its name.
+        """Return the instance id of an object that is named by its id or its name.
 
         Raises
         ------
@@ -262,18 +263,24 @@ class World:
             self._bodies.cut_off_past(instance_id)
         self._snapshot = None
 
-    def drive(self, mover: str, command: MoverCommand) -> None:
-        """Have a mover walk as a command says, stopped by what it meets.
+    def drive(
+        self,
+        mover: str,
+        linear_m_s: Any = (0.0, 0.0, 0.0),
+        angular_rad_s: Any = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Have a mover walk, stopped by what it meets; see `MoverCommand` for the velocities.
 
         Raises
         ------
-        UnknownName, InvalidRequest
-            If there is no such mover, or its waypoints drive it.
+        UnknownName, InvalidRequest, InvalidState
+            If there is no such mover, the command cannot be accepted, or waypoints drive it.
         """
         driven = self.mover(mover)
+        command = MoverCommand(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s)
         driven.command(command, self.sim_time_ns)
-        if driven.name not in self._stands:
-            self._stands[driven.name] = Stand(self._client, driven, self._gravity)
+        if driven.name not in self._proxies:
+            self._proxies[driven.name] = CollisionProxy(self._client, driven)
 
     def set_lights(self, lights: Sequence[Light]) -> None:
         """Replace the lights."""
@@ -290,6 +297,17 @@ class World:
         self._baked = baked and replace(baked, environment=self._environment)
         self._changed()
 
+    @property
+    def gravity(self) -> tuple[float, float, float]:
+        """Acceleration that pulls every body with gravity, world frame [m/s²]."""
+        return self._client.gravity
+
+    def set_gravity(self, gravity: tuple[float, float, float]) -> None:
+        """Change the acceleration that pulls every body with gravity; what sleeps wakes."""
+        self._client.gravity = gravity
+        for body in self.bodies:
+            body.wake()
+
     def close(self) -> None:
         """Free the engine; a second call does nothing."""
         self._client.close()
@@ -299,7 +317,6 @@ class World:
     def _configure(self) -> None:
         client = self._client
         client.setTimeStep(1.0 / STEPS_PER_SECOND)
-        client.setGravity(*self._gravity)
         # Without it the order of contacts, and with it the result, may depend on addresses.
         client.setPhysicsEngineParameter(deterministicOverlappingPairs=1, numSolverIterations=50)
 

@@ -1,4 +1,4 @@
-"""The example of the original client does what it says."""
+"""The example of the SAILenv client does what it says."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from PIL import Image
 
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.simulation import Simulation
-from tests.support.original_client import OriginalAgent
+from tests.support.sailenv_client import OriginalAgent
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "05_original_client.py"
 

@@ -15,10 +15,10 @@ from contextlib import ExitStack
 import pytest
 
 from sailenv_ros.gateway import GatewayServer
-from sailenv_ros.gateway.limits import GatewayLimits
+from sailenv_ros.gateway.gateway_limits import GatewayLimits
 from sailenv_ros.gateway.session import AGENT_PREFIX
 from sailenv_ros.simulation import Simulation
-from tests.support.original_client import original_client
+from tests.support.sailenv_client import original_client
 from tests.support.waiting import until
 
 RANDOM_BYTES = 1_000_000

@@ -12,10 +12,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import AddressInUse, InvalidRequest, UnknownName
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.simulation import Simulation
-from tests.support.original_client import original_client
+from tests.support.sailenv_client import original_client
 
 # A process in which any import of ROS fails.
 WITHOUT_ROS = """
@@ -29,7 +29,7 @@ sys.exit(main(sys.argv[1:]))
 
 @pytest.fixture
 def viewer_port() -> int:
-    """A port for the window that nobody uses."""
+    """A port for the web viewer that nobody uses."""
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port: int = probe.getsockname()[1]
     return port
@@ -52,10 +52,12 @@ def process(viewer_port: int) -> Iterator[subprocess.Popen[str]]:
 def test_without_ros_there_is_a_simulator_all_the_same(
     process: subprocess.Popen[str], viewer_port: int, number: int
 ) -> None:
-    """It says where it listens, serves the original client and a page, and ends with status 0."""
+    """It says where it listens, serves the SAILenv client and a page, and ends with status 0."""
     assert process.stdout is not None
     assert "scene 'optical'; renderer: " in process.stdout.readline()
-    found = re.match(r"listening on 127\.0\.0\.1:(\d+) for clients", process.stdout.readline())
+    found = re.match(
+        r"listening on 127\.0\.0\.1:(\d+) for SAILenv clients", process.stdout.readline()
+    )
     assert found
     with original_client(int(found[1]), width=32, height=24) as agent:
         assert agent.get_frame()["main"].shape == (24, 32, 3)
@@ -73,7 +75,7 @@ def test_an_address_in_use_is_refused(blank_simulation: Simulation) -> None:
     """The sentence names the address; nothing is left behind."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(InvalidRequest, match=f"127.0.0.1:{port}"):
+        with pytest.raises(AddressInUse, match=f"127.0.0.1:{port}"):
             GatewayServer(blank_simulation, port=port)
     with GatewayServer(blank_simulation, port=port) as server:
         assert server.port == port
@@ -98,5 +100,5 @@ def test_a_gateway_ends_though_clients_are_there(blank_simulation: Simulation) -
         while idle.recv(4096):
             pass
     # Requests are done in their order: this one comes after the agent's removal.
-    blank_simulation.lights()
+    blank_simulation.spawnable_display_names()
     assert [a.name for a in blank_simulation.info.agents if a.name.startswith("client_")] == []

@@ -1,4 +1,4 @@
-"""The original client of PyPI, unmodified, against a running simulator: all that it can ask."""
+"""The SAILenv client of PyPI, unmodified, against a running simulator: all that it can ask."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import colour_instances
 from sailenv_ros.pictures.colours import grey_depth
 from sailenv_ros.simulation import Simulation
-from tests.support.original_client import OriginalAgent, original_client
-from tests.support.uploads import box_zip
+from tests.support.sailenv_client import OriginalAgent, original_client
+from tests.support.upload_files import box_zip
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.gl
@@ -95,10 +95,10 @@ def test_frames_are_the_simulators_pixel_for_pixel(
             gateway.port, width=WIDTH, height=HEIGHT, use_gzip=use_gzip
         ) as agent:  # fmt: skip
             first = agent.get_frame()
-            lockstep.capture("direct")
+            lockstep.capture(agent="direct")
             assert first["deltaTime"] == 0.0
             lockstep.step(12)
-            ours, theirs = lockstep.capture("direct", FIVE_VIEWS), agent.get_frame()
+            ours, theirs = lockstep.capture(FIVE_VIEWS, agent="direct"), agent.get_frame()
     finally:
         lockstep.delete_agent("direct")
     assert theirs["deltaTime"] == pytest.approx(0.05)
@@ -183,9 +183,9 @@ def test_poses_are_unitys(lockstep: Simulation, client: Any) -> None:
     client.set_rotation((10.0, 200.0, 30.0))
     assert client.get_position() == pytest.approx((1.0, 2.0, 3.0))
     assert client.get_rotation() == pytest.approx((10.0, 200.0, 30.0), abs=1e-3)
-    assert lockstep.get_pose(agent).pose.position_m == pytest.approx((3.0, -1.0, 2.0))
+    assert lockstep.get_pose(agent=agent).position_m == pytest.approx((3.0, -1.0, 2.0))
     client.set_rotation((0.0, 90.0, 0.0))
-    ahead = lockstep.get_pose(agent).pose.matrix()[:3, 0]
+    ahead = lockstep.get_pose(agent=agent).matrix()[:3, 0]
     np.testing.assert_allclose(ahead, (0.0, -1.0, 0.0), atol=1e-6)
 
 
@@ -193,7 +193,7 @@ def test_poses_are_unitys(lockstep: Simulation, client: Any) -> None:
 def test_an_agent_follows_the_mover_until_it_is_told_not_to(
     lockstep: Simulation, client: Any
 ) -> None:
-    """As the original's agents do: they move along the scene's waypoints by default."""
+    """As SAILenv's agents do: they move along the scene's waypoints by default."""
     began = client.get_position()
     lockstep.step(240)
     there = client.get_position()
@@ -277,7 +277,7 @@ def test_lights_can_be_read_and_changed(lockstep: Simulation, client: Any) -> No
     assert client.get_light_position(sun) == (1.0, 2.0, 3.0)
     client.set_light_direction(sun, (0.0, -2.0, 0.0))
     assert client.get_light_direction(sun) == (0.0, -1.0, 0.0)
-    light = lockstep.lights()[0]
+    light = lockstep.lights[0]
     assert light.direction == pytest.approx((0.0, 0.0, -1.0))
     assert light.position_m == pytest.approx((3.0, -1.0, 2.0))
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from sailenv_ros.gateway.scenario import entries_of_scenario, mapping_of_json
+from sailenv_ros.gateway.scenario_json import entries_of_scenario, mapping_of_json
 from sailenv_ros.simulation import Simulation
 
 pytestmark = pytest.mark.gl

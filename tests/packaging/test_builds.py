@@ -13,7 +13,7 @@ import pytest
 from tests.packaging.project import ROOT, copy_sources
 from tests.packaging.started_node import assert_publishes
 
-pytestmark = [pytest.mark.slow, pytest.mark.ros, pytest.mark.timeout(900)]
+pytestmark = [pytest.mark.slow, pytest.mark.ros, pytest.mark.timeout(2400)]
 
 ROS_IS_SOURCED = bool(os.environ.get("AMENT_PREFIX_PATH") and os.environ.get("ROS_DISTRO"))
 SCRIPTS = Path(sys.prefix) / "bin"
@@ -38,7 +38,7 @@ def run(*command: str | Path, folder: Path, environment: dict[str, str]) -> str:
 
 
 def without(*names: str) -> dict[str, str]:
-    """Give this process's environment without some variables."""
+    """Return this process's environment without some variables."""
     return {name: value for name, value in os.environ.items() if name not in names}
 
 
@@ -54,8 +54,8 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
     for folder in ("sailenv_ros", "sailenv_msgs_py"):
         for source in (ROOT / folder).rglob("*"):
             # numba keeps what it compiled beside Python's own cache.
-            cached = "__pycache__" in source.parts or source.suffix == ".txt"
-            if source.is_file() and not cached:
+            left_out = "__pycache__" in source.parts or source.suffix in (".txt", ".cpp", ".h")
+            if source.is_file() and not left_out:
                 assert str(source.relative_to(ROOT)) in held
     for pattern in (
         "scenes/*.yaml",
@@ -73,6 +73,26 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
     for program in ("sim_node", "recorder", "player"):
         assert held[f"{data}/lib/sailenv_ros/{program}"].external_attr >> 16 & 0o111 == 0o111
     assert not any(name.startswith("tests/") for name in held)
+    # One wheel for all Pythons of this machine, with the compiled kernels in it.
+    assert path.name.rsplit("-", 3)[1:3] == ["py3", "none"]
+    assert "sailenv_ros/native/libsailenv_native.so" in held
+
+
+def test_without_a_compiler_the_rest_is_built(tmp_path: Path) -> None:
+    """The wheel lacks the native library alone, and the build says why."""
+    sources = copy_sources(tmp_path / "sources")
+    pip = (sys.executable, "-m", "pip", "wheel", "-v", "--no-deps", "--no-build-isolation")
+    said = run(
+        *(*pip, "--wheel-dir", tmp_path, sources),
+        folder=tmp_path,
+        environment=without(*OURS) | {"CXX": "there-is-no-such-compiler"},
+    )
+    assert "there is no C++ compiler (there-is-no-such-compiler)" in said
+    (path,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(path) as wheel:
+        names = wheel.namelist()
+    assert "sailenv_ros/native/library.py" in names
+    assert not any(name.endswith(".so") for name in names)
 
 
 def test_colcon_builds_a_workspace_whose_node_runs(tmp_path: Path) -> None:

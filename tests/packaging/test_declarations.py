@@ -37,6 +37,7 @@ def test_every_ros_package_that_is_imported_is_declared() -> None:
     imported = _imported_ros_packages()
     assert "rclpy" in imported
     assert imported <= declared
+    assert "tf2_msgs" in declared  # imported by name, as the packages on PyPI lack it
 
 
 def test_messages_declare_what_they_use() -> None:
@@ -61,7 +62,7 @@ def test_every_requirement_is_pinned(python: str) -> None:
         if requirement.marker is None
         or any(
             requirement.marker.evaluate(environment | {"extra": extra})
-            for extra in ("", "ros", "bench", "eval", "dev")
+            for extra in ("", "ros", "assets", "bake", "bench", "eval", "all", "dev")
         )
     }
     assert len(wanted) > 20
@@ -80,14 +81,16 @@ def test_every_field_of_an_interface_is_explained() -> None:
 
 
 def test_every_service_answers_in_the_same_way() -> None:
-    """A client may look at `success` and `message` whatever it asked."""
+    """A client may look at success, code, message and revision whatever it asked."""
     services = [path for path in _definitions() if path.suffix == ".srv"]
     assert len(services) > 20
     for path in services:
         answer = path.read_text().split("---\n")[1].splitlines()
-        assert [line.split()[:2] for line in answer[:2]] == [
+        assert [line.split()[:2] for line in answer[:4]] == [
             ["bool", "success"],
+            ["uint8", "code"],
             ["string", "message"],
+            ["uint32", "revision"],
         ], path.name
 
 

@@ -1,4 +1,4 @@
-"""One renderer for all tests of a process: contexts are slow to make."""
+"""One renderer of each kind for all tests of a process: contexts are slow to make."""
 
 from __future__ import annotations
 
@@ -9,22 +9,31 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.render.renderer import Renderer
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
 Render = Callable[..., dict[str, NDArray[Any]]]
 
 
+@pytest.fixture(scope="session", params=[NativeRenderer, Renderer], ids=["native", "gl"])
+def make_renderer(request: pytest.FixtureRequest) -> Callable[[], RenderBackend]:
+    """Make a renderer of the kind under test: what a test promises holds for each kind."""
+    make: Callable[[], RenderBackend] = request.param
+    return make
+
+
 @pytest.fixture(scope="session")
-def renderer() -> Iterator[Renderer]:
+def renderer(make_renderer: Callable[[], RenderBackend]) -> Iterator[RenderBackend]:
     """The renderer under test."""
-    made = Renderer()
+    made = make_renderer()
     yield made
     made.close()
 
 
 @pytest.fixture
-def render(renderer: Renderer) -> Render:
+def render(renderer: RenderBackend) -> Render:
     """Render views of a snapshot: ``render(snapshot, camera, *views, past=(snapshot, camera))``."""
 
     def call(

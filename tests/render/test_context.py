@@ -7,12 +7,14 @@ import logging
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from sailenv_ros.errors import ContextError, InvalidRequest, RenderError
 from sailenv_ros.render import context as contexts
+from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.render.context import DeviceReport, create_context, is_software, probe_devices
 from sailenv_ros.render.renderer import Renderer
 from tests.render.conftest import Render
@@ -80,23 +82,25 @@ def test_software_is_named_as_such_and_loudly(caplog: pytest.LogCaptureFixture) 
     assert made.description.startswith("software OpenGL" if made.software else "OpenGL")
 
 
-def test_a_closed_renderer_says_so() -> None:
+def test_a_closed_renderer_says_so(make_renderer: Callable[[], RenderBackend]) -> None:
     """Rendering after close is refused; closing twice does nothing."""
-    made = Renderer()
+    made = make_renderer()
     made.close()
     made.close()
     with pytest.raises(RenderError, match="closed"):
         made.render(snapshot_of([]), None, camera_at(), ["depth"])
 
 
-def test_two_renderers_in_two_threads(render: Render) -> None:
+def test_two_renderers_in_two_threads(
+    make_renderer: Callable[[], RenderBackend], render: Render
+) -> None:
     """Each thread has a renderer of its own; both are right, at once."""
     camera, scene = camera_at(), snapshot_of([])
     expected = render(scene, camera, "rgb")["rgb"].tobytes()
     seen: list[bytes] = []
 
     def work() -> None:
-        made = Renderer()
+        made = make_renderer()
         for _ in range(20):
             seen.append(made.render(scene, None, camera, ["rgb"]).views["rgb"].tobytes())
         made.close()
@@ -114,12 +118,13 @@ WORK = """
 import json, sys
 from hashlib import sha256
 from sailenv_ros.render.renderer import Renderer
-from sailenv_ros.simulation.tiny_renderer import TinyRenderer
+from sailenv_ros.backends.tiny_renderer import TinyRenderer
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.snapshot import Observation
 from tests.support.tiny_scenes import two_instants
 before, after, then, now = two_instants()
 digests = {}
-for make in (Renderer, TinyRenderer):
+for make in (NativeRenderer, Renderer, TinyRenderer):
     made = make()
     past = Observation(snapshot=before, camera=then)
     views = ["rgb", "depth", "category", "instance", "flow", "flow_valid", "occlusion"]
@@ -134,13 +139,14 @@ print(json.dumps(digests))
 def test_two_processes_agree_to_the_byte() -> None:
     """The same two snapshots give the same bytes of every view in another process, twice."""
     first, second = (json.loads(_in_a_process(WORK)) for _ in range(2))
-    assert len(first) == 14
+    assert len(first) == 21
     assert first == second
 
 
 MEASURE = """
 import gc
 import numpy as np
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.render.renderer import Renderer
 from tests.support.tiny_scenes import *
 def resident_kb():
@@ -162,13 +168,13 @@ print(min(grown))  # what leaks does so each time; an allocator grows by leaps
 RENDERERS = """
 before, after, then, now = two_instants()
 def pass_by():
-    made = Renderer()
+    made = %s()
     made.render(after, None, now, ["rgb", "depth", "instance", "normals"])
     made.close()
 """
 
 SCENES = """
-made = Renderer()
+made = %s()
 def pass_by():
     mesh = box_mesh(1.0)
     vertices = (np.tile(getattr(mesh, name), (5000, 1)) for name in ("positions", "normals", "uvs"))
@@ -178,14 +184,16 @@ def pass_by():
 """
 
 
-def test_contexts_give_their_memory_back() -> None:
+@pytest.mark.parametrize("kind", ["NativeRenderer", "Renderer"])
+def test_renderers_give_their_memory_back(kind: str) -> None:
     """Ten renderers more leave less than 10 MB behind."""
-    assert int(_in_a_process(MEASURE % RENDERERS)) < 10_000
+    assert int(_in_a_process(MEASURE % (RENDERERS % kind))) < 10_000
 
 
-def test_scenes_that_are_left_give_their_memory_back() -> None:
-    """Ten scenes more, each with 8 MB of its own on the GPU, leave less than 20 MB behind."""
-    assert int(_in_a_process(MEASURE % SCENES)) < 20_000
+@pytest.mark.parametrize("kind", ["NativeRenderer", "Renderer"])
+def test_scenes_that_are_left_give_their_memory_back(kind: str) -> None:
+    """Ten scenes more, each with 8 MB of its own in the renderer, leave less than 20 MB behind."""
+    assert int(_in_a_process(MEASURE % (SCENES % kind))) < 20_000
 
 
 def _in_a_process(program: str) -> str:

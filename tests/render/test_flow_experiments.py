@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sailenv_ros.experiments.flow_accuracy import OURS, judge_scenario, laboratory
+from sailenv_ros.experiments.flow_accuracy import OURS, evaluate_scenario, flow_test_scene
 from sailenv_ros.experiments.flow_methods import opencv_methods
 from sailenv_ros.experiments.flow_scenes import SCENARIOS
 from sailenv_ros.experiments.flow_speed import PICTURE, time_flow
@@ -17,14 +17,14 @@ from sailenv_ros.simulation.simulation import Simulation
 
 @pytest.fixture(scope="module")
 def lab() -> Iterator[Simulation]:
-    with laboratory(96, 72) as simulation:
+    with flow_test_scene(96, 72) as simulation:
         yield simulation
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_our_flow_is_the_arithmetics_in_every_scenario(lab: Simulation, name: str) -> None:
     """To 1e-4 px per frame nearly everywhere, to 0.05 px on faces seen edge-on; things do move."""
-    found = judge_scenario(lab, SCENARIOS[name], opencv_methods()[:1], pairs=3)
+    found = evaluate_scenario(lab, SCENARIOS[name], opencv_methods()[:1], pairs=3)
     assert found.errors[OURS]["p95"] < 1e-4
     assert found.errors[OURS]["max"] < 0.05
     assert found.errors["farneback"]["mean_moving"] > 100 * found.errors[OURS]["mean_moving"]
@@ -37,7 +37,7 @@ def test_our_flow_is_the_arithmetics_in_every_scenario(lab: Simulation, name: st
 def test_the_uniform_cube_has_no_texture_and_the_other_has(lab: Simulation) -> None:
     """What the scenarios differ in is to be seen."""
     pictures = [
-        judge_scenario(lab, SCENARIOS[name], (), pairs=1).pictures["picture"]
+        evaluate_scenario(lab, SCENARIOS[name], (), pairs=1).pictures["picture"]
         for name in ("uniform", "textured")
     ]
     flat, busy = (np.abs(np.diff(picture.astype(int), axis=1)).mean() for picture in pictures)

@@ -14,7 +14,7 @@ import pytest
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
 from tests.render.test_scene_in_motion import check, seen
@@ -80,7 +80,7 @@ def test_flow_is_exact_whatever_moves(type_: str, tmp_path: Path) -> None:
     core = SimulationCore(
         SceneLibrary(),
         path,
-        Renderer(),
+        NativeRenderer(),
         mode="lockstep",
         real_time_factor=1.0,
         seed=2,
@@ -92,7 +92,7 @@ def test_flow_is_exact_whatever_moves(type_: str, tmp_path: Path) -> None:
         core.register_agent(AgentSpec(name=agent, intrinsics=lens, mover=mover))
     last = {agent: seen(core, agent) for agent in agents}
     for _ in range(5):
-        core.drive_mover("cart", linear_m_s=(-0.3, 0.4, 0.2), angular_rad_s=(0, 0.1, -0.6))
+        core.drive_mover(linear_m_s=(-0.3, 0.4, 0.2), angular_rad_s=(0, 0.1, -0.6), mover="cart")
         core.step(10)
         for agent in agents:
             now = seen(core, agent)

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.tone import srgb
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     FRAME_NS,
@@ -79,7 +79,7 @@ def test_what_comes_through_and_what_is_added(render: Render, alpha: float) -> N
     fresnel, hue = 0.04, colour / colour.max()
     expected = (1 - fresnel) * (1 - alpha) * (1 - alpha + alpha * hue) * behind
     expected += fresnel * LEVEL + (1 - fresnel) * alpha * colour * LEVEL
-    assert np.abs(rgb[35:37, 47:49] - 255 * srgb(expected)).max() <= 1.0
+    assert np.abs(rgb[35:37, 47:49] - 255 * srgb_from_linear(expected)).max() <= 1.0
 
 
 def test_clear_glass_in_uniform_light_is_invisible(render: Render) -> None:

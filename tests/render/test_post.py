@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
-from sailenv_ros.render.ambient_occlusion import open_share
-from sailenv_ros.render.bands import alone, beside
-from sailenv_ros.render.bloom import bloomed
-from sailenv_ros.render.develop import develop, shaded
-from sailenv_ros.render.sensor_noise import noisy
-from sailenv_ros.render.tone import code_table, filmic, srgb, tone_mapped
+from sailenv_ros.render.ambient_occlusion import ambient_visibility
+from sailenv_ros.render.bloom import add_bloom
+from sailenv_ros.render.sensor_noise import add_sensor_noise
+from sailenv_ros.render.tone import code_table, filmic, tone_mapped
+from sailenv_ros.render.tone_map import apply_visibility, tone_map
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     SUN,
@@ -78,7 +77,7 @@ def test_the_linear_curve_is_the_srgb_standard() -> None:
     """Every stored value, decoded as IEC 61966-2-1 says, is its radiance again."""
     codes = np.arange(256) / 255.0
     radiance = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
-    np.testing.assert_allclose(srgb(radiance), codes, atol=1e-6)
+    np.testing.assert_allclose(srgb_from_linear(radiance), codes, atol=1e-6)
     table = code_table(PictureSettings(tone_curve="linear"))
     assert (table[radiance.astype(np.float16).view(np.uint16)] == np.arange(256)).all()
     assert filmic(0.0) == 0.0
@@ -144,7 +143,9 @@ def corner(width: int = 160, height: int = 120) -> tuple[np.ndarray, CameraIntri
 def test_corners_are_dark_and_what_is_free_is_not() -> None:
     """Within the radius of the joint of wall and floor light is lost; beyond it none."""
     surface, intrinsics = corner()
-    share, inverse = open_share(surface, intrinsics, strength=1.0, radius_m=0.4, baked=NONE_BAKED)
+    share, inverse = ambient_visibility(
+        surface, intrinsics, strength=1.0, radius_m=0.4, baked=NONE_BAKED
+    )
     points = intrinsics.unproject(surface[..., 0])[::2, ::2]
     away = np.hypot(points[..., 1] - 1.0, points[..., 2] - 3.0)
     # Averaging over a block carries it a little farther.
@@ -168,7 +169,7 @@ def test_a_plane_does_not_darken_itself(yaw_deg: float) -> None:
     with np.errstate(divide="ignore"):
         z = 3.0 * normal[2] / (intrinsics.rays() @ normal)
     surface = np.stack([np.where(z > 0.0, z, np.inf), np.ones_like(z)], axis=-1)
-    share, _ = open_share(
+    share, _ = ambient_visibility(
         surface.astype(np.float32), intrinsics, strength=1.0, radius_m=2.0, baked=NONE_BAKED
     )
     assert (share == 255).all()
@@ -180,30 +181,31 @@ def test_what_was_baked_is_left_alone() -> None:
     baked = NONE_BAKED.copy()
     baked[[1, 2]] = True
     keys = {"strength": 1.0, "radius_m": 0.4}
-    assert (open_share(surface, intrinsics, baked=baked, **keys)[0] == 255).all()
+    assert (ambient_visibility(surface, intrinsics, baked=baked, **keys)[0] == 255).all()
     baked[1] = False
-    share = open_share(surface, intrinsics, baked=baked, **keys)[0]
+    share = ambient_visibility(surface, intrinsics, baked=baked, **keys)[0]
     wall = surface[::2, ::2, 1] == 1
     np.testing.assert_array_equal(
-        share[wall], open_share(surface, intrinsics, baked=NONE_BAKED, **keys)[0][wall]
+        share[wall], ambient_visibility(surface, intrinsics, baked=NONE_BAKED, **keys)[0][wall]
     )
     assert share[~wall].min() < 160
 
 
 @pytest.mark.parametrize(("width", "height"), [(8, 8), (9, 11), (33, 8), (97, 61)])
 def test_any_size_two_threads_make_what_one_makes(width: int, height: int) -> None:
-    """Occlusion and development do not depend on how the walk is shared out."""
+    """Visibility and picture do not depend on how the rows are shared out."""
     surface, intrinsics = corner(width, height)
     surface[: height // 3, :, 0], surface[: height // 3, :, 1] = np.inf, 0
     radiance = np.random.default_rng(1).random((height, width, 4)).astype(np.float16)
     table = code_table(PictureSettings())
     pictures = []
-    with ThreadPoolExecutor(1) as executor:
-        for bands in (alone, beside(executor)):
-            shade = open_share(
-                surface, intrinsics, strength=1.0, radius_m=1.0, baked=NONE_BAKED, bands=bands
-            )
-            pictures.append(develop(radiance, table, shade, surface, bands=bands))
+    for threads in (1, 2):
+        shade = ambient_visibility(
+            surface, intrinsics, strength=1.0, radius_m=1.0, baked=NONE_BAKED, threads=threads
+        )
+        pictures.append(
+            tone_map(radiance, table, shade, surface, smooth_edges=True, threads=threads)
+        )
     np.testing.assert_array_equal(pictures[0], pictures[1])
     assert shade[0].shape == ((height + 1) // 2, (width + 1) // 2)
 
@@ -214,10 +216,10 @@ def test_shade_takes_its_share_of_the_light() -> None:
     radiance[..., :3] *= 20
     surface = np.ones((20, 30, 2), np.float32)
     half = np.full((10, 15), 102, np.uint8)  # 0.4 arrives
-    kept = shaded(radiance, half, np.ones((10, 15), np.float32), surface)
+    kept = apply_visibility(radiance, half, np.ones((10, 15), np.float32), surface)
     expected = radiance[..., :3].astype(float) * (1.0 - 0.6 * radiance[..., 3:].astype(float))
     np.testing.assert_allclose(kept[..., :3].astype(float), expected, rtol=2**-10, atol=1e-6)
-    elsewhere = shaded(radiance, half, np.full((10, 15), -0.5, np.float32), surface)
+    elsewhere = apply_visibility(radiance, half, np.full((10, 15), -0.5, np.float32), surface)
     np.testing.assert_array_equal(elsewhere, radiance)
 
 
@@ -228,7 +230,7 @@ def test_noise_has_the_variance_of_its_formula(level: float, exposure: float) ->
     settings = PictureSettings(full_well=2000.0, read_noise=3.0, exposure=exposure)
     grey = np.full((300, 400, 4), level, np.float16)
     value = float(grey[0, 0, 0]) * 2.0**exposure
-    seen = noisy(grey, settings, "eye", 0)[..., :3].astype(float) * 2.0**exposure
+    seen = add_sensor_noise(grey, settings, "eye", 0)[..., :3].astype(float) * 2.0**exposure
     variance = value / 2000.0 + (3.0 / 2000.0) ** 2
     assert seen.mean() == pytest.approx(value, abs=5 * np.sqrt(variance / seen.size))
     # Half precision rounds by a part in 2^11 at most, evenly: less than a hundredth of this.
@@ -252,10 +254,10 @@ def test_noise_comes_from_the_camera_and_the_time(render: Render) -> None:
 def test_bloom_moves_light_and_makes_none() -> None:
     """A uniform picture stays; a bright spot loses its share to its surroundings."""
     grey = np.full((64, 96, 4), 0.5, np.float16)
-    np.testing.assert_array_equal(bloomed(grey, 0.5), grey)
+    np.testing.assert_array_equal(add_bloom(grey, 0.5), grey)
     spot = np.zeros((129, 129, 4), np.float16)
     spot[60:68, 60:68, :3] = 10.0
-    spread = bloomed(spot, 0.25).astype(float)
+    spread = add_bloom(spot, 0.25).astype(float)
     assert spread[..., :3].sum() == pytest.approx(10.0 * 64 * 3, rel=0.02)
     assert 7.4 < spread[64, 64, 0] < 10.0
     assert spread[64, 90, 0] > 0.0

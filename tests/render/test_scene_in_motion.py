@@ -9,9 +9,9 @@ import pytest
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
-from sailenv_ros.render.renderer import Renderer
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
@@ -26,7 +26,7 @@ def core() -> Iterator[SimulationCore]:
     made = SimulationCore(
         SceneLibrary(),
         "optical",
-        Renderer(),
+        NativeRenderer(),
         mode="lockstep",
         real_time_factor=1.0,
         seed=0,
@@ -38,7 +38,7 @@ def core() -> Iterator[SimulationCore]:
 
 def seen(core: SimulationCore, agent: str) -> tuple[Frame, WorldSnapshot, Camera]:
     """Capture a frame together with what it was made from."""
-    frame = core.capture(agent, VIEWS)
+    frame = core.capture(VIEWS, agent=agent)
     return frame, core.world.snapshot(), frame.camera
 
 
@@ -87,12 +87,12 @@ def test_a_set_position_is_seen_as_motion(core: SimulationCore) -> None:
     lens = CameraIntrinsics(width=96, height=72)
     core.register_agent(AgentSpec(name="driven", intrinsics=lens, following=False, pose=FREE))
     before = seen(core, "driven")
-    core.set_position("driven", (-3.97, 0.28, 1.31))
-    core.set_rotation("driven", (0.5, 2.5, 4.0))
+    core.set_position((-3.97, 0.28, 1.31), agent="driven")
+    core.set_rotation((0.5, 2.5, 4.0), agent="driven")
     core.step(8)
     check(seen(core, "driven"), before)
     core.step(8)
-    core.set_position("driven", (-3.9, 0.2, 1.3), teleport=True)
-    jumped = core.capture("driven", VIEWS)
+    core.set_position((-3.9, 0.2, 1.3), teleport=True, agent="driven")
+    jumped = core.capture(VIEWS, agent="driven")
     assert not jumped["flow_valid"].any()
     assert jumped.dt_ns == 0

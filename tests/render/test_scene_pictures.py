@@ -9,18 +9,18 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.catalogue.preview_renderer import FLOOR_COLOUR, PreviewRenderer
 from sailenv_ros.cli.main import main
-from sailenv_ros.simulation.portraits import FLOOR_COLOUR, PortraitStudio
 
 
-def test_a_portrait_fills_the_picture_whatever_the_size() -> None:
+def test_a_thumbnail_fills_the_picture_whatever_the_size() -> None:
     """A ball is in the middle, with floor around it; the size of an asset does not matter."""
     assert len(FLOOR_COLOUR) == 3
-    with PortraitStudio() as studio:
-        picture = studio.portrait(Primitives().load("sphere"), width=160, height=120)
+    with PreviewRenderer() as previews:
+        picture = previews.thumbnail(Primitives().load("sphere"), width=160, height=120)
         assert picture.shape == (120, 160, 3)
         assert picture.dtype == np.uint8
-        again = studio.portrait(Primitives().load("sphere"), width=160, height=120)
+        again = previews.thumbnail(Primitives().load("sphere"), width=160, height=120)
     np.testing.assert_array_equal(picture, again)
     centre, corner = picture[50:60, 75:85].astype(int), picture[-8:, -8:].astype(int)
     assert abs(centre.mean() - corner.mean()) > 10

@@ -16,7 +16,7 @@ from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import Environment, SkyMap
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
@@ -54,34 +54,26 @@ def world() -> Iterator[World]:
 
 
 @pytest.mark.parametrize("name", COLOURS)
-def test_each_quarter_is_where_it_belongs(name: str, world: World) -> None:
+def test_each_quarter_is_where_it_belongs(name: str, world: World, renderer: RenderBackend) -> None:
     """Looking along an axis of the world shows the colour of that quarter in the middle."""
     camera = Camera(
         intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=60.0),
         pose=look_at((0, 0, 0), TOWARDS[name]),
     )
-    renderer = Renderer()
-    try:
-        rendered = renderer.render(world.snapshot(), None, camera, ("rgb", "instance"))
-    finally:
-        renderer.close()
+    rendered = renderer.render(world.snapshot(), None, camera, ("rgb", "instance"))
     middle = rendered.views["rgb"][12:21, 12:21].reshape(-1, 3).mean(axis=0)
     bright = tuple(int(channel > 150) for channel in middle)
     assert bright == COLOURS[name]
     assert (rendered.views["instance"] == 0).all()
 
 
-def test_above_is_the_first_row(world: World) -> None:
+def test_above_is_the_first_row(world: World, renderer: RenderBackend) -> None:
     """The zenith of this sky is black."""
     camera = Camera(
         intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=30.0),
         pose=look_at((0, 0, 0), (0.01, 0, 1)),
     )
-    renderer = Renderer()
-    try:
-        rendered = renderer.render(world.snapshot(), None, camera, ("rgb",))
-    finally:
-        renderer.close()
+    rendered = renderer.render(world.snapshot(), None, camera, ("rgb",))
     assert rendered.views["rgb"].max() < 5
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -16,10 +15,9 @@ from sailenv_ros.frame import VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.bands import alone, beside
-from sailenv_ros.render.develop import shaded
 from sailenv_ros.render.supersampling import mean_radiance
 from sailenv_ros.render.tone import tone_mapped
+from sailenv_ros.render.tone_map import apply_visibility
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     Thing,
@@ -126,15 +124,16 @@ def test_a_shade_reaches_samples_of_its_own_surface() -> None:
     shade = np.zeros((2, 2), np.uint8), np.ones((2, 2), np.float32)
     mean = mean_radiance(samples, 2, shade, surface)
     np.testing.assert_array_equal(mean[..., :3], np.float16(0.5))
-    whole = shaded(samples, np.zeros((4, 4), np.uint8), np.ones((4, 4), np.float32), surface)
+    whole = apply_visibility(
+        samples, np.zeros((4, 4), np.uint8), np.ones((4, 4), np.float32), surface
+    )
     np.testing.assert_array_equal(mean_radiance(whole, 2, None, None), mean)
 
 
 @pytest.mark.parametrize("size", [(8, 8), (9, 11), (33, 61)])
 def test_two_threads_make_what_one_makes(size: tuple[int, int]) -> None:
     samples = np.random.default_rng(1).random((2 * size[0], 2 * size[1], 4)).astype(np.float16)
-    with ThreadPoolExecutor(1) as executor:
-        means = [mean_radiance(samples, 2, None, None, bands=b) for b in (alone, beside(executor))]
+    means = [mean_radiance(samples, 2, None, None, threads=threads) for threads in (1, 2)]
     np.testing.assert_array_equal(*means)
 
 

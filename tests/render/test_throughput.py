@@ -10,7 +10,7 @@ import pytest
 
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.experiments.throughput import Group, measure_group, peer_rows, plan_of
+from sailenv_ros.experiments.throughput import Group, baseline_rows, measure_group, plan_of
 from sailenv_ros.experiments.workloads import TRANSPORTS, Setting, environment_of
 from sailenv_ros.frame import FIVE_VIEWS
 
@@ -37,7 +37,7 @@ def test_workers_make_frames_in_turn() -> None:
         assert row["repeated"] == 0
     by_label = {row["label"]: row for row in rows}
     assert by_label["in process"]["render"] > 0.0
-    assert {"geometry", "render"} <= set(by_label["in process"]["stages"])
+    assert {"annotate", "render"} <= set(by_label["in process"]["stages"])
     assert by_label["gateway, raw"]["render"] is None
     assert by_label["gateway, raw"]["memory_mib"] > by_label["in process"]["memory_mib"]
 
@@ -54,7 +54,7 @@ def test_what_cannot_start_says_why_and_the_others_go_on() -> None:
 def test_renderers_are_set_in_proportion_to_ours() -> None:
     """Ratios of medians; who is missing has none and says why."""
     common = {"width": 32, "height": 24}
-    rows = peer_rows(
+    rows = baseline_rows(
         [
             {"label": "sailenv_ros", "frame": {"median": 10.0}, **common},
             {"label": "PyBullet OpenGL", "frame": {"median": 25.0}, **common},
@@ -73,7 +73,7 @@ def test_the_plan_varies_one_thing_at_a_time_or_everything() -> None:
         "scenes": ["optical", "room_01"],
         "agents": [1, 2],
         "transports": list(TRANSPORTS),
-        "peer_sizes": [(64, 48)],
+        "baseline_sizes": [(64, 48)],
     }
     plan = plan_of(**common, full=False)
     assert (plan.base.width, plan.base.scene, plan.base.kind) == (640, "optical", "in process")
@@ -81,7 +81,7 @@ def test_the_plan_varies_one_thing_at_a_time_or_everything() -> None:
         "transport", "transport", "views", "agents", "scene"
     ]  # fmt: skip
     assert [len(group.settings) for group in plan.cases] == [5, 5, 5, 2, 2]
-    assert len(plan.peers[0].settings) == 5
+    assert len(plan.baselines[0].settings) == 5
     full = plan_of(**common, full=True)
     labels = [label for group in full.cases for label in group.settings]
     assert len(labels) == 2 * 2 * 5 * 2 * 5

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.backends.tiny_renderer import TinyRenderer
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidRequest, RenderError
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import Environment
-from sailenv_ros.simulation.tiny_renderer import TinyRenderer
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.ray_cast import cast, flow_by_arithmetic
@@ -295,7 +295,7 @@ def test_backgrounds_of_both_renderers_are_alike(tiny: Render, render: Render) -
 
 def test_what_it_cannot_do_is_refused_in_words(tiny_renderer: TinyRenderer) -> None:
     """Normals are refused with the list of what there is; nothing else is disturbed."""
-    with pytest.raises(InvalidRequest, match="software renderer's: rgb, depth"):
+    with pytest.raises(InvalidRequest, match="this renderer makes: rgb, depth"):
         tiny_renderer.render(snapshot_of([]), None, camera_at(), ["normals"])
     assert tiny_renderer.render(snapshot_of([]), None, camera_at(), ["depth"]).views
 

@@ -18,13 +18,13 @@ import pytest
 from sailenv_ros import Agent
 from sailenv_ros.errors import (
     InvalidRequest,
-    RequestRefused,
+    InvalidState,
     SimulationClosed,
     SimulatorLost,
     UnknownName,
 )
 from sailenv_ros.geometry import look_at
-from sailenv_ros.presence import simulator_is_present
+from sailenv_ros.system.presence import simulator_is_present
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -34,7 +34,7 @@ SMALL = {"width": 160, "height": 120}
 
 
 def domain() -> int:
-    """Give the ROS domain that the tests run in."""
+    """Return the ROS domain that the tests run in."""
     return int(os.environ["ROS_DOMAIN_ID"])
 
 
@@ -289,16 +289,16 @@ def test_arguments_that_cannot_be_are_refused_at_once(
 def test_refusals_come_in_the_simulators_words(agent: Agent) -> None:
     """What the simulator refuses raises its own sentence, and the agent goes on."""
     here = agent.get_position()
-    with pytest.raises(RequestRefused, match="did you mean 'optical'"):
+    with pytest.raises(InvalidRequest, match="did you mean 'optical'"):
         agent.change_scene("optcal")
-    with pytest.raises(RequestRefused, match="steps must be an integer from 1"):
+    with pytest.raises(InvalidRequest, match="steps must be an integer from 1"):
         agent.step(-1)
-    with pytest.raises(RequestRefused, match="lockstep"):
+    with pytest.raises(InvalidState, match="lockstep"):
         agent.pause()
-    with pytest.raises(RequestRefused, match="seed must be"):
+    with pytest.raises(InvalidRequest, match="seed must be"):
         agent.reset(seed=-4)
     for position in ((math.nan, 0, 0), (0, math.inf, 0), (0, 0), "here", (1e9, 0, 0)):
-        with pytest.raises((InvalidRequest, RequestRefused), match="position must be"):
+        with pytest.raises((InvalidRequest), match="position must be"):
             agent.set_position(position)
     assert agent.get_position() == here
     assert agent.scene == "optical"
@@ -321,7 +321,7 @@ def test_values_that_no_message_holds_are_refused(agent: Agent) -> None:
 
 def test_a_name_is_given_once(agent: Agent) -> None:
     """A second agent of one name is refused, and the first one is unharmed."""
-    with pytest.raises(RequestRefused, match="not in use"):
+    with pytest.raises(InvalidRequest, match="not in use"):
         Agent(**SMALL, name=agent.id, namespace="/tested")
     assert agent.get_frame()["sequence"] == 1
 
@@ -346,9 +346,7 @@ def test_closing_leaves_nothing_behind(simulator: Agent) -> None:
     agent = Agent(**SMALL, namespace="/tested")
     agent.close()
     agent.close()
-    agents = simulator._await_info(lambda info: True, "anything")
-    assert agents is None
-    assert agent.id not in [spec.name for spec in simulator._info.agents]
+    until(lambda: agent.id not in [spec.name for spec in simulator.info.agents], "its end")
     with pytest.raises(SimulationClosed):
         agent.get_frame()
 
@@ -388,7 +386,7 @@ rclpy.shutdown()
 
 
 def run_python(code: str) -> str:
-    """Run a program of its own; give what it prints."""
+    """Run a program of its own; return what it prints."""
     with program(code) as running:
         out, _ = running.communicate(timeout=90)
     assert running.returncode == 0
@@ -421,9 +419,9 @@ def test_a_killed_simulator_is_told_at_once() -> None:
         agent.get_frame()
         assert agent.simulator_pid is not None
         os.kill(agent.simulator_pid, signal.SIGKILL)
-        with pytest.raises(SimulatorLost):
+        with pytest.raises(SimulatorLost, match=r"the simulator has ended; .* did not come \("):
             agent.get_frame()
-        with pytest.raises(SimulatorLost):
+        with pytest.raises(SimulatorLost, match=r"the simulator has ended; .* did not come \("):
             agent.get_position()
         # A new Agent starts a new simulator, while the old one is still open.
         with Agent(**SMALL, namespace="/killed", simulator=LOCKSTEP) as successor:
@@ -455,7 +453,7 @@ with Agent(width=64, height=48, namespace="/joined") as agent:
         assert starter.simulator_pid is not None
         os.kill(starter.simulator_pid, signal.SIGKILL)
         out, _ = joiner.communicate("\n", timeout=60)
-        assert out.startswith("lost: waited")
+        assert out.startswith("lost: the simulator has ended")
         assert joiner.returncode == 0
 
 
@@ -559,3 +557,22 @@ def test_the_first_example_runs(tmp_path: Path) -> None:
     for name in ("main", "depth", "depth_m", "category", "instance", "object", "flow"):
         assert any(line.startswith(name) for line in out.splitlines()), out
     assert (tmp_path / "sheet.png").stat().st_size > 10_000
+
+
+def test_a_text_with_a_nul_is_refused(agent: Agent) -> None:
+    """The messages' C code would cut it off there, and another object would be spawned."""
+    before = agent.instances
+    for attempt in (
+        lambda: agent.spawn_object("Cube\0x"),
+        lambda: agent.change_scene("optical\0x"),
+        lambda: agent.spawn_object("Cube", object_name="a\0b"),
+    ):
+        with pytest.raises(InvalidRequest, match="without a NUL"):
+            attempt()
+    assert agent.instances == before
+
+
+def test_a_namespace_that_ros_refuses_is_a_sentence() -> None:
+    """Before anything is started."""
+    with pytest.raises(InvalidRequest, match="namespace must be names divided by '/'"):
+        Agent(namespace="my simulator")

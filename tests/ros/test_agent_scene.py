@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from sailenv_ros import Agent
-from sailenv_ros.errors import InvalidRequest, RequestRefused, SailenvError, UnknownName
-from tests.support.uploads import box_zip
+from sailenv_ros.errors import AssetError, InvalidRequest, SailenvError, UnknownName
+from tests.support.upload_files import box_zip
 
 pytestmark = pytest.mark.ros
 
@@ -101,7 +101,7 @@ def test_behaviours_come_and_go(agent: Agent) -> None:
     assert [behaviour["type"] for behaviour in state.behaviours] == ["rotate_rigidbody"]
     agent.remove_behaviours(id_)
     assert agent.get_object(id_).behaviours == ()
-    with pytest.raises(RequestRefused, match="behaviour"):
+    with pytest.raises(InvalidRequest, match="behaviour"):
         agent.add_behaviour(id_, {"type": "spin"})
 
 
@@ -160,22 +160,22 @@ def test_light_and_background_are_seen(agent: Agent) -> None:
 @pytest.mark.parametrize(
     ("ask", "error", "words"),
     [
-        (lambda a: a.spawn_object("Cubee"), RequestRefused, "did you mean 'Cube'"),
+        (lambda a: a.spawn_object("Cubee"), InvalidRequest, "did you mean 'Cube'"),
         (lambda a: a.spawn_object(3), InvalidRequest, "name must be a text"),
         (lambda a: a.spawn_object("cube", "here"), InvalidRequest, "position must be three"),
         (lambda a: a.spawn_object("cube", scale=0), InvalidRequest, "from 0.001 to 1000"),
-        (lambda a: a.spawn_object("cube", scale=-1), RequestRefused, "scale"),
+        (lambda a: a.spawn_object("cube", scale=-1), InvalidRequest, "scale"),
         (lambda a: a.spawn_object("cube", mass_kg="heavy"), InvalidRequest, "must be a number"),
         (lambda a: a.spawn_object("cube", behaviours=["spin"]), InvalidRequest, "its type and"),
-        (lambda a: a.despawn_object(60000), RequestRefused, "instance id must be"),
-        (lambda a: a.despawn_object(0), InvalidRequest, "an id from 1 to 65535"),
+        (lambda a: a.despawn_object(60000), InvalidRequest, "instance id must be"),
+        (lambda a: a.despawn_object(0), InvalidRequest, "instance id must be the id of an object"),
         (lambda a: a.despawn_object("nothing"), UnknownName, "object must be one of"),
         (lambda a: a.get_object(1.5), InvalidRequest, "an instance id, or the name"),
         (lambda a: a.get_object(True), InvalidRequest, "an instance id, or the name"),
         (lambda a: a.move_object(1, (1e9, 0, 0)), InvalidRequest, "position must be"),
-        (lambda a: a.load_scenario({"objects": [{}]}), RequestRefused, "asset"),
+        (lambda a: a.load_scenario({"objects": [{}]}), InvalidRequest, "asset"),
         (lambda a: a.load_scenario(Path("/none")), InvalidRequest, "scenario must be a file"),
-        (lambda a: a.get_light("moon"), RequestRefused, "light must be one of: sun"),
+        (lambda a: a.get_light("moon"), InvalidRequest, "light must be one of: sun"),
         (lambda a: a.set_light("sun", power=1), UnknownName, "attribute of a light"),
         (lambda a: a.set_light("sun", intensity=-1), InvalidRequest, "from 0 to"),
         (lambda a: a.set_light_color("sun", 256, 0, 0), InvalidRequest, "from 0 to 255"),
@@ -214,5 +214,5 @@ def test_an_uploaded_model_is_seen(agent: Agent, tmp_path: Path) -> None:
         agent.send_obj_zip(opened)
     with pytest.raises(InvalidRequest, match="one that can be read"):
         agent.send_obj_zip(tmp_path / "none.zip")
-    with pytest.raises(RequestRefused, match="zip"):
+    with pytest.raises(AssetError, match="zip"):
         agent.send_obj_zip(io.BytesIO(b"no zip at all"), "a.zip")

@@ -23,7 +23,7 @@ WRITES_A_PICTURE = (
 
 
 def run(example: str, *arguments: str) -> str:
-    """Run an example as a program of its own; give what it prints."""
+    """Run an example as a program of its own; return what it prints."""
     command = [sys.executable, str(EXAMPLES / f"{example}.py"), *arguments]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     finished = subprocess.run(

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from sailenv_ros.nodes.parameters import _PARAMETERS, LIVE
-from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import Probe
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -25,14 +26,14 @@ OF_ROS = re.compile(r".*/sim_node/|/parameter_events$|/rosout$")
 
 
 def table(heading: str) -> list[list[str]]:
-    """Give the cells of the first table below a heading of the page, without its head."""
+    """Return the cells of the first table below a heading of the page, without its head."""
     section = PAGE.read_text().split(f"\n## {heading}\n")[1].split("\n## ")[0]
     rows = [line for line in section.splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in row[1:-1].split("|")] for row in rows[2:]]
 
 
 def names_and_types(heading: str) -> dict[str, str]:
-    """Give the names of a table with their types, as ROS spells them."""
+    """Return the names of a table with their types, as ROS spells them."""
     kind = "srv" if heading == "Services" else "msg"
     found = {}
     for name, type_, about in table(heading):
@@ -52,7 +53,7 @@ def probe() -> Iterator[Probe]:
 
 
 def offered(ask: Callable[[str, str], Any], expected: dict[str, str]) -> dict[str, str]:
-    """Ask the graph until it has everything that is expected; give all that is there."""
+    """Ask the graph until it has everything that is expected; return all that is there."""
     found: dict[str, str] = {}
 
     def all_there() -> bool:
@@ -106,3 +107,25 @@ def test_the_page_has_every_parameter() -> None:
     rows = {name.strip("`"): tuple(cells) for name, *cells in table("Parameters of `sim_node`")}
     assert {name: row[:3] for name, row in rows.items()} == expected
     assert {name for name, row in rows.items() if "*live*" in row[3]} == set(LIVE)
+
+
+def flattened(entries: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return a tree of parameters by their full names, as ROS reads it from a file."""
+    flat: dict[str, Any] = {}
+    for name, value in entries.items():
+        flat |= (
+            flattened(value, f"{prefix}{name}.")
+            if isinstance(value, dict)
+            else {prefix + name: value}
+        )
+    return flat
+
+
+def test_the_file_of_parameters_has_every_one_with_its_default() -> None:
+    """`config/sim_node.yaml`, where an empty list has to be written as one empty text."""
+    file = yaml.safe_load((PAGE.parents[1] / "config" / "sim_node.yaml").read_text())
+    found = flattened(file["/**"]["ros__parameters"])
+    declared = {name: entry.default for name, entry in _PARAMETERS.items()}
+    assert {name: [] if value == [""] else value for name, value in found.items()} == {
+        name: [] if default == [""] else default for name, default in declared.items()
+    }

@@ -14,14 +14,16 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Twist, Vector3
+from rclpy.serialization import serialize_message
+from rosbags.typesys import Stores, get_typestore
 
 from sailenv_msgs.msg import Behaviour, SceneInfo
 from sailenv_msgs.srv import AddBehaviour, GetPose, RemoveBehaviours, SetMoverController, Step
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
 from sailenv_ros.nodes.tf_tree import TfTree
-from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import LATCHED, Probe, Topic
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -106,15 +108,17 @@ class FakeNode:
 
 @dataclass
 class FakeMessage:
-    """As tf2_msgs/TFMessage, which not every installation has."""
+    """As tf2_msgs/TFMessage, which the ROS 2 packages on PyPI lack."""
 
     transforms: list[Any]
 
 
 @pytest.fixture
 def tf_installed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An installation that has tf2_msgs."""
+    """An installation that has tf2_msgs: the true package where there is one."""
     find = importlib.util.find_spec
+    if find("tf2_msgs") is not None:
+        return
     package = types.ModuleType("tf2_msgs")
     messages = types.ModuleType("tf2_msgs.msg")
     messages.TFMessage = FakeMessage  # type: ignore[attr-defined]  # made here
@@ -154,6 +158,28 @@ def test_the_tree_leads_from_the_world_to_the_optical_frame() -> None:
     np.testing.assert_allclose(product, camera.world_from_camera, atol=1e-12)
     assert len(fixed.transforms) == 4
     assert moving.transforms[0].header.stamp.sec == 4
+
+
+@pytest.mark.usefixtures("tf_installed")
+def test_what_is_sent_is_a_tf_message_of_ros_2() -> None:
+    """By Jazzy's own definition of the type: it holds the transforms, there and back as CDR."""
+    node = FakeNode()
+    tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
+    tree.set_agents(("left",))
+    tree.publish("left", Pose((1.0, 2.0, 3.0)), Time(sec=4))
+    store = get_typestore(Stores.ROS2_JAZZY)
+    for topic in ("/tf", "/tf_static"):
+        (message,) = node.sent[topic]
+        held = [
+            store.deserialize_cdr(serialize_message(one), "geometry_msgs/msg/TransformStamped")
+            for one in message.transforms
+        ]
+        true = store.types["tf2_msgs/msg/TFMessage"](transforms=held)
+        data = store.serialize_cdr(true, true.__msgtype__)
+        assert store.deserialize_cdr(data, true.__msgtype__) == true
+        if not isinstance(message, FakeMessage):
+            assert serialize_message(message) == data
+    assert held[0].header.frame_id == "left"
 
 
 def optical(links: Any, parent: str) -> str:

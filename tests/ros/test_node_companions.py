@@ -12,12 +12,11 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import CompressedImage, Image
-from std_srvs.srv import Trigger
 
 from sailenv_msgs.msg import SceneInfo
-from sailenv_msgs.srv import Capture, DeleteAgent, GetPose
-from tests.support.node_process import NodeProcess
+from sailenv_msgs.srv import Capture, DeleteAgent, GetPose, Pause, Resume
 from tests.support.ros_probe import LATCHED, Eye, Probe
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -139,7 +138,7 @@ def test_diagnostics_tell_rates_times_and_renderer(probe: Probe) -> None:
 def test_diagnostics_say_that_time_stands_still(probe: Probe) -> None:
     """A paused simulation is no warning, and its message says why nothing moves."""
     heard = probe.listen(DiagnosticArray, "/diagnostics")
-    probe.done(Trigger, "pause")
+    probe.done(Pause, "pause")
     try:
         until(
             lambda: any(
@@ -150,7 +149,7 @@ def test_diagnostics_say_that_time_stands_still(probe: Probe) -> None:
             "the status of a paused simulation",
         )
     finally:
-        probe.done(Trigger, "resume")
+        probe.done(Resume, "resume")
 
 
 # -- parameters ----------------------------------------------------------------------------

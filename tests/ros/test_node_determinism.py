@@ -9,8 +9,8 @@ import pytest
 from sailenv_msgs.srv import Reset, SetPose, Step
 from sailenv_msgs_py.transforms import pose_to_msg
 from sailenv_ros.geometry import look_at
-from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import Eye, Probe
+from tests.support.sim_node_process import NodeProcess
 
 pytestmark = pytest.mark.ros
 
@@ -18,7 +18,7 @@ VIEWS = ("rgb", "depth", "category", "instance", "flow", "flow_valid")
 
 
 def session(probe: Probe) -> list[tuple[str, str]]:
-    """Drive a camera through moving bodies; give a digest of every view of every frame."""
+    """Drive a camera through moving bodies; return a digest of every view of every frame."""
     digests = []
     with Eye(probe, VIEWS) as eye:
         for number, steps in enumerate((1, 8, 8, 3, 40, 240)):

@@ -6,8 +6,8 @@ import socket
 
 import pytest
 
-from tests.support.node_process import NodeProcess
-from tests.support.original_client import original_client
+from tests.support.sailenv_client import original_client
+from tests.support.sim_node_process import NodeProcess
 
 pytestmark = pytest.mark.ros
 
@@ -31,7 +31,7 @@ def test_the_node_serves_the_original_client() -> None:
 
 
 def test_a_port_in_use_is_no_reason_not_to_start() -> None:
-    """The node says that the original's clients cannot connect to it, and runs."""
+    """The node says that SAILenv clients cannot connect to it, and runs."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with NodeProcess("/gate", gateway__port=port) as node:

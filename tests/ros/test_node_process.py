@@ -11,8 +11,8 @@ import pytest
 from sensor_msgs.msg import Image
 
 from sailenv_msgs.srv import Reset, Step
-from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import BEST_EFFORT, Probe
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -117,7 +117,7 @@ def test_a_wrong_parameter_ends_it_with_a_reason(
 
 
 def test_a_faulty_scene_file_ends_it_with_every_fault(tmp_path: Path) -> None:
-    """Status 2, and each fault with its file, line and column."""
+    """Status 2, and each error with its file, line and column."""
     scene = tmp_path / "broken.yaml"
     scene.write_text("version: 1\ntitle: Broken\nobjcts: []\nlights: 3\n", encoding="utf-8")
     with NodeProcess("/broken", ready=False, scene=str(scene)) as node:
@@ -183,3 +183,17 @@ def _dds_begun(node: NodeProcess) -> bool:
         return bool(node.segments()) or not node.alive
     except OSError:
         return not node.alive
+
+
+def test_one_simulator_of_a_domain_publishes_the_clock() -> None:
+    """The second one says why it does not, and takes over once the first is gone."""
+    with NodeProcess("/first", publish_clock=True, agent__name="") as first:
+        with NodeProcess("/second", publish_clock=True, agent__name="") as second:
+            assert f"process {first.pid} publishes /clock" in second.log
+            assert "publish_clock:=false" in second.log
+            with Probe("/second") as probe:
+                until(lambda: probe.node.count_publishers("/clock"), "the clock")
+                assert probe.node.count_publishers("/clock") == 1
+        assert "publishes /clock" not in first.log
+    with NodeProcess("/second", publish_clock=True, agent__name="") as second:
+        assert "publishes /clock" not in second.log

@@ -11,7 +11,6 @@ import pytest
 from geometry_msgs.msg import Point, Pose, Quaternion
 from rcl_interfaces.srv import DescribeParameters, ListParameters, SetParameters
 from rclpy.parameter import Parameter
-from std_srvs.srv import SetBool, Trigger
 
 from sailenv_msgs.msg import AgentInfo, SceneInfo
 from sailenv_msgs.srv import (
@@ -19,16 +18,20 @@ from sailenv_msgs.srv import (
     ChangeScene,
     DeleteAgent,
     GetPose,
+    Pause,
     RegisterAgent,
     Reset,
+    Resume,
+    SetFollow,
     SetPose,
     SetPosition,
     SetRotation,
     Step,
+    ToggleFollow,
 )
 from sailenv_msgs_py.stamps import ns_from_stamp
-from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import LATCHED, Eye, Probe, Topic
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -113,14 +116,14 @@ def test_position_rotation_and_pose_are_set(probe: Probe) -> None:
 
 def test_following_is_set_and_toggled(probe: Probe, scene: Topic) -> None:
     """An agent that follows is where its mover is; the answer says the new state."""
-    assert probe.done(Trigger, "agent/toggle_follow").message == "following"
+    assert probe.done(ToggleFollow, "agent/toggle_follow").following
     first = probe.done(GetPose, "agent/get_pose")
     probe.done(Step, "step", Step.Request(steps=240))
     second = probe.done(GetPose, "agent/get_pose")
     assert first.following
     assert second.pose.pose.position != first.pose.pose.position
-    answer = probe.done(SetBool, "agent/set_follow", SetBool.Request(data=False))
-    assert answer.message == "not following"
+    answer = probe.done(SetFollow, "agent/set_follow", SetFollow.Request(following=False))
+    assert not answer.following
     stands = probe.done(GetPose, "agent/get_pose").pose.pose
     probe.done(Step, "step", Step.Request(steps=240))
     assert probe.done(GetPose, "agent/get_pose").pose.pose == stands
@@ -188,12 +191,12 @@ def test_realtime_is_paused_stepped_and_resumed() -> None:
         assert ns_from_stamp(first.stamp) == 100_000_000
         second = probe.done(Step, "step", Step.Request(steps=24))
         assert ns_from_stamp(second.stamp) == 200_000_000
-        probe.done(Trigger, "resume")
+        probe.done(Resume, "resume")
         until(lambda: not scene.last.paused, "a running simulation")
         refused = probe.call(Step, "step", Step.Request(steps=1))
         assert not refused.success
         assert "pause it first" in refused.message
-        probe.done(Trigger, "pause")
+        probe.done(Pause, "pause")
         third = probe.done(Step, "step", Step.Request(steps=1))
         assert ns_from_stamp(third.stamp) > ns_from_stamp(second.stamp)
 
@@ -244,8 +247,8 @@ BAD = [
     ("step", Step, Step.Request(steps=0), "got 0"),
     ("step", Step, Step.Request(steps=2**62), "from 1 to 1000000"),
     ("reset", Reset, Reset.Request(seed=-1), "seed must be"),
-    ("pause", Trigger, Trigger.Request(), "lockstep"),
-    ("resume", Trigger, Trigger.Request(), "lockstep"),
+    ("pause", Pause, Pause.Request(), "lockstep"),
+    ("resume", Resume, Resume.Request(), "lockstep"),
 ]
 
 

@@ -10,7 +10,6 @@ from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import CameraInfo, Image
-from std_srvs.srv import SetBool
 
 from sailenv_msgs.msg import AgentInfo, FrameInfo, SceneInfo
 from sailenv_msgs.srv import (
@@ -19,16 +18,19 @@ from sailenv_msgs.srv import (
     DeleteAgent,
     RegisterAgent,
     Reset,
+    SetFollow,
     SetPose,
     SetPosition,
     Step,
 )
+from sailenv_msgs_py.services import AGENT_SERVICES, SERVICES, SIMULATOR_SERVICES, Service
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_msgs_py.transforms import pose_from_msg, pose_to_msg
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.geometry import invert, look_at
-from tests.support.node_process import NodeProcess
+from sailenv_ros.operations import ALL_OPERATIONS
 from tests.support.ros_probe import BEST_EFFORT, LATCHED, Eye, Probe
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -109,28 +111,20 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
     assert topics == expected
 
 
-def test_services_are_those_of_the_interface(probe: Probe) -> None:
-    """Each service has the type that the interface says."""
-    agent = {
-        "set_position": "sailenv_msgs/srv/SetPosition",
-        "set_rotation": "sailenv_msgs/srv/SetRotation",
-        "set_pose": "sailenv_msgs/srv/SetPose",
-        "get_pose": "sailenv_msgs/srv/GetPose",
-        "toggle_follow": "std_srvs/srv/Trigger",
-        "set_follow": "std_srvs/srv/SetBool",
-        "get_picture": "sailenv_msgs/srv/GetPicture",
-        "set_picture": "sailenv_msgs/srv/SetPicture",
-        "capture": "sailenv_msgs/srv/Capture",
-    }
-    own = {
-        "register_agent": "sailenv_msgs/srv/RegisterAgent",
-        "delete_agent": "sailenv_msgs/srv/DeleteAgent",
-        "change_scene": "sailenv_msgs/srv/ChangeScene",
-        "reset": "sailenv_msgs/srv/Reset",
-        "step": "sailenv_msgs/srv/Step",
-        "pause": "std_srvs/srv/Trigger",
-        "resume": "std_srvs/srv/Trigger",
-    }
+def test_every_operation_is_served(probe: Probe) -> None:
+    """Each operation has a service, of the type that the table says, and there are no others."""
+
+    def kind(service: Service) -> str:
+        return f"sailenv_msgs/srv/{service.type.__name__}"
+
+    assert set(SERVICES) == set(ALL_OPERATIONS)
+    agent = {service.name: kind(service) for service in AGENT_SERVICES}
+    own = {service.name: kind(service) for service in SIMULATOR_SERVICES}
+    assert (agent["set_position"], agent["toggle_follow"], own["change_scene"]) == (
+        "sailenv_msgs/srv/SetPosition",
+        "sailenv_msgs/srv/ToggleFollow",
+        "sailenv_msgs/srv/ChangeScene",
+    )
     expected = {f"{NAMESPACE}/agent/{name}": kind for name, kind in agent.items()}
     expected |= {f"{NAMESPACE}/{name}": kind for name, kind in own.items()}
 
@@ -260,7 +254,7 @@ def test_infos_come_without_images(probe: Probe) -> None:
 def test_pose_comes_without_images(probe: Probe) -> None:
     """Who subscribes to the pose alone is told of every move."""
     pose = probe.listen(PoseStamped, "agent/pose")
-    probe.done(SetBool, "agent/set_follow", SetBool.Request(data=False))
+    probe.done(SetFollow, "agent/set_follow", SetFollow.Request(following=False))
     step_until(probe, lambda: pose.messages, "a pose")
     target = SetPosition.Request()
     target.position.x, target.position.y, target.position.z = 3.0, 2.0, 1.0
@@ -281,7 +275,7 @@ def test_scene_info_is_there_for_those_who_come_late(probe: Probe) -> None:
     assert [agent.name for agent in info.agents] == ["agent"]
     assert {"red cube", "floor", "teal cylinder"} <= {i.name for i in info.instances}
     assert {i.category for i in info.instances} <= {c.name for c in info.categories}
-    probe.done(SetBool, "agent/set_follow", SetBool.Request(data=False))
+    probe.done(SetFollow, "agent/set_follow", SetFollow.Request(following=False))
     until(lambda: scene.last.revision > info.revision, "a newer scene_info")
     assert not scene.last.agents[0].following
 

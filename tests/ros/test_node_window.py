@@ -1,4 +1,4 @@
-"""The window of sim_node: what keys do in the browser is what ROS tells."""
+"""The web viewer of sim_node: what keys do in the browser is what ROS tells."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from playwright.sync_api import Browser
 
 from sailenv_msgs.srv import GetPose
 from tests.support.browser import OpenPage, chromium
-from tests.support.node_process import NodeProcess
 from tests.support.ros_probe import Probe
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]

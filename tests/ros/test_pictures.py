@@ -11,7 +11,8 @@ import pytest
 
 import sailenv_msgs.msg as msgs
 from sailenv_msgs.srv import GetPicture, RegisterAgent, SetPicture
-from sailenv_msgs_py.pictures import picture_from_msg, picture_to_msg
+from sailenv_msgs_py.changes import changes_to_msg
+from sailenv_msgs_py.picture_msgs import picture_from_msg
 from sailenv_ros import Agent, Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
@@ -71,7 +72,7 @@ def probe(keeper: Agent) -> Iterator[Probe]:
 
 
 def truth(frame: dict[str, Any]) -> dict[str, bytes]:
-    """Give the bytes of what must not depend on a picture's settings."""
+    """Return the bytes of what must not depend on a picture's settings."""
     return {name: frame[name].tobytes() for name in TRUTH}
 
 
@@ -119,7 +120,7 @@ def test_an_agent_begins_with_its_picture(keeper: Agent) -> None:
     with Agent(**SMALL, namespace=NAMESPACE, picture=BRIGHT) as bright:
         assert bright.picture == BRIGHT
         bright.set_picture(bloom=0.25)
-        announced = {spec.name: spec.picture for spec in keeper._info.agents}
+        announced = {spec.name: spec.picture for spec in keeper.info.agents}
         assert keeper.picture == announced[keeper.id] == PictureSettings()
         assert bright.picture == PictureSettings(exposure=1.0, bloom=0.25)
         assert bright.set_picture() == bright.picture
@@ -142,30 +143,31 @@ def test_wrong_settings_are_refused_before_they_are_sent(agent: Agent) -> None:
 
 
 def test_the_services_take_the_fields_that_are_named(agent: Agent, probe: Probe) -> None:
-    """None named means all; the answer, and that of `get_picture`, is how it is then."""
-    wanted = picture_to_msg(PictureSettings(exposure=1.0, bloom=0.5, tone_curve="linear"))
-    request = SetPicture.Request(picture=wanted, fields=["exposure", "tone_curve"])
+    """None named changes none; the answer, and that of `get_picture`, is how it is then."""
+    changes = {"exposure": 1.0, "tone_curve": "linear"}
+    request = SetPicture.Request(changes=changes_to_msg(changes))
     answer = probe.done(SetPicture, f"{agent.id}/set_picture", request)
     assert picture_from_msg(answer.picture) == PictureSettings(exposure=1.0, tone_curve="linear")
-    probe.done(SetPicture, f"{agent.id}/set_picture", SetPicture.Request(picture=wanted))
-    assert probe.done(GetPicture, f"{agent.id}/get_picture").picture == wanted
-    assert agent.picture == PictureSettings(exposure=1.0, bloom=0.5, tone_curve="linear")
+    probe.done(SetPicture, f"{agent.id}/set_picture", SetPicture.Request())
+    assert probe.done(GetPicture, f"{agent.id}/get_picture").picture == answer.picture
+    assert agent.picture == PictureSettings(exposure=1.0, tone_curve="linear")
 
 
 @pytest.mark.parametrize(
-    ("settings", "named", "sentence"),
+    ("changes", "sentence"),
     [
-        ({"exposure": 99.0}, ["exposure"], "exposure must be a number from -16 to 16 [stops]"),
-        ({"exposure": 1.0, "bloom": float("nan")}, ["exposure", "bloom"], "bloom must be"),
-        ({"exposure": 1.0, "tone_curve": "log"}, [], "filmic, linear"),
-        ({"exposure": 1.0}, ["exposure", "blom"], "did you mean 'bloom'"),
+        ({"exposure": 99.0}, "exposure must be a number from -16 to 16 [stops]"),
+        ({"exposure": 1.0, "bloom": float("nan")}, "bloom must be"),
+        ({"exposure": 1.0, "tone_curve": "log"}, "filmic, linear"),
+        ({"exposure": 1.0, "blom": 0.0}, "did you mean 'bloom'"),
+        ({"exposure": 1.0, "agent": "eye"}, "changes must be names of what can be changed"),
     ],
 )
 def test_a_refused_request_changes_nothing(
-    agent: Agent, probe: Probe, settings: dict[str, Any], named: list[str], sentence: str
+    agent: Agent, probe: Probe, changes: dict[str, Any], sentence: str
 ) -> None:
     """One wrong field among good ones refuses all of them, in one sentence."""
-    request = SetPicture.Request(picture=msgs.PictureSettings(**settings), fields=named)
+    request = SetPicture.Request(changes=changes_to_msg(changes))
     answer = probe.call(SetPicture, f"{agent.id}/set_picture", request)
     assert not answer.success
     assert sentence in answer.message
@@ -194,7 +196,7 @@ def test_a_recording_shows_the_change(tmp_path: Path) -> None:
 
             def change(count: int) -> None:
                 if count == 2:
-                    running.set_picture("eye", exposure=exposure)
+                    running.set_picture(exposure=exposure, agent="eye")
 
             record_lockstep(running, writer, frames=5, on_frame=change)
         with Agent.from_recording(folder) as read:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from rosbags.rosbag2 import Reader
+from std_srvs.srv import Trigger
 
 from sailenv_ros import Agent
 from sailenv_ros.errors import RecordingError
+from sailenv_ros.recording.bag_recovery import recover
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.recording.recovery import recover
-from tests.support.node_process import NodeProcess
+from tests.support.ros_probe import Probe
+from tests.support.sim_node_process import NodeProcess
 from tests.support.tool_process import ToolProcess
 from tests.support.waiting import until
 from tests.unit.recording.test_reader import same_dict
@@ -37,7 +41,7 @@ def recorder(output: Path, **parameters: object) -> ToolProcess:
 
 
 def recorded(process: ToolProcess) -> int:
-    """Give the number of frames of the latest line of progress."""
+    """Return the number of frames of the latest line of progress."""
     told = [line for line in process.lines if " frames (" in line]
     return int(told[-1].split(" frames (")[0].split()[-1]) if told else 0
 
@@ -141,3 +145,70 @@ def test_what_cannot_be_written_is_told_at_once(node: NodeProcess, tmp_path: Pat
         with ToolProcess("recorder", NAMESPACE, "", **parameters) as process:
             assert process.status() == 2
             assert process.said(sentence), process.log
+
+
+def test_a_recording_begins_when_it_begins(node: NodeProcess, tmp_path: Path) -> None:
+    """The scene was announced when the simulator started; in the bag it stands at its start."""
+    began_ns = time.time_ns()
+    bag = tmp_path / "bag"
+    with recorder(bag) as process:
+        until(lambda: recorded_messages(process), "the scene to be taken")
+        assert process.end() == 0, process.log
+    with RecordingReader(bag) as read:
+        assert read.start_ns >= began_ns
+
+
+def recorded_messages(process: ToolProcess) -> bool:
+    """Say whether a line of progress tells of bytes."""
+    return any(" MB" in line and " 0.0 MB" not in line for line in process.lines) or (
+        sum(" frames (" in line for line in process.lines) >= 8
+    )
+
+
+def test_without_a_simulator_the_status_says_so(tmp_path: Path) -> None:
+    """Nothing was recorded: 1, and a sentence."""
+    settings = {"output": str(tmp_path / "bag"), "progress": False}
+    with ToolProcess("recorder", "/nobody_is_here", "Ctrl-C ends it", **settings) as process:
+        assert process.end() == 1
+    assert process.said("no simulator was heard in /nobody_is_here")
+
+
+def test_a_killed_simulator_is_told(tmp_path: Path) -> None:
+    """What it sent is kept, the status is 1; one that ends by itself is no failure."""
+    for number, status in ((signal.SIGKILL, 1), (signal.SIGTERM, 0)):
+        settings = {"output": str(tmp_path / f"bag_{status}"), "progress_interval_s": 0.1}
+        with (
+            NodeProcess("/killed", scene="optical", agent__width=32, agent__height=24) as simulator,
+            ToolProcess("recorder", "/killed", "Ctrl-C ends it", **settings) as process,
+        ):
+            until(lambda p=process: recorded(p) >= 3, "frames to be recorded")
+            simulator.signal(number)
+            until(lambda s=simulator: not s.alive, "its end")
+            if status:
+                until(lambda p=process: p.said("/killed was killed"), "the recorder to notice")
+            assert process.end() == status, process.log
+        with RecordingReader(tmp_path / f"bag_{status}") as read:
+            assert len(read)
+
+
+def test_snapshots_are_written_on_request(tmp_path: Path) -> None:
+    """By the service and by a signal; each is a recording that an Agent can be read from."""
+    settings = {"output": str(tmp_path / "bag"), "snapshot_s": 2.0, "progress_interval_s": 0.1}
+    with (
+        NodeProcess("/snapped", scene="optical", agent__width=32, agent__height=24),
+        ToolProcess("recorder", "/snapped", "Ctrl-C ends it", **settings) as process,
+        Probe("/snapped") as probe,
+    ):
+        until(lambda: recorded(process) >= 10, "frames to be kept")
+        assert not list(tmp_path.iterdir())
+        answer = probe.call(Trigger, "recorder/snapshot", Trigger.Request())
+        assert answer.success
+        assert answer.message == str(tmp_path / "bag_0")
+        os.kill(process.pid, signal.SIGUSR1)
+        until(lambda: process.said(f"wrote {tmp_path / 'bag_1'}"), "the second snapshot")
+        assert process.end() == 0, process.log
+    for number in range(2):
+        with Agent.from_recording(tmp_path / f"bag_{number}") as read:
+            assert len(read) >= 3
+            assert read.scene == "optical"
+            assert read.get_frame()["main"].shape == (24, 32, 3)

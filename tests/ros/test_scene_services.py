@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from std_msgs.msg import ColorRGBA
 
-from sailenv_msgs.msg import AgentInfo, Behaviour, Light, PictureSettings, SceneInfo
+from sailenv_msgs.msg import AgentInfo, Behaviour, PictureSettings, SceneInfo
 from sailenv_msgs.srv import (
     Capture,
     ChangeScene,
@@ -40,8 +40,9 @@ from sailenv_msgs.srv import (
     Step,
     UploadModel,
 )
-from tests.support.node_process import NodeProcess
+from sailenv_msgs_py.changes import changes_to_msg
 from tests.support.ros_probe import LATCHED, Eye, Probe, Topic
+from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -150,8 +151,8 @@ def test_a_scenario_is_a_scene_with_more_objects(probe: Probe, scene: Topic) -> 
 def test_only_the_named_fields_of_a_light_change(probe: Probe, scene: Topic) -> None:
     """The rest of the message is not looked at; the answer is the light as it is then."""
     before = probe.done(GetLight, "get_light", GetLight.Request(name="sun")).light
-    change = Light(name="sun", intensity=0.5, direction=Vector3(z=-2.0))
-    request = SetLight.Request(light=change, fields=["intensity", "direction"])
+    changes = changes_to_msg({"intensity": 0.5, "direction": (0.0, 0.0, -2.0)})
+    request = SetLight.Request(name="sun", changes=changes)
     after = probe.done(SetLight, "set_light", request).light
     assert (after.intensity, after.direction) == (0.5, Vector3(z=-1.0))
     assert (after.colour, after.type) == (before.colour, before.type)
@@ -203,12 +204,6 @@ REFUSALS = [
         ),
         "parameters_json must be a JSON object",
     ),
-    (
-        SpawnObject,
-        "spawn_object",
-        SpawnObject.Request(asset="cube", frustum_limited=True),
-        "frustum_limited must be false",
-    ),
     (DespawnObject, "despawn_object", DespawnObject.Request(id=0), "instance id must be"),
     (GetObject, "get_object", GetObject.Request(id=65535), "instance id must be"),
     (
@@ -221,10 +216,15 @@ REFUSALS = [
     (
         SetLight,
         "set_light",
-        SetLight.Request(light=Light(name="sun"), fields=["brightness"]),
-        "field of a light must be one of",
+        SetLight.Request(name="sun", changes=changes_to_msg({"brightness": 1.0})),
+        "attribute of a light must be one of",
     ),
-    (SetLight, "set_light", SetLight.Request(light=Light(name="sun")), "must be one of"),
+    (
+        SetLight,
+        "set_light",
+        SetLight.Request(name="sun", changes=changes_to_msg({"type": ""})),
+        "must be one of",
+    ),
     (
         SetAmbientLight,
         "set_ambient_light",
@@ -271,6 +271,14 @@ TEXTS = st.one_of(
     st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12),
 )
 POINTS = st.builds(Point, x=NUMBERS, y=NUMBERS, z=NUMBERS)
+PARAMETERS = st.builds(
+    lambda name, value: changes_to_msg({name: value})[0],
+    st.one_of(
+        st.sampled_from(["type", "colour", "intensity", "direction", "exposure", "bloom", "agent"]),
+        TEXTS,
+    ),
+    st.one_of(st.none(), st.booleans(), NUMBERS, TEXTS, st.lists(NUMBERS, max_size=4)),
+)
 VECTORS = st.builds(Vector3, x=NUMBERS, y=NUMBERS, z=NUMBERS)
 COLOURS = st.builds(ColorRGBA, r=st.floats(width=32), g=st.floats(0, 1, width=32))
 POSES = st.builds(
@@ -314,15 +322,8 @@ ANY_REQUEST = st.one_of(
     st.builds(GetLight.Request, name=TEXTS),
     st.builds(
         SetLight.Request,
-        light=st.builds(
-            Light,
-            name=TEXTS,
-            type=TEXTS,
-            colour=COLOURS,
-            intensity=st.floats(width=32),
-            direction=VECTORS,
-        ),
-        fields=st.lists(st.sampled_from(["type", "colour", "intensity", "direction", "x"])),
+        name=TEXTS,
+        changes=st.lists(PARAMETERS, max_size=3),
     ),
     st.builds(SetAmbientLight.Request, colour=COLOURS),
     st.builds(SetBackground.Request, sky=st.booleans(), colour=COLOURS),
@@ -353,8 +354,7 @@ ANY_AGENT_REQUEST = st.one_of(
     st.builds(SetPose.Request, pose=POSES),
     st.builds(
         SetPicture.Request,
-        picture=PICTURES,
-        fields=st.lists(st.one_of(st.sampled_from(["exposure", "bloom"]), TEXTS), max_size=2),
+        changes=st.lists(PARAMETERS, max_size=3),
     ),
     st.builds(SetRate.Request, rate_hz=st.one_of(st.just(0.0), st.floats())),
     st.builds(

@@ -29,7 +29,7 @@ def unwrapped(model: Model) -> Unwrapping:
 
 
 def chart(model: Model, pose: Pose) -> LightChart:
-    """Give a model the whole light map but a border of four texels."""
+    """Map a model to the whole light map but a border of four texels."""
     return LightChart(
         unwrapping=unwrapped(model),
         offset=(4 / SIZE, 4 / SIZE),

@@ -17,6 +17,7 @@ class BlankRenderer:
 
     description = "blank"
     software = True
+    supported_views: tuple[str, ...] = tuple(VIEWS)
 
     def __init__(self) -> None:
         self.calls: list[tuple[WorldSnapshot, Observation | None, Camera, tuple[str, ...]]] = []

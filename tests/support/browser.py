@@ -53,7 +53,7 @@ class OpenPage:
         assert not self.faults, self.faults
 
     def data(self, name: str) -> str:
-        """Give what the page says of itself."""
+        """Return what the page says of itself."""
         value: str = self.page.evaluate("name => document.body.dataset[name] ?? ''", name)
         return value
 
@@ -77,14 +77,14 @@ class OpenPage:
         until(heard, what, 40.0)
 
     def picture(self, view: str) -> str:
-        """Give a view's pixels, as a text to compare."""
+        """Return a view's pixels, as a text to compare."""
         pixels: str = self.page.evaluate(
             "view => document.querySelector(`[data-view=${view}] .picture`).toDataURL()", view
         )
         return pixels
 
     def brightness(self, view: str) -> float:
-        """Give the mean of a view's pixels, 0 to 255."""
+        """Return the mean of a view's pixels, 0 to 255."""
         mean: float = self.page.evaluate(
             """view => {
                 const canvas = document.querySelector(`[data-view=${view}] .picture`);
@@ -103,13 +103,13 @@ class OpenPage:
         self.page.click(f"[data-tab={title}]")
 
     def at(self, u: float, v: float) -> tuple[float, float]:
-        """Give where in the page a place of the large picture is, from (0, 0) to (1, 1)."""
+        """Return where in the page a place of the large picture is, from (0, 0) to (1, 1)."""
         box = self.page.locator(".tile.main").bounding_box()
         assert box is not None
         return box["x"] + u * box["width"], box["y"] + v * box["height"]
 
     def download(self, selector: str, folder: Path) -> Path:
-        """Click something that saves a file; give its path."""
+        """Click something that saves a file; return its path."""
         with self.page.expect_download() as waiting:
             self.page.click(selector)
         file = folder / waiting.value.suggested_filename

@@ -32,7 +32,7 @@ def noise_frame(
     stamp_ns: int | None = None,
     epoch: int = 1,
 ) -> Frame:
-    """Give a frame whose pixels follow from its number: all bit patterns in depth and flow."""
+    """Return a frame whose pixels follow from its number: all bit patterns in depth and flow."""
     noise = np.random.default_rng([sequence, len(agent)])
     arrays = {view: _noise(view, intrinsics, noise) for view in views}
     return Frame(
@@ -69,7 +69,7 @@ def _noise(view: str, intrinsics: CameraIntrinsics, noise: np.random.Generator) 
 
 
 def noise_info(*agents: AgentSpec, epoch: int = 1, sim_time_ns: int = 0) -> SceneInfo:
-    """Give what would be told of the scene of `noise_frame`."""
+    """Return what would be told of the scene of `noise_frame`."""
     return SceneInfo(
         scene="noise",
         scenes=("noise", "other"),
@@ -103,7 +103,7 @@ def noise_info(*agents: AgentSpec, epoch: int = 1, sim_time_ns: int = 0) -> Scen
 def write_noise(
     folder: Path, count: int, options: RecordingOptions | None = None, **fields: Any
 ) -> list[Frame]:
-    """Record so many frames; give them."""
+    """Record so many frames; return them."""
     frames = [noise_frame(number, **fields) for number in range(1, count + 1)]
     with RecordingWriter(folder, options) as writer:
         recorder = FrameRecorder(writer)

@@ -72,7 +72,7 @@ class Probe:
         self.close()
 
     def begin(self, kind: Any, service: str, request: Any = None) -> Any:
-        """Call a service; give rclpy's future of the answer."""
+        """Call a service; return rclpy's future of the answer."""
         if service not in self._clients:
             self._clients[service] = self.node.create_client(kind, service)
         client = self._clients[service]
@@ -80,7 +80,7 @@ class Probe:
         return client.call_async(kind.Request() if request is None else request)
 
     def call(self, kind: Any, service: str, request: Any = None) -> Any:
-        """Call a service and give its answer."""
+        """Call a service and return its answer."""
         future = self.begin(kind, service, request)
         until(future.done, f"the answer of {service}", 30.0)
         return future.result()
@@ -100,7 +100,7 @@ class Probe:
         return heard
 
     def listen_no_more(self) -> None:
-        """Give up every topic."""
+        """Return up every topic."""
         while self._subscriptions:
             self.node.destroy_subscription(self._subscriptions.pop())
 

@@ -16,7 +16,7 @@ _INTS = 7
 def constant_network(
     outputs: Mapping[str, np.ndarray[Any, Any]], *, size: tuple[int, int]
 ) -> bytes:
-    """Give a network of one picture (1, 3, H, W), of size (W, H), that always answers the same."""
+    """Return a network of one picture (1, 3, H, W), of size (W, H), whose answer never changes."""
     graph = b""
     for name, array in outputs.items():
         tensor = b"".join(_number(1, length) for length in array.shape)
@@ -31,7 +31,7 @@ def constant_network(
 
 
 def slice_network(*, height: int, width: int) -> bytes:
-    """Give a network of two pictures (1, 3, H, W) that gives the first's first two channels."""
+    """Return a network of two pictures (1, 3, H, W) that gives the first's first two channels."""
     node = _field(1, b"a") + _field(2, b"out") + _field(4, b"Slice")
     for name, value in (("axes", 1), ("starts", 0), ("ends", 2)):
         attribute = _field(1, name.encode()) + _number(8, value) + _number(20, _INTS)

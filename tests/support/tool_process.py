@@ -45,13 +45,13 @@ class ToolProcess:
         return any(text in line for line in self.lines)
 
     def status(self, timeout_s: float = 30.0) -> int:
-        """Wait for the end; give the exit status."""
+        """Wait for the end; return the exit status."""
         status = self._process.wait(timeout_s)
         self._reader.join(5.0)
         return status
 
     def end(self, number: int = signal.SIGINT) -> int:
-        """Ask for the end; give the exit status."""
+        """Ask for the end; return the exit status."""
         self._process.send_signal(number)
         return self.status()
 

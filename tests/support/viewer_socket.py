@@ -1,4 +1,4 @@
-"""A client of the window's socket, for tests: asks, waits with a deadline, unpacks frames."""
+"""A client of the web viewer's socket, for tests: asks, waits with a deadline, unpacks frames."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ class ViewerSocket:
         self._ids = 0
 
     async def ask(self, what: str, **values: Any) -> Any:
-        """Ask and give the result; a refusal is an AssertionError with its words."""
+        """Ask and return the result; a refusal is an AssertionError with its words."""
         answer = await self.answer(what, **values)
         assert answer["type"] == "reply", answer
         return answer["result"]
 
     async def refusal(self, what: str, **values: Any) -> str:
-        """Ask for what is refused; give the words."""
+        """Ask for what is refused; return the words."""
         answer = await self.answer(what, **values)
         assert answer["type"] == "refused", answer
         return str(answer["error"])
 
     async def answer(self, what: str, **values: Any) -> dict[str, Any]:
-        """Ask; give whatever is answered."""
+        """Ask; return whatever is answered."""
         self._ids += 1
         number = self._ids
         await self.socket.send_json({"do": what, "id": number, **values})

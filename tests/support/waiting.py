@@ -12,5 +12,7 @@ def until(condition: Callable[[], object], what: str, timeout_s: float = 20.0) -
     deadline = time.monotonic() + timeout_s
     pause = threading.Event()
     while not condition():
-        assert time.monotonic() < deadline, f"waited {timeout_s:g} s for {what}, in vain"
+        assert time.monotonic() < deadline, (
+            f"timed out after {timeout_s:g} s while waiting for {what}"
+        )
         pause.wait(0.01)

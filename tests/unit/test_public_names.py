@@ -11,7 +11,7 @@ import sailenv_ros
 
 
 def run(code: str) -> str:
-    """Run a program of its own; give what it prints."""
+    """Run a program of its own; return what it prints."""
     result = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
@@ -20,7 +20,7 @@ def run(code: str) -> str:
 
 def test_the_public_names_are_these() -> None:
     """A name that users may rely on comes and goes on purpose only."""
-    assert sailenv_ros.__all__ == ["Agent", "Simulation", "__version__", "load_scene"]
+    assert sailenv_ros.__all__ == ["Agent", "Simulation", "__version__", "load_scene", "show"]
     assert set(sailenv_ros.__all__) <= set(dir(sailenv_ros))
 
 

@@ -1,4 +1,4 @@
-"""A simulation with a window, for tests that open it."""
+"""A simulation with a web viewer, for tests that open it."""
 
 from __future__ import annotations
 

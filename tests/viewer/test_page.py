@@ -78,8 +78,26 @@ def test_one_view_is_shown_alone_and_another_large(opened: OpenPage) -> None:
     opened.until(lambda: opened.picture("depth") != before, "the picture alone to move")
 
 
+def test_further_views_are_shown_when_they_are_wanted(
+    opened: OpenPage, simulation: Simulation
+) -> None:
+    """The simulator says which there are; a box adds one, and takes it away again."""
+    page = opened.page
+    boxes = page.locator("#shown-views input")
+    expect(boxes).to_have_count(len(simulation.supported_views))
+    expect(page.locator(".tile:visible")).to_have_count(len(FIVE_VIEWS))
+    page.check("[data-shows=normals]")
+    expect(page.locator(".tile:visible")).to_have_count(len(FIVE_VIEWS) + 1)
+    before = opened.picture("normals")
+    opened.until(lambda: opened.picture("normals") != before, "the added view to move")
+    page.mouse.move(*opened.at(0.5, 0.5))
+    expect(page.locator("#probe")).to_contain_text("normals")
+    page.uncheck("[data-shows=normals]")
+    expect(page.locator(".tile:visible")).to_have_count(len(FIVE_VIEWS))
+
+
 def test_tab_hands_the_mover_over_and_back(opened: OpenPage, simulation: Simulation) -> None:
-    """As in the original: waypoints or keyboard."""
+    """As in SAILenv: waypoints or keyboard."""
     drivers = ("waypoint", "rigidbody")
     at = drivers.index(controller(simulation))
     for wanted in (drivers[1 - at], drivers[at]):
@@ -92,41 +110,42 @@ def test_keys_walk_the_mover(opened: OpenPage, simulation: Simulation) -> None:
     """W goes where it looks, A to its left, E up; what is let go stops."""
     take_over(opened, simulation)
     for key, axis in (("w", 0), ("a", 1), ("e", 2)):
-        start = simulation.mover_pose()
+        start = simulation.get_mover_pose()
         yaw = math.radians(start.rpy_deg[2])
         towards = {0: (math.cos(yaw), math.sin(yaw), 0.0), 1: (-math.sin(yaw), math.cos(yaw), 0.0)}
         direction = np.array(towards.get(axis, (0.0, 0.0, 1.0)))
         opened.page.keyboard.down(key)
         opened.until(
             lambda start=start, direction=direction: (
-                (np.array(simulation.mover_pose().position_m) - start.position_m) @ direction > 0.1
+                (np.array(simulation.get_mover_pose().position_m) - start.position_m) @ direction
+                > 0.1
             ),
             f"{key} to move the mover",
         )
         opened.page.keyboard.up(key)
-        moved = np.array(simulation.mover_pose().position_m) - start.position_m
+        moved = np.array(simulation.get_mover_pose().position_m) - start.position_m
         assert np.linalg.norm(moved - (moved @ direction) * direction) < 0.02
         opened.until(lambda: not moves(simulation), "the mover to stand")
 
 
 def moves(simulation: Simulation) -> bool:
     """True if the mover is elsewhere after a tenth of a simulated second."""
-    before, time_ns = simulation.mover_pose(), simulation.sim_time_ns
+    before, time_ns = simulation.get_mover_pose(), simulation.sim_time_ns
     until(lambda: simulation.sim_time_ns > time_ns + 100_000_000, "simulated time")
-    return simulation.mover_pose() != before
+    return simulation.get_mover_pose() != before
 
 
 def test_dragging_turns_and_the_wheel_zooms(opened: OpenPage, simulation: Simulation) -> None:
     """Dragged to the right the picture follows, so the camera turns left; the lens is told."""
     take_over(opened, simulation)
-    before = simulation.mover_pose().rpy_deg
+    before = simulation.get_mover_pose().rpy_deg
     page = opened.page
     page.mouse.move(*opened.at(0.4, 0.5))
     page.mouse.down()
     page.mouse.move(*opened.at(0.6, 0.4), steps=4)
     page.mouse.up()
-    until(lambda: simulation.mover_pose().rpy_deg[2] > before[2] + 5.0, "a turn to the left")
-    until(lambda: simulation.mover_pose().rpy_deg[1] > before[1] + 2.0, "a look down")
+    until(lambda: simulation.get_mover_pose().rpy_deg[2] > before[2] + 5.0, "a turn to the left")
+    until(lambda: simulation.get_mover_pose().rpy_deg[1] > before[1] + 2.0, "a look down")
     lens = simulation.info.agents[-1].intrinsics
     page.mouse.wheel(0, 300)
     until(
@@ -141,12 +160,12 @@ def test_walk_lends_the_mouse_and_takes_over(opened: OpenPage, simulation: Simul
     page.click("#walk")
     opened.until(lambda: page.evaluate("document.pointerLockElement !== null"), "the mouse")
     until(lambda: controller(simulation) == "rigidbody", "the keys to drive")
-    before = simulation.mover_pose().rpy_deg[2]
+    before = simulation.get_mover_pose().rpy_deg[2]
     x, y = opened.at(0.3, 0.5)
     page.mouse.move(x, y)
     page.mouse.move(x + 100, y, steps=4)
-    until(lambda: simulation.mover_pose().rpy_deg[2] != before, "a turn")
-    assert (simulation.mover_pose().rpy_deg[2] - before) % 360.0 > 180.0
+    until(lambda: simulation.get_mover_pose().rpy_deg[2] != before, "a turn")
+    assert (simulation.get_mover_pose().rpy_deg[2] - before) % 360.0 > 180.0
     page.evaluate("document.exitPointerLock()")
 
 
@@ -183,7 +202,7 @@ def test_the_probe_shows_the_arrays_values(opened: OpenPage, simulation: Simulat
     page.click("#play")
     until(lambda: simulation.info.paused, "time to stand")
     opened.until(lambda: not changes(opened), "the last picture")
-    frame = simulation.capture("debug_agent", ("rgb", "depth", "category", "instance"))
+    frame = simulation.capture(("rgb", "depth", "category", "instance"), agent="debug_agent")
     height, width = frame["depth"].shape
     for u, v in ((0.5, 0.5), (0.2, 0.9)):
         column, row = int(u * width), int(v * height)
@@ -329,7 +348,7 @@ def test_a_picture_is_set_by_its_panel(opened: OpenPage, simulation: Simulation)
     expect(control("read_noise")).to_have_value("0")
     expect(control("full_well")).to_have_value("2000")
     assert picture("eye") == PictureSettings()
-    simulation.set_picture("eye", exposure=-5.0, bloom=0.5)
+    simulation.set_picture(exposure=-5.0, bloom=0.5, agent="eye")
     page.select_option("#agent", "eye")
     expect(control("bloom")).to_have_value("0.5")
     expect(control("exposure")).to_have_value("-5")  # beyond what the slider usually has

@@ -1,4 +1,4 @@
-"""The window's socket: frames at the pace of who looks, wishes, and what the hostile get."""
+"""The web viewer's socket: frames at the pace of who looks, wishes, and what the hostile get."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import aiohttp
 import numpy as np
 import pytest
 
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.errors import AddressInUse, InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import light_named
 from sailenv_ros.picture_settings import NAMES, PictureSettings
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
-from sailenv_ros.viewer.guard import SECURITY_HEADERS
-from sailenv_ros.viewer.limits import ViewerLimits
-from sailenv_ros.viewer.watch import IN_FLIGHT
+from sailenv_ros.viewer.access_control import SECURITY_HEADERS
+from sailenv_ros.viewer.view_subscription import IN_FLIGHT
+from sailenv_ros.viewer.viewer_limits import ViewerLimits
 from tests.support.viewer_socket import DEADLINE_S, ViewerSocket, connected
 from tests.support.waiting import until
 
@@ -101,7 +101,7 @@ def test_the_probe_tells_the_arrays_values(server: ViewerServer, simulation: Sim
                 while head["time_s"] < simulation.sim_time_ns * 1e-9 - 1e-9:
                     await client.socket.send_json({"do": "shown", "number": head["number"]})
                     head = await client.until(lambda m: m.get("type") == "frame")
-                frame = await asyncio.to_thread(simulation.capture, "debug_agent", VIEWS)
+                frame = await asyncio.to_thread(simulation.capture, VIEWS, agent="debug_agent")
                 for u, v in ((80, 60), (20, 100), (150, 5)):
                     told = await client.ask("probe", frame=head["number"], u=u, v=v)
                     assert told["instance_id"] == frame["instance"][v, u]
@@ -309,7 +309,7 @@ RESET = aiohttp.WSCloseCode.ABNORMAL_CLOSURE
 
 
 async def closing_code(client: ViewerSocket) -> int | None:
-    """Read to the end; give the code that the server closed with."""
+    """Read to the end; return the code that the server closed with."""
     while (await asyncio.wait_for(client.socket.receive(), 20.0)).type in (
         aiohttp.WSMsgType.TEXT,
         aiohttp.WSMsgType.BINARY,
@@ -387,7 +387,7 @@ def test_every_answer_has_the_headers_that_protect_the_page(server: ViewerServer
 
 def test_an_address_that_is_taken_is_refused(server: ViewerServer, simulation: Simulation) -> None:
     """In one sentence, and nothing is left running."""
-    with pytest.raises(InvalidRequest, match="address of the viewer"):
+    with pytest.raises(AddressInUse, match="the viewer cannot listen on"):
         ViewerServer(simulation, port=server.port)
     with pytest.raises(InvalidRequest, match="port"):
         ViewerServer(simulation, port=70_000)

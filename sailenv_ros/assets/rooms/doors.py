@@ -39,7 +39,7 @@ _METAL = Material(name="handle", base_colour=(0.60, 0.59, 0.57, 1.0), metallic=1
 
 
 def door_parts(spec: DoorSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
-    """Give frame, leaf and metal fittings."""
+    """Return frame, leaf and metal fittings."""
     red, green, blue = spec.colour
     paint = Material(name="door paint", base_colour=(red, green, blue, 1.0), roughness=0.6)
     # What is sunk in gets less light than the renderer can know.
@@ -61,7 +61,7 @@ def door_parts(spec: DoorSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
 
 
 def door_collision(spec: DoorSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
-    """Give the closed door as a thick box outwards from its leaf, an open one as it stands."""
+    """Return the closed door as a thick box outwards from its leaf, an open one as it stands."""
     half = spec.width / 2.0
     if spec.open == 0.0:
         out = (_LEAF_INNER_M, max(frame.thickness_m, _LEAF_INNER_M + _LEAST_BARRIER_M))
@@ -85,7 +85,7 @@ def door_collision(spec: DoorSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
 
 
 def _frame_boxes(spec: DoorSpec, frame: WallFrame) -> list[Box]:
-    """Give lining, stops and threshold behind the leaf, and architraves on both faces."""
+    """Return lining, stops and threshold behind the leaf, and architraves on both faces."""
     half, top, thick = spec.width / 2.0, spec.height, frame.thickness_m
     lining, stop = (0.0, thick), (_LEAF_INNER_M + _LEAF_M + 0.002, thick)
     inside, clear = half - _LINING_M, top - _LINING_M
@@ -117,7 +117,7 @@ def _hinge_sign(spec: DoorSpec, frame: WallFrame) -> float:
 
 
 def _leaf_extent(spec: DoorSpec) -> tuple[float, float, float]:
-    """Give half the leaf's width, its lower and its upper edge [m]."""
+    """Return half the leaf's width, its lower and its upper edge [m]."""
     return spec.width / 2.0 - _LINING_M - _GAP_M, _FLOOR_GAP_M, spec.height - _LINING_M - _GAP_M
 
 
@@ -127,7 +127,7 @@ def _extent_box(spec: DoorSpec, frame: WallFrame) -> Box:
 
 
 def _leaf(spec: DoorSpec, frame: WallFrame) -> tuple[list[Box], list[Box], list[Box], list[Box]]:
-    """Give the closed leaf's stiles and rails, raised fields, sunk panels, and the fittings."""
+    """Return the closed leaf's stiles and rails, raised fields, sunk panels, and the fittings."""
     half, low, high = _leaf_extent(spec)
     out = (_LEAF_INNER_M, _LEAF_INNER_M + _LEAF_M)
     stile = min(_STILE_M, half / 2.0)
@@ -155,7 +155,7 @@ def _leaf(spec: DoorSpec, frame: WallFrame) -> tuple[list[Box], list[Box], list[
 
 
 def _fittings(spec: DoorSpec, frame: WallFrame, half: float, out: tuple[float, float]) -> list[Box]:
-    """Give plates, necks and levers on both faces, and the knuckles of the hinges."""
+    """Return plates, necks and levers on both faces, and the knuckles of the hinges."""
     sign = -_hinge_sign(spec, frame)
     at = sign * (half - 0.06)
     up = min(_HANDLE_UP_M, 0.5 * spec.height)
@@ -211,7 +211,7 @@ def _turn(spec: DoorSpec, frame: WallFrame) -> NDArray[np.float64]:
 
 
 def _angle_rad(spec: DoorSpec, frame: WallFrame) -> float:
-    """Give the angle about the vertical that swings the leaf into the room."""
+    """Return the angle about the vertical that swings the leaf into the room."""
     leaf = -_hinge_sign(spec, frame) * np.asarray(frame.along)
     inwards = -np.asarray(frame.outward)
     sense = math.copysign(1.0, leaf[0] * inwards[1] - leaf[1] * inwards[0])

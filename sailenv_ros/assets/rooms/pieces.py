@@ -59,19 +59,19 @@ class WallFrame:
     overhang_m: float
 
     def point(self, along_m: float, out_m: float, up_m: float) -> Floats:
-        """Give the place so far along the wall, out of the room and above the floor."""
+        """Return the place so far along the wall, out of the room and above the floor."""
         place: Floats = along_m * np.asarray(self.along) + out_m * np.asarray(self.outward)
         place[2] += up_m
         return place
 
     def box(self, along_m: Sequence[float], out_m: Sequence[float], up_m: Sequence[float]) -> Box:
-        """Give the box between two numbers each."""
+        """Return the box between two numbers each."""
         ends = np.stack([self.point(*corner) for corner in zip(along_m, out_m, up_m, strict=True)])
         low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
         return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
     def world_point(self, along_m: float) -> Vector3:
-        """Give a place at the foot of the inner face in the world [m]."""
+        """Return a place at the foot of the inner face in the world [m]."""
         x, y, z = (np.asarray(self.middle_m) + self.point(along_m, 0.0, 0.0)).tolist()
         return x, y, z
 
@@ -140,7 +140,7 @@ def boxes_mesh(boxes: Iterable[Box], *, chamfer_m: float = 0.0) -> Mesh:
 
 
 def collision_of(box: Box) -> BoxShape:
-    """Give the collision shape of a box."""
+    """Return the collision shape of a box."""
     low, high = np.asarray(box.low), np.asarray(box.high)
     hx, hy, hz = ((high - low) / 2.0).tolist()
     cx, cy, cz = ((high + low) / 2.0).tolist()
@@ -154,7 +154,7 @@ def _add_box(faces: Faces, box: Box, chamfer_m: float) -> None:
     axes = np.eye(3)
 
     def corner(axis: int, signs: Sequence[float]) -> Floats:
-        """Give the corner of the face across an axis; it is drawn in along the other two."""
+        """Return the corner of the face across an axis; it is drawn in along the other two."""
         place: Floats = middle + np.asarray(signs) * (half - cut * (1.0 - axes[axis]))
         return place
 
@@ -178,7 +178,7 @@ def _signs(by_axis: dict[int, float]) -> tuple[float, ...]:
 
 
 def _places(positions: Floats, normals: Floats) -> Floats:
-    """Give (N, 2): how far to the right and up, as one sees who looks at the face [m]."""
+    """Return (N, 2): how far to the right and up, as one sees who looks at the face [m]."""
     level = np.abs(normals[:, 2:]) > 0.999
     right = np.where(level, [1.0, 0.0, 0.0], np.cross(_UP, normals))
     right /= np.linalg.norm(right, axis=1, keepdims=True)

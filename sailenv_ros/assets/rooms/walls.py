@@ -35,7 +35,7 @@ class Hole:
 def wall_parts(
     frame: WallFrame, holes: Sequence[Hole], surface: Surface
 ) -> tuple[ModelPart, ModelPart]:
-    """Give the inside of a wall with the sides of its holes, and its outside."""
+    """Return the inside of a wall with the sides of its holes, and its outside."""
     inner, outer = Faces(), Faces()
     across = np.asarray(frame.along)
     outward, thick = np.asarray(frame.outward), frame.thickness_m
@@ -52,7 +52,7 @@ def wall_parts(
 
 
 def wall_collision(frame: WallFrame, holes: Sequence[Hole]) -> tuple[BoxShape, ...]:
-    """Give boxes that fill a wall but for its holes: columns between and strips above, below."""
+    """Return boxes that fill a wall but for its holes: columns between and strips above, below."""
     edges = _breaks(_extent(frame), [edge for hole in holes for edge in hole.along])
     boxes = []
     for along in pairwise(edges):
@@ -65,7 +65,7 @@ def wall_collision(frame: WallFrame, holes: Sequence[Hole]) -> tuple[BoxShape, .
 
 
 def slab_part(size_m: Interval, thickness_m: float, surface: Surface, *, up: bool) -> ModelPart:
-    """Give a floor (`up`) or ceiling: its face at z = 0, and its other faces, in one material."""
+    """Return a floor (`up`) or ceiling: its face at z = 0, and its other faces, in one material."""
     half_x, half_y = size_m[0] / 2.0, size_m[1] / 2.0
     facing = 1.0 if up else -1.0
     back = -facing * thickness_m
@@ -196,7 +196,7 @@ def _rest(extent: Interval, cut: Sequence[Interval]) -> Iterator[Interval]:
 
 
 def box_of_slab(size_m: Interval, thickness_m: float, *, up: bool) -> Box:
-    """Give the box of a floor or ceiling whose face lies at z = 0."""
+    """Return the box of a floor or ceiling whose face lies at z = 0."""
     half_x, half_y = size_m[0] / 2.0, size_m[1] / 2.0
     low, high = (-thickness_m, 0.0) if up else (0.0, thickness_m)
     return Box((-half_x, -half_y, low), (half_x, half_y, high))

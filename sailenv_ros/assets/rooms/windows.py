@@ -39,7 +39,7 @@ _GLASS = Material(
 
 
 def window_parts(spec: WindowSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
-    """Give frame and sill, handles, and the panes as a part of their own."""
+    """Return frame and sill, handles, and the panes as a part of their own."""
     wood = [*_frame_bars(spec, frame)]
     panes: list[Box] = []
     handles: list[Box] = []
@@ -59,7 +59,7 @@ def window_parts(spec: WindowSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
 
 
 def window_collision(spec: WindowSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
-    """Give the closed window from its frame's inner face outwards, and the board before it."""
+    """Return the closed window from its frame's inner face outwards, and the board before it."""
     inner = _frame_out(frame)[0]
     half = spec.width / 2.0
     outer = max(frame.thickness_m, inner + _LEAST_BARRIER_M)
@@ -68,7 +68,7 @@ def window_collision(spec: WindowSpec, frame: WallFrame) -> tuple[BoxShape, ...]
 
 
 def curtain_parts(window: WindowSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
-    """Give a pair of curtains beside a window, and their rod."""
+    """Return a pair of curtains beside a window, and their rod."""
     spec = window.curtains or CurtainSpec()
     rod_up = min(_top(window) + 0.12, frame.height_m - 0.05)
     # Beside a corner there is less room for them.
@@ -112,7 +112,7 @@ def _frame_out(frame: WallFrame) -> tuple[float, float]:
 
 
 def _lights(spec: WindowSpec) -> list[tuple[float, float]]:
-    """Give where each casement's hole in the frame begins and ends along the wall."""
+    """Return where each casement's hole in the frame begins and ends along the wall."""
     count = spec.casements or max(1, math.ceil(spec.width / _CASEMENT_M - 1e-9))
     inner = spec.width - (count + 1) * _FRAME_M
     starts = [-spec.width / 2.0 + _FRAME_M + i * (inner / count + _FRAME_M) for i in range(count)]
@@ -134,7 +134,7 @@ def _frame_bars(spec: WindowSpec, frame: WallFrame) -> list[Box]:
 def _sash(
     frame: WallFrame, left: float, right: float, low: float, high: float
 ) -> tuple[list[Box], Box]:
-    """Give a casement's bars, which overlap the frame by a rebate, and its pane."""
+    """Return a casement's bars, which overlap the frame by a rebate, and its pane."""
     inner = _frame_out(frame)[0] - _SASH_PROUD_M
     out, rebate = (inner, inner + _SASH_DEPTH_M), 0.012
     left, right, low, high = left - rebate, right + rebate, low - rebate, high + rebate
@@ -155,7 +155,7 @@ def _sash(
 
 
 def _handle(spec: WindowSpec, frame: WallFrame, left: float, right: float) -> list[Box]:
-    """Give the handle on the stile that is nearer to the window's middle."""
+    """Return the handle on the stile that is nearer to the window's middle."""
     inner = _frame_out(frame)[0] - _SASH_PROUD_M
     at = right - _SASH_M / 2.0 if (left + right) / 2.0 <= 1e-6 else left + _SASH_M / 2.0
     up = spec.sill + spec.height * 0.45
@@ -169,7 +169,7 @@ def _handle(spec: WindowSpec, frame: WallFrame, left: float, right: float) -> li
 
 
 def _sill_boards(spec: WindowSpec, frame: WallFrame) -> list[Box]:
-    """Give the board in the niche with its nosing before the wall, and the drip sill outside."""
+    """Return the board in the niche with its nosing before the wall, and the drip sill outside."""
     if spec.sill < 0.05:
         return []
     half, (inner, outer) = spec.width / 2.0, _frame_out(frame)

@@ -79,7 +79,7 @@ class Catalogues:
                 self._entries.setdefault(f"{library}/{entry.model}", entry)
 
     def entry(self, source: str) -> CatalogueEntry:
-        """Give the entry of ``library/model``.
+        """Return the entry of ``library/model``.
 
         Raises
         ------
@@ -91,7 +91,7 @@ class Catalogues:
         return self._entries[source]
 
     def unpack(self, entry: CatalogueEntry, folder: Path) -> Path:
-        """Unpack a model with its materials and pictures into a folder; give its path."""
+        """Unpack a model with its materials and pictures into a folder; return its path."""
         home = PurePosixPath(entry.file).parent
         with self._archive(entry.library) as archive:
             for member in archive.namelist():

@@ -93,7 +93,7 @@ _STEEL = (0.56, 0.55, 0.53)
 
 
 def finish_of(name: str) -> str | None:
-    """Give the kind that a material's name tells, or None."""
+    """Return the kind that a material's name tells, or None."""
     words = re.split(r"[^a-z]+", re.sub(r"([a-z])([A-Z])", r"\1_\2", name).lower())
     for kind, finish in FINISHES.items():
         if any(word.startswith(start) for word in words for start in finish.words):
@@ -110,7 +110,7 @@ def finished(
     metallic: float | None = None,
     pattern: str | None = None,
 ) -> Material:
-    """Give a material as its kind is, with what the recipe says besides.
+    """Return a material as its kind is, with what the recipe says besides.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _is_grey(material: Material) -> bool:
 
 
 def _patterned(material: Material, pattern: str) -> Material:
-    """Give a material that has no picture a fine structure."""
+    """Return a material that has no picture a fine structure."""
     if not pattern or material.base_colour_texture is not None:
         return material
     maps = pattern_maps(PATTERNS[pattern])

@@ -45,7 +45,7 @@ class Pattern:
 
 
 def pattern_maps(pattern: Pattern) -> Mapping[str, Texture]:
-    """Give the textures by their attributes' names in `Material`; the same objects each time."""
+    """Return the textures by their attributes' names in `Material`; the same objects each time."""
     return _maps(next(name for name, known in PATTERNS.items() if known is pattern))
 
 
@@ -65,7 +65,7 @@ def _maps(name: str) -> Mapping[str, Texture]:
 
 
 def _normals(height: Field, relief: float) -> Texture:
-    """Give the tangent-space normals of a height field that wraps around."""
+    """Return the tangent-space normals of a height field that wraps around."""
     right = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) * 0.5 * relief * 16.0
     # Rows run downwards and v upwards.
     up = (np.roll(height, 1, axis=0) - np.roll(height, -1, axis=0)) * 0.5 * relief * 16.0

@@ -26,12 +26,13 @@ from sailenv_ros.assets.meshes import (
     smooth_mesh,
     thinned_out,
 )
-from sailenv_ros.assets.model_files import RawPart, linear, read_parts
+from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.standard.catalogues import CatalogueEntry, Catalogues
 from sailenv_ros.assets.standard.finishes import FINISHES, finish_of, finished
 from sailenv_ros.assets.standard.handmade import HANDMADE
 from sailenv_ros.assets.standard.patterns import PATTERNS
 from sailenv_ros.assets.standard.recipe import MaterialRule, RecipeEntry
+from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import ConvexShape, Material, ModelPart
 
@@ -134,7 +135,7 @@ def _mapped(part: RawPart, linear_map: NDArray[np.float64], shift: NDArray[np.fl
 
 
 def enough_triangles(parts: Sequence[RawPart]) -> int:
-    """Give how many triangles an object of that size needs."""
+    """Return how many triangles an object of that size needs."""
     low, high = _bounds(parts)
     return int(TRIANGLES_AT_ONE_METRE * float(np.linalg.norm(high - low)) ** TRIANGLES_EXPONENT)
 
@@ -162,7 +163,9 @@ def _with_finish(part: RawPart, rule: MaterialRule) -> RawPart:
     kind = rule.finish or finish_of(part.material.name)
     colour = None
     if rule.colour is not None:
-        red, green, blue = linear(np.frombuffer(bytes.fromhex(rule.colour[1:]), np.uint8) / 255.0)
+        red, green, blue = linear_from_srgb(
+            np.frombuffer(bytes.fromhex(rule.colour[1:]), np.uint8) / 255.0
+        )
         colour = (float(red), float(green), float(blue))
     material = finished(
         part.material,
@@ -182,7 +185,7 @@ def _with_finish(part: RawPart, rule: MaterialRule) -> RawPart:
 
 
 def _pattern_of(before: Material, after: Material, given: str | None, kind: str | None) -> str:
-    """Give the pattern that was put on, for which coordinates must be found."""
+    """Return the pattern that was put on, for which coordinates must be found."""
     if after.base_colour_texture is None or after.base_colour_texture is before.base_colour_texture:
         return ""
     return given if given is not None else FINISHES[kind].pattern if kind else ""

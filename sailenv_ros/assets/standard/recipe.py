@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sailenv_ros.assets.standard.finishes import FINISHES
 from sailenv_ros.errors import AssetError, UnknownName
-from sailenv_ros.resources import resource_path
+from sailenv_ros.system.resources import resource_path
 
 __all__ = ["MaterialRule", "Recipe", "RecipeEntry", "standard_recipe"]
 
@@ -20,11 +20,11 @@ Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
-class _Strict(BaseModel):
+class _RecipeModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class MaterialRule(_Strict):
+class MaterialRule(_RecipeModel):
     """What the recipe says of materials whose name fits a pattern."""
 
     finish: str | None = None
@@ -35,7 +35,7 @@ class MaterialRule(_Strict):
     drop: bool = False
 
 
-class RecipeEntry(_Strict):
+class RecipeEntry(_RecipeModel):
     """One object.
 
     Attributes
@@ -65,14 +65,14 @@ class RecipeEntry(_Strict):
     materials: dict[str, MaterialRule | str] = {}
 
     def rule(self, material: str) -> MaterialRule:
-        """Give what is said of a material; an empty rule for nothing."""
+        """Return what is said of a material; an empty rule for nothing."""
         for pattern, rule in self.materials.items():
             if fnmatch.fnmatchcase(material, pattern):
                 return MaterialRule(finish=rule) if isinstance(rule, str) else rule
         return MaterialRule()
 
 
-class Recipe(_Strict):
+class Recipe(_RecipeModel):
     """The whole pack."""
 
     version: Literal[1]
@@ -80,7 +80,7 @@ class Recipe(_Strict):
     assets: dict[str, RecipeEntry]
 
     def display_name(self, name: str) -> str:
-        """Give an object's display name: ``Chair 01`` for ``chair_01`` unless it has another."""
+        """Return an object's display name: ``Chair 01`` for ``chair_01`` unless it has another."""
         return self.assets[name].display_name or name.replace("_", " ").title()
 
 

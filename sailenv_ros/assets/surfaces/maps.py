@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.model import Material, Texture
 
 __all__ = ["Floats", "Surface", "SurfaceMaps", "surface_of"]
@@ -64,7 +65,7 @@ class Surface:
     turn_deg: float = 0.0
 
     def uvs(self, places_m: ArrayLike) -> Floats:
-        """Give texture coordinates of places on the surface.
+        """Return texture coordinates of places on the surface.
 
         Parameters
         ----------
@@ -110,9 +111,7 @@ def _bytes(values: Floats) -> NDArray[np.uint8]:
 
 def _srgb(albedo: Floats) -> Texture:
     """Encode linear colours (IEC 61966-2-1) by a table; alpha is 255."""
-    linear = np.linspace(0.0, 1.0, _STEPS)
-    low, high = 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055
-    table = np.round(255.0 * np.where(linear <= 0.0031308, low, high)).astype(np.uint8)
+    table = np.round(255.0 * srgb_from_linear(np.linspace(0.0, 1.0, _STEPS))).astype(np.uint8)
     steps = (np.clip(albedo, 0.0, 1.0) * np.float32(_STEPS - 1) + np.float32(0.5)).astype(np.uint16)
     texture = np.full((*albedo.shape[:2], 4), 255, dtype=np.uint8)
     texture[..., :3] = table[steps]

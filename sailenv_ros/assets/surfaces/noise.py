@@ -18,7 +18,7 @@ SIZE_PX = 1024
 
 
 def grid(tile_m: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Give x of each column (1, W) and y of each row (H, 1), at the pixels' centres [m]."""
+    """Return x of each column (1, W) and y of each row (H, 1), at the pixels' centres [m]."""
     share = (np.arange(SIZE_PX, dtype=np.float32) + np.float32(0.5)) / np.float32(SIZE_PX)
     return share[np.newaxis, :] * np.float32(tile_m[0]), share[:, np.newaxis] * np.float32(
         tile_m[1]

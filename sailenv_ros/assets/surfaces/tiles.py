@@ -117,13 +117,13 @@ def _laid(tile_m: tuple[float, float], *, columns: int, rows: int, bond: float) 
 
 
 def _joint(laid: _Laid, joint_m: float, tile_m: tuple[float, float]) -> Floats:
-    """Give how much of each pixel is joint, 0 to 1."""
+    """Return how much of each pixel is joint, 0 to 1."""
     soft = 0.6 * tile_m[0] / SIZE_PX
     return ramp(laid.edge, joint_m / 2 + soft, joint_m / 2 - soft)
 
 
 def _profile(laid: _Laid, joint_m: float, cushion_m: float, depth_m: float) -> Floats:
-    """Give the height of tiles that slope down to their joints over the cushion's width."""
+    """Return the height of tiles that slope down to their joints over the cushion's width."""
     low, high = joint_m / 2, joint_m / 2 + cushion_m
     share = np.clip((laid.edge - low) / (high - low), 0.0, 1.0)
     round_ = np.sqrt(np.maximum(0.0, 1.0 - (1.0 - share) ** 2))
@@ -132,7 +132,7 @@ def _profile(laid: _Laid, joint_m: float, cushion_m: float, depth_m: float) -> F
 
 
 def _askew(rng: np.random.Generator, laid: _Laid, slope: float) -> Floats:
-    """Give the height of tiles that lean by slopes of this spread."""
+    """Return the height of tiles that lean by slopes of this spread."""
     lean = rng.normal(0.0, slope, (2, int(laid.number.max()) + 1))
     return _of_tile(lean[0], laid) * laid.x + _of_tile(lean[1], laid) * laid.y
 

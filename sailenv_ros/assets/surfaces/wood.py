@@ -156,7 +156,7 @@ def _in_boards(
 
 
 def _rings(rng: np.random.Generator, boards: _Boards) -> Floats:
-    """Give the late wood, 0 to 1: rings around a pith that lies below and beside the board."""
+    """Return the late wood, 0 to 1: rings around a pith that lies below and beside the board."""
     count = int(boards.number.max()) + 1
 
     def of_board(values: NDArray[np.floating]) -> Floats:

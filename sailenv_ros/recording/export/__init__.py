@@ -6,6 +6,6 @@ frames of an agent. Knows no ROS.
 
 from __future__ import annotations
 
-from sailenv_ros.recording.export.run import FORMATS, export
+from sailenv_ros.recording.export.exporter import FORMATS, export
 
 __all__ = ["FORMATS", "export"]

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.system.files import make_folder
 
 __all__ = ["VideoExport"]
 
@@ -30,6 +31,7 @@ class VideoExport:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / "preview.mp4"
+        self._draft = folder / ".preview.unfinished.mp4"
         self._waiting: list[NDArray[np.uint8]] = []
         self._first_ns: int | None = None
         self._writer: cv2.VideoWriter | None = None
@@ -52,13 +54,19 @@ class VideoExport:
             self._begin(1.0)
         if self._writer is not None:
             self._writer.release()
+            try:
+                self._draft.replace(self._path)
+            except OSError as problem:
+                raise RecordingError(
+                    f"{self._path} cannot be written: {problem.strerror}"
+                ) from None
 
     def _begin(self, rate_hz: float) -> None:
         height, width = self._waiting[0].shape[:2]
         code = cv2.VideoWriter.fourcc(*"mp4v")
         self._shape = self._waiting[0].shape
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        self._writer = cv2.VideoWriter(str(self._path), code, rate_hz, (width, height))
+        make_folder(self._path.parent)
+        self._writer = cv2.VideoWriter(str(self._draft), code, rate_hz, (width, height))
         if not self._writer.isOpened():
             raise RecordingError(f"{self._path} cannot be written")
         for picture in self._waiting:
@@ -73,11 +81,11 @@ class VideoExport:
 
 
 def _sheet(frame: Frame, table: CategoryTable) -> NDArray[np.uint8]:
-    """Give all views as one picture of even size."""
+    """Return all views as one picture of even size."""
     pictures = [
         view_picture(view, values, table=table)
         for view, values in frame.views.items()
-        if view != "flow_valid"
+        if not view_spec(view).validity_of
     ]
     height, width = pictures[0].shape[:2]
     columns = min(COLUMNS, len(pictures))

@@ -19,8 +19,12 @@ in vec2 light_uv;
 layout(location = 3) out vec2 out_light_at;  // place in the light map; 0 where there is none
 #endif
 #endif
-#ifdef NORMALS
-layout(location = LOCATION_NORMALS) out vec4 out_normal;  // unit, optical frame
+// Views that are written as they are; the fourth component is 1 where there is a surface.
+#ifdef OUT_NORMALS
+layout(location = OUT_NORMALS) out vec4 out_normals;  // unit, optical frame
+#endif
+#ifdef OUT_ALBEDO
+layout(location = OUT_ALBEDO) out vec4 out_base;  // linear base colour
 #endif
 
 #if defined(SHADED) && !defined(UNLIT)
@@ -41,16 +45,23 @@ void main() {
     if (base.a < cutoff(MATERIAL_FINISH.z, uv)) discard;
 #endif
     vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
-#ifdef NORMALS
-    out_normal = vec4(normal, 1.0);
+#ifdef OUT_NORMALS
+    out_normals = vec4(normal, 1.0);
+#endif
+#ifdef OUT_ALBEDO
+    vec3 root = MATERIAL_BASE;
+#ifdef COLOUR_MAP
+    root *= texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x)).rgb;
+#endif
+    out_base = vec4(root * root, 1.0);
 #endif
 #ifndef UNLIT
-    vec4 fine_texel = fine(uv);
+    vec4 packed_texel = packed_map(uv);
 #ifdef NORMAL_MAP
     vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
-    normal = mapped_normal(fine_texel.xy, uv, normal, point);
+    normal = mapped_normal(packed_texel.xy, uv, normal, point);
 #endif
-    vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, fine_texel);
+    vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, packed_texel);
     out_shape = vec4(octahedral(normal), rough_metal);
     out_albedo = vec4(base.rgb, MATERIAL_FINISH.w);
 #ifdef BAKED

@@ -29,7 +29,7 @@ uniform sampler2D light_at;        // place in the light map, 0 where there is n
 uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
 uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
-uniform float main_clear;          // share that glass lets through to what is not in the light map
+uniform float main_transmittance;   // of glass, for what is not in the light map
 uniform float main_baked;          // 1 if the light map knows the main light's shadows
 #endif
 #include "reflections.glsl"
@@ -147,7 +147,7 @@ void main() {
                        dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to));
     float charted = place.x > 0.0 ? 1.0 : 0.0;
     vec3 around = mix(max(probed, vec3(0.0)), mapped.rgb, charted);
-    float past_what_stands = main_clear * texture(static_shadow_map, in_shadow);
+    float past_what_stands = main_transmittance * texture(static_shadow_map, in_shadow);
     main_arrives *= mix(past_what_stands, mapped.a, charted * main_baked);
     vec3 reflected = around;
 #else

@@ -4,7 +4,7 @@
 uniform sampler2DArray colour_maps;
 #endif
 #if defined(FINISH_MAP) || defined(NORMAL_MAP)
-uniform sampler2DArray fine_maps;
+uniform sampler2DArray packed_maps;
 #endif
 
 // Square root of linear colour, and alpha: the roots of factor and texel multiply as these do.
@@ -26,18 +26,18 @@ float cutoff(float nearby, vec2 uv) {
 #endif
 }
 
-// Normal's x and y, roughness, metallic; see fine_maps.py.
-vec4 fine(vec2 uv) {
+// Normal's x and y, roughness, metallic; see packed_maps.py.
+vec4 packed_map(vec2 uv) {
 #if defined(FINISH_MAP) || defined(NORMAL_MAP)
-    return texture(fine_maps, vec3(uv, MATERIAL_LAYERS.y));
+    return texture(packed_maps, vec3(uv, MATERIAL_LAYERS.y));
 #else
     return vec4(0.0);
 #endif
 }
 
-vec2 roughness_metallic(vec2 factors, vec4 fine_texel) {
+vec2 roughness_metallic(vec2 factors, vec4 packed_texel) {
 #ifdef FINISH_MAP
-    factors *= fine_texel.ba;
+    factors *= packed_texel.ba;
 #endif
     return clamp(factors, vec2(0.045, 0.0), vec2(1.0));
 }

@@ -88,6 +88,8 @@ class App {
     $("watching-only").hidden = hello.control;
     document.body.classList.toggle("watching", !hello.control);
     this.agent = this.agent || hello.debug_agent;
+    this.stage.offer(hello.views);
+    this.view.offer(hello.views);
     this.#watch();
     if (this.selected) this.select(this.selected);
   }

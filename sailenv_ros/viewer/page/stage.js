@@ -2,21 +2,41 @@
 
 import { $, el } from "./dom.js";
 
-export const VIEWS = ["rgb", "depth", "category", "instance", "flow"];
 const GAP = 6;
 
 export class Stage {
   constructor({ onViews, onShown }) {
     this.onViews = onViews;
     this.onShown = onShown;
-    this.main = "rgb";
+    this.main = "";
     this.all = true;
+    this.chosen = [];
     this.head = null;
     this.waypoints = [];
     this.loop = false;
-    this.tiles = new Map(VIEWS.map((view) => [view, this.#tile(view)]));
+    this.tiles = new Map();
     new ResizeObserver(() => this.arrange()).observe($("stage"));
     this.arrange();
+  }
+
+  /** Make a tile of each view that the simulator can render; those chosen before stay chosen. */
+  offer(specs) {
+    const names = specs.map(({ name }) => name);
+    if (names.join() === [...this.tiles.keys()].join()) return;
+    $("tiles").replaceChildren();
+    this.tiles = new Map(names.map((view) => [view, this.#tile(view)]));
+    this.chosen = specs.filter(({ shown }) => shown).map(({ name }) => name);
+    this.main = this.chosen[0];
+    this.arrange();
+  }
+
+  /** Show a view among the others, or no longer; the last one stays. */
+  choose(view, shown) {
+    const chosen = [...this.tiles.keys()].filter((name) => (name === view ? shown : this.chosen.includes(name)));
+    if (!chosen.length) return;
+    this.chosen = chosen;
+    if (!chosen.includes(this.main)) this.main = chosen[0];
+    this.changed();
   }
 
   #tile(view) {
@@ -29,7 +49,7 @@ export class Stage {
   }
 
   get views() {
-    return this.all ? VIEWS : [this.main];
+    return this.all ? this.chosen : [this.main];
   }
 
   /** Show a view large. */
@@ -51,12 +71,13 @@ export class Stage {
   /** Lay the tiles out: one large, and the others beside it, or below where it is narrow. */
   arrange() {
     const box = $("tiles").getBoundingClientRect();
-    if (!box.width) return;
+    if (!box.width || !this.main) return;
     const ratio = this.head ? this.head.width / this.head.height : 4 / 3;
-    const small = VIEWS.filter((view) => view !== this.main);
+    const small = this.all ? this.chosen.filter((view) => view !== this.main) : [];
+    const count = small.length;
     const narrow = matchMedia("(max-width: 760px)").matches;
     for (const { tile, view } of this.tiles.values()) {
-      tile.hidden = !this.all && view !== this.main;
+      tile.hidden = view !== this.main && !small.includes(view);
       tile.classList.toggle("main", view === this.main);
     }
     const place = (view, left, top, width) => {
@@ -67,21 +88,21 @@ export class Stage {
       style.height = `${width / ratio}px`;
     };
     if (narrow) {
-      const beside = (box.width - 3 * GAP) / 4;
+      const beside = count ? (box.width - (count - 1) * GAP) / count : 0;
       place(this.main, 0, 0, box.width);
       small.forEach((view, at) => place(view, at * (beside + GAP), box.width / ratio + GAP, beside));
-      $("tiles").style.height = `${box.width / ratio + (this.all ? GAP + beside / ratio : 0)}px`;
+      $("tiles").style.height = `${box.width / ratio + (count ? GAP + beside / ratio : 0)}px`;
       return;
     }
     $("tiles").style.height = "";
-    if (!this.all) {
+    if (!count) {
       const width = Math.min(box.width, box.height * ratio);
       place(this.main, (box.width - width) / 2, (box.height - width / ratio) / 2, width);
       return;
     }
-    const fits = (box.width - GAP + (3 * GAP * ratio) / 4) / (1.25 * ratio);
+    const fits = (box.width - GAP + ((count - 1) * GAP * ratio) / count) / ((1 + 1 / count) * ratio);
     const height = Math.min(box.height, fits);
-    const beside = (height - 3 * GAP) / 4;
+    const beside = (height - (count - 1) * GAP) / count;
     const left = (box.width - (height + beside) * ratio - GAP) / 2;
     const top = (box.height - height) / 2;
     place(this.main, left, top, height * ratio);

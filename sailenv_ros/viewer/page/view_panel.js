@@ -9,21 +9,43 @@ export class ViewPanel {
     this.app = app;
     this.probe = el("dl", { class: "values", id: "probe" });
     this.legend = el("div", { class: "legend", id: "legend" });
+    this.shown = el("div", { id: "shown-views" });
     this.stages = el("div", { class: "stages", id: "stages" });
     this.camera = el("dl", { class: "values", id: "camera" });
     this.root = el(
       "div",
       {},
       section("Pixel", this.probe),
+      section("Views", this.shown),
       section("Seen now", this.legend),
       section("Camera", this.camera),
       section("Time of a frame", this.stages),
     );
     this.showValues(null);
     this.refreshed = 0;
+    this.specs = [];
   }
 
   update() {}
+
+  /** Offer a box for each view that the simulator can render, to show it or not. */
+  offer(specs) {
+    this.specs = specs;
+    const stage = this.app.stage;
+    const boxes = specs.map(({ name, meaning }) => {
+      const box = el("input", {
+        type: "checkbox", checked: stage.chosen.includes(name), data: { shows: name },
+        on: {
+          change: () => {
+            stage.choose(name, box.checked);
+            box.checked = stage.chosen.includes(name); // the last one stays
+          },
+        },
+      });
+      return el("label", { class: "line", title: meaning }, el("span", {}, name), box);
+    });
+    this.shown.replaceChildren(...boxes);
+  }
 
   frame(head) {
     const now = performance.now();
@@ -36,7 +58,7 @@ export class ViewPanel {
 
   showValues(values) {
     this.probe.replaceChildren(
-      ...(values ? pairs(told(values)) : [el("dd", { class: "whole" }, "Point at a picture.")]),
+      ...(values ? pairs(told(values, this.specs)) : [el("dd", { class: "whole" }, "Point at a picture.")]),
     );
   }
 
@@ -106,17 +128,26 @@ export function pairs(rows) {
   return rows.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
 }
 
-/** The values of a pixel in words. */
-export function told(values) {
-  const rows = [["pixel", `${values.u}, ${values.v}`]];
-  if ("category" in values) rows.push(["category", `${values.category || "unlabelled"} (${values.category_id})`]);
-  if ("instance" in values) {
-    rows.push(["instance", values.instance_id ? `${values.instance} (${values.instance_id})` : "none"]);
-  }
-  if ("depth" in values) rows.push(["depth", depthWords(values.depth)]);
-  if ("flow" in values) rows.push(["flow", flowWords(values.flow)]);
-  if (values.rgb) rows.push(["colour", values.rgb.join(", ")]);
-  return rows;
+/** The values of a pixel in words, view by view. */
+export function told(values, specs) {
+  const rows = specs
+    .filter(({ name }) => name in values)
+    .map((spec) => [spec.name, (WORDS[spec.display] ?? numberWords)(values[spec.name], spec, values)]);
+  return [["pixel", `${values.u}, ${values.v}`], ...rows];
+}
+
+const WORDS = {
+  category: (name, spec, values) => `${name || "unlabelled"} (${values[`${spec.name}_id`]})`,
+  instance: (name, spec, values) =>
+    values[`${spec.name}_id`] ? `${name} (${values[`${spec.name}_id`]})` : "none",
+  depth: (value) => depthWords(value),
+  flow: (value) => flowWords(value),
+};
+
+function numberWords(value, { unit }) {
+  if (value === null) return "none";
+  const words = [value].flat().map((x) => (typeof x === "number" && !Number.isInteger(x) ? fixed(x, 3) : String(x)));
+  return `${words.join(", ")} ${unit}`.trim();
 }
 
 export function depthWords(depth) {

@@ -1,4 +1,4 @@
-"""`docs/porting.md` beside the Agent: every public name, and every name of the original's."""
+"""`docs/porting.md` beside the Agent: every public name, and every name of SAILenv's."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ ORIGINAL = {
     "get_light_type", "get_ambient_light_color", "set_ambient_light_color", "id", "scenes",
     "categories", "spawnable_objects_names", "lights_names",
 }  # fmt: skip
-"""Public methods and attributes of the original client's Agent, as of its last revision."""
+"""Public methods and attributes of the SAILenv client's Agent, as of its last revision."""
 
 
 def rows() -> dict[str, bool]:
-    """Give the names of the page's last table, and whether the original had them."""
+    """Return the names of the page's last table, and whether SAILenv had them."""
     lines = PAGE.read_text().split("\n## Every method\n")[1].splitlines()
     cells = [line.strip("|").split(" | ") for line in lines if line.startswith("| `")]
     return {name.strip(" `"): original.strip() == "yes" for name, original, *_ in cells}

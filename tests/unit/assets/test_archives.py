@@ -135,3 +135,17 @@ def test_damaged_archives_are_an_error_of_ours(
     with contextlib.suppress(AssetError):
         unpack_zip(path / "a.zip", path / "out")
     assert {p.name for p in path.iterdir()} == {"a.zip", "out"}
+
+
+def test_a_member_without_a_name_is_refused(tmp_path: Path) -> None:
+    """The zip reader itself stumbles over it."""
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr("ab", b"")
+    data = (tmp_path / "a.zip").read_bytes()
+    at = data.index(b"PK\1\2")
+    central = bytearray(data[at:])
+    central[28:30] = b"\0\0"  # the length of the name
+    (tmp_path / "a.zip").write_bytes(data[:at] + bytes(central))
+    (tmp_path / "out").mkdir()
+    with pytest.raises(AssetError):
+        unpack_zip(tmp_path / "a.zip", tmp_path / "out")

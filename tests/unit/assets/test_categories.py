@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets import load_categories
 from sailenv_ros.assets.categories import LAST_FIXED_ID
+from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.labels import BACKGROUND, UNLABELLED_CATEGORY
 from sailenv_ros.scene.spec import FIRST_SCENE_CATEGORY_ID
@@ -56,8 +57,7 @@ def test_what_rooms_need_has_a_category(name: str) -> None:
 
 def _lab(srgb: NDArray[np.float64]) -> NDArray[np.float64]:
     """CIE L*a*b* of (N, 3) sRGB colours from 0 to 255, white point D65 (IEC 61966-2-1)."""
-    encoded = srgb / 255.0
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    linear = linear_from_srgb(srgb / 255.0)
     matrix = np.array(
         [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
     )

@@ -1,4 +1,4 @@
-"""What an asset's physics cannot do is told with the scene file's other faults."""
+"""What an asset's physics cannot do is told with the scene file's other errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Meshes keep their shape when they are welded, smoothed, simplified, thinned out."""
+"""Meshes keep their shape when they are welded, denoised, simplified, thinned out."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def leaves(count: int, seed: int = 0) -> RawMesh:
 
 
 def test_a_cube_keeps_its_creases() -> None:
-    """Each corner of a cube has the normal of its own face, none is smoothed."""
+    """Each corner of a cube has the normal of its own face, none is denoised."""
     mesh = smooth_mesh(raw(box_mesh((1.0, 2.0, 3.0))))
     a, b, c = (mesh.positions[mesh.triangles[:, k]] for k in range(3))
     faces = np.cross(b - a, c - a)

@@ -12,14 +12,14 @@ from sailenv_ros.assets import AssetLibrary, load_categories
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.skies import SKIES
 from sailenv_ros.assets.sources import UnbuiltPack, installed_sources
-from sailenv_ros.assets.standard.build import (
+from sailenv_ros.assets.standard.catalogues import Catalogues
+from sailenv_ros.assets.standard.fetch import fetched
+from sailenv_ros.assets.standard.handmade import HANDMADE
+from sailenv_ros.assets.standard.pack_build import (
     build_standard_pack,
     is_current,
     licence_files,
 )
-from sailenv_ros.assets.standard.catalogues import Catalogues
-from sailenv_ros.assets.standard.fetch import fetched
-from sailenv_ros.assets.standard.handmade import HANDMADE
 from sailenv_ros.assets.standard.recipe import read_recipe, standard_recipe
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import Asset, ConvexShape
@@ -64,7 +64,7 @@ def test_there_are_objects_enough() -> None:
 
 
 def test_names_are_the_originals_where_those_are_known() -> None:
-    """Scripts written for the original find its names."""
+    """Scripts written for SAILenv find its names."""
     recipe = standard_recipe()
     names = {recipe.display_name(name) for name in recipe.assets}
     assert names >= {"Chair 01", "Pillow 01", "Dish 01", "Tennis Racket 01"}

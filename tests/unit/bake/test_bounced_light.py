@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.bake.bake import bake
+from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.bake.rays import through_glass
-from sailenv_ros.bake.surfaces import BELOW, GLOSS, returned
+from sailenv_ros.bake.reflectance import BELOW, GLOSS, returned
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light, SkyMap
 from tests.support.bake_scenes import COARSE, DARK, ground, hollow, read, still

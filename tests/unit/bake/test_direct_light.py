@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sailenv_ros.bake.bake import bake
+from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.bake.rays import through_glass
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light

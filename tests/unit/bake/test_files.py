@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import os
 from dataclasses import asdict, replace
@@ -10,9 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sailenv_ros.bake import files
-from sailenv_ros.bake.bake import bake
+from sailenv_ros.bake import light_files as files
+from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.errors import StorageError
 from sailenv_ros.lights import Light
 from tests.support.bake_scenes import COARSE, ground, still
 from tests.support.tiny_scenes import Thing
@@ -61,7 +63,7 @@ def test_what_is_stored_comes_back(baked: BakedLight) -> None:
 
 
 def test_nothing_there_is_none_without_a_word(caplog: pytest.LogCaptureFixture) -> None:
-    """A scene that was never baked is no fault."""
+    """A scene that was never baked is no error."""
     assert files.load_baked("0" * 32) is None
     assert not caplog.records
 
@@ -92,22 +94,45 @@ def test_a_failed_write_leaves_nothing(
     """Neither half a file nor a temporary one."""
 
     def full(*args: object, **kwargs: object) -> None:
-        raise OSError("the disk is full")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(np, "savez", full)
-    with pytest.raises(OSError, match="full"):
+    monkeypatch.setattr(os, "fsync", full)
+    cache.mkdir()
+    with pytest.raises(StorageError, match="the disk is full"):
         files.store_baked(baked)
-    assert list(cache.iterdir()) == []
+    assert [path.name for path in cache.iterdir()] == [".lock"]
+
+
+def test_a_flipped_bit_anywhere_is_found(
+    baked: BakedLight, caplog: pytest.LogCaptureFixture
+) -> None:
+    """No bit of the file can change unseen, and none makes anything but one warning."""
+    path = files.store_baked(baked)
+    files.remember("a" * 32, baked.fingerprint)
+    assert not files.damaged_light()
+    whole = bytearray(path.read_bytes())
+    for place in range(0, len(whole), len(whole) // 97):
+        caplog.clear()
+        whole[place] ^= 0x10
+        path.write_bytes(whole)
+        whole[place] ^= 0x10
+        assert files.load_baked(baked.fingerprint) is None
+        assert [record.levelname for record in caplog.records] == ["WARNING"]
+        assert list(files.damaged_light()) == [path]
+        assert not files.is_baked("a" * 32)
+    path.write_bytes(whole)
+    assert files.load_baked(baked.fingerprint) is not None
+    assert files.is_baked("a" * 32)
 
 
 def test_old_files_are_thrown_away(tmp_path: Path) -> None:
     """Those that were not used for longest."""
     for age in range(6):
-        path = tmp_path / f"{age}.npz"
+        path = tmp_path / f"{age}.light"
         path.write_bytes(b"")
         os.utime(path, ns=(10**9 * (100 - age), 10**9 * (100 - age)))
     files.forget_oldest(tmp_path, most=2)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["0.npz", "1.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["0.light", "1.light"]
 
 
 def test_a_scene_is_known_while_its_light_is_there(baked: BakedLight) -> None:

@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sailenv_ros.bake.back_to_back import back_to_back_faces
 from sailenv_ros.bake.layout import laid_out
 from sailenv_ros.bake.packing import packed
-from sailenv_ros.bake.scenery import static_scenery
+from sailenv_ros.bake.static_geometry import static_geometry_of
 from sailenv_ros.bake.texels import rasterised
-from sailenv_ros.bake.twins import twins_of
 from sailenv_ros.bake.unwrap import unwrapped
 from sailenv_ros.geometry import Pose
 from tests.support.bake_scenes import COARSE, ground, still
@@ -43,10 +43,10 @@ def test_look_ups_meet_their_own_texels_alone() -> None:
     """The four texels around any point of a triangle belong to the same instance."""
     things = [Thing(ground(2.0))]
     things += [Thing(model_of(box_mesh((0.3, 0.4, 0.13))), Pose((i, 0, 1))) for i in range(5)]
-    scenery = static_scenery(still(things))
-    layout = laid_out(scenery, COARSE, np.ones(scenery.triangle_count, dtype=bool))
-    texels = rasterised(scenery, layout)
-    owner = scenery.owner[texels.triangle]
+    geometry = static_geometry_of(still(things))
+    layout = laid_out(geometry, COARSE, np.ones(geometry.triangle_count, dtype=bool))
+    texels = rasterised(geometry, layout)
+    owner = geometry.owner[texels.triangle]
     shares = np.random.default_rng(1).dirichlet(np.ones(3), size=50)
     for triangle, corners in enumerate(layout.places):
         at = shares @ corners - 0.5
@@ -54,7 +54,7 @@ def test_look_ups_meet_their_own_texels_alone() -> None:
             column, row = np.floor(at).astype(int).T + np.array([[dx], [dy]])
             index = texels.index[row, column]
             assert (index >= 0).all()
-            assert (owner[index] == scenery.owner[triangle]).all()
+            assert (owner[index] == geometry.owner[triangle]).all()
 
 
 def test_a_model_keeps_its_triangles() -> None:
@@ -62,15 +62,15 @@ def test_a_model_keeps_its_triangles() -> None:
     model = model_of(box_mesh((0.3, 0.4, 0.5)))
     mesh = model.parts[0].mesh
     seen = np.arange(len(mesh.triangles)) % 3 > 0
-    for in_sight in (None, seen, ~seen, np.zeros(len(seen), dtype=bool)):
-        flat = unwrapped(model, (1.0, 1.0, 1.0), 0.05, in_sight).unwrapping
+    for visible_triangles in (None, seen, ~seen, np.zeros(len(seen), dtype=bool)):
+        flat = unwrapped(model, (1.0, 1.0, 1.0), 0.05, visible_triangles).unwrapping
         np.testing.assert_array_equal(flat.vertices[0][flat.triangles[0]], mesh.triangles)
         assert flat.uvs[0].min() >= 0.0
         assert flat.uvs[0].max() <= 1.0
 
 
 def test_what_nobody_sees_takes_few_texels() -> None:
-    """A model out of sight takes less than a tenth."""
+    """A model that is not visible takes less than a tenth."""
     model = model_of(box_mesh(1.0))
     full = unwrapped(model, (1.0, 1.0, 1.0), 0.02)
     unseen = unwrapped(model, (1.0, 1.0, 1.0), 0.02, np.zeros(12, dtype=bool))
@@ -89,9 +89,9 @@ def test_texels_grow_until_all_fit() -> None:
     """A map is never larger than allowed."""
     from dataclasses import replace
 
-    scenery = static_scenery(still([Thing(ground(20.0))]))
-    everything = np.ones(scenery.triangle_count, dtype=bool)
-    layout = laid_out(scenery, replace(COARSE, max_map=128), everything)
+    geometry = static_geometry_of(still([Thing(ground(20.0))]))
+    everything = np.ones(geometry.triangle_count, dtype=bool)
+    layout = laid_out(geometry, replace(COARSE, max_map=128), everything)
     assert layout.side <= 128
 
 
@@ -100,9 +100,9 @@ def test_layers_of_a_sheet_are_twins() -> None:
     front = wall_mesh(2.0, 1.0)
     back = mesh_of(front.positions, -front.normals, front.uvs, front.triangles[:, [1, 0, 2]])
     sheets = [Thing(model_of(mesh), Pose((1.0, 2.0, 3.0))) for mesh in (front, back)]
-    scenery = static_scenery(still([*sheets, Thing(ground(2.0))]))
-    twins = twins_of(scenery)
-    np.testing.assert_array_equal(twins.other, [2, 3, 0, 1, -1, -1])
+    geometry = static_geometry_of(still([*sheets, Thing(ground(2.0))]))
+    paired = back_to_back_faces(geometry)
+    np.testing.assert_array_equal(paired.other, [2, 3, 0, 1, -1, -1])
     for triangle in range(4):
-        there = scenery.corners[twins.other[triangle]][twins.corner[triangle]]
-        np.testing.assert_array_equal(there, scenery.corners[triangle])
+        there = geometry.corners[paired.other[triangle]][paired.corner[triangle]]
+        np.testing.assert_array_equal(there, geometry.corners[triangle])

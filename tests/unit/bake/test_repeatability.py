@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.bake.bake import bake
 from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light, SkyMap

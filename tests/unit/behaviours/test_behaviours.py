@@ -1,8 +1,10 @@
-"""Behaviours as plain functions: tracks against arithmetic, seeds, faults, users' modules."""
+"""Behaviours as plain functions: tracks against arithmetic, seeds, errors, users' modules."""
 
 from __future__ import annotations
 
+import itertools
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,16 +16,17 @@ from scipy.spatial.transform import Rotation
 from sailenv_ros.behaviours import (
     STEP_S,
     BodyState,
-    behaviour_faults,
+    behaviour_errors,
     behaviour_kinds,
-    known_behaviour_faults,
+    known_behaviour_errors,
     start_behaviour,
 )
 from sailenv_ros.behaviours.steering import turn_vector
 from sailenv_ros.behaviours.waypoints import Waypoints, catmull_pose, linear_pose
 from sailenv_ros.cli.main import main
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.errors import InvalidRequest, SceneError
 from sailenv_ros.geometry import Pose
+from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 
 USERS = "tests.support.users_behaviours:drift"
@@ -199,7 +202,7 @@ def test_a_plane_that_was_crossed_turns_the_movement_back() -> None:
     moving = np.array([1.0, 0.0, 0.0])
     planes = np.array([[-1.0, 0.0, 0.0, 2.0]])
     for x, ahead in ((1.0, True), (1.9, True), (2.1, False), (2.2, False)):
-        state = at_rest(Pose((x, 0, 0)), linear_velocity=moving, confines=planes)
+        state = at_rest(Pose((x, 0, 0)), linear_velocity=moving, frustum_planes=planes)
         velocity = running.act(x, state).linear_velocity
         assert velocity is not None
         assert (velocity[0] > 0) == ahead
@@ -225,10 +228,10 @@ def test_a_plane_that_was_crossed_turns_the_movement_back() -> None:
 def test_wrong_parameters_are_told_with_their_place(
     type_: str, parameters: dict[str, Any], place: tuple[str, ...], words: str
 ) -> None:
-    """Each fault names the key and what is accepted."""
-    faults = list(behaviour_faults(type_, parameters))
-    assert [found for found, _ in faults] == [place]
-    assert words in faults[0][1]
+    """Each error names the key and what is accepted."""
+    diagnostics = list(behaviour_errors(type_, parameters))
+    assert [found for found, _ in diagnostics] == [place]
+    assert words in diagnostics[0][1]
     with pytest.raises(InvalidRequest):
         start_behaviour(type_, parameters, seed=0, object_name="a", place=0)
 
@@ -236,10 +239,10 @@ def test_wrong_parameters_are_told_with_their_place(
 def test_strangers_cannot_have_a_module_imported() -> None:
     """A request that names a module is refused until a file has named it; then it runs."""
     before = set(sys.modules)
-    assert list(known_behaviour_faults("tests.support.unheard_of:drift", {}))
+    assert list(known_behaviour_errors("tests.support.unheard_of:drift", {}))
     assert set(sys.modules) == before
-    assert list(behaviour_faults(USERS, {"speed": 2.0})) == []
-    assert list(known_behaviour_faults(USERS, {"speed": 2.0})) == []
+    assert list(behaviour_errors(USERS, {"speed": 2.0})) == []
+    assert list(known_behaviour_errors(USERS, {"speed": 2.0})) == []
     running = start_behaviour(USERS, {"speed": 2.0}, seed=0, object_name="a", place=0)
     assert running.act(0.0, at_rest()).linear_velocity == (2.0, 0.0, 0.0)
 
@@ -253,8 +256,8 @@ def test_strangers_cannot_have_a_module_imported() -> None:
     ],
 )
 def test_users_modules_that_do_not_fit_are_told(type_: str, words: str) -> None:
-    """A missing module, a missing behaviour and another kind of thing are faults of the type."""
-    ((place, sentence),) = behaviour_faults(type_, {})
+    """A missing module, a missing behaviour and another kind of thing are errors of the type."""
+    ((place, sentence),) = behaviour_errors(type_, {})
     assert place == ("type",)
     assert words in sentence
 
@@ -267,3 +270,50 @@ def test_the_command_lists_every_parameter(capsys: pytest.CaptureFixture[str]) -
         assert f"{kind.type}: {kind.summary}" in printed
         assert all(f"  {name}" in printed for name in kind.parameters.model_fields)
     assert main(["behaviours", "levitate"]) == 2
+
+
+@pytest.fixture
+def hostile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A scene whose behaviour's module leaves a mark where it is run."""
+    (tmp_path / "hostile_module.py").write_text(
+        "from pathlib import Path\n"
+        "Path(__file__).with_name('mark').touch()\n"
+        "from tests.support.users_behaviours import drift\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "hostile_module", raising=False)
+    scene = tmp_path / "hostile.yaml"
+    scene.write_text(
+        "version: 1\n"
+        "objects:\n"
+        "  - {name: a, asset: Cube, behaviours: [{type: 'hostile_module:drift', speed: 1.0}]}\n"
+    )
+    return scene
+
+
+def test_no_command_runs_code_of_a_scene_file_unasked(
+    hostile: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Checking runs nothing; whatever builds the scene refuses it and says how to allow it."""
+    assert main(["scene", "check", str(hostile)]) == 0
+    assert "names the code of 'hostile_module:drift'" in capsys.readouterr().out
+    assert main(["scene", "check", "--physics", str(hostile)]) == 1
+    assert "allow that: --allow-modules" in capsys.readouterr().out
+    assert main(["scene", "render", str(hostile), "-o", str(hostile.with_suffix(".png"))]) == 2
+    assert "allow that: --allow-modules" in capsys.readouterr().err
+    with pytest.raises(SceneError, match="would run the code of the Python module"):
+        SceneLibrary().build(hostile, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    assert not hostile.with_name("mark").exists()
+
+
+def test_code_of_a_scene_file_runs_where_it_is_allowed(hostile: Path) -> None:
+    """With the user's word the behaviour moves its object."""
+    library = SceneLibrary(allow_modules=True)
+    assert not hostile.with_name("mark").exists()
+    world = library.build(hostile, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    try:
+        assert hostile.with_name("mark").exists()
+        world.step(24)
+        assert world.object_state(world.find("a")).pose.position_m[0] > 0.05
+    finally:
+        world.close()

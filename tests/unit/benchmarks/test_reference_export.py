@@ -17,7 +17,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.reference import export, tracing
+from benchmarks.reference import scene_export as export
+from benchmarks.reference import tracing
 from benchmarks.reference.compare import VIEWS, _cameras
 from benchmarks.reference.parts import Parts, ply_bytes
 from benchmarks.reference.surfaces import bsdf, emitter

@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 from sailenv_ros.cli import doctor
-from sailenv_ros.cli.doctor import Finding, diagnose
+from sailenv_ros.cli.doctor import CheckResult, diagnose
+from sailenv_ros.cli.doctor_probes import probe_ros, try_probe
 from sailenv_ros.cli.main import main
-from sailenv_ros.cli.probes import probe_ros, try_probe
+from sailenv_ros.errors import NativeLibraryError
 
 Answer = tuple[dict[str, Any] | None, str]
 
@@ -25,17 +26,17 @@ HEALTHY: dict[str, Answer] = {
     "ros": ({"missing": [], "rclpy": f"{sys.prefix}/rclpy.py", "rmw": "rmw_fastrtps_cpp"}, ""),
     "scenes": ({"scenes": {"optical": ""}, "assets": 5}, ""),
     "graphics": ({"devices": [HARDWARE, REFUSED]}, ""),
-    "frame by gl": (FRAME, ""),
+    "frame by auto": (FRAME, ""),
 }
 
 
-def findings(**changes: Answer) -> list[Finding]:
+def results(**changes: Answer) -> list[CheckResult]:
     """Diagnose a healthy machine with some answers replaced, `_` for a blank in their names."""
     answers = HEALTHY | {name.replace("_", " "): answer for name, answer in changes.items()}
     return list(diagnose(timeout_s=1.0, probe=lambda name, _: answers[name]))
 
 
-def about(topic: str, found: list[Finding], level: str) -> str:
+def about(topic: str, found: list[CheckResult], level: str) -> str:
     return "\n".join(one.text for one in found if one.topic == topic and one.level == level)
 
 
@@ -52,27 +53,44 @@ def test_graphics_hardware_leaves_nothing_to_warn_of(monkeypatch: pytest.MonkeyP
     """No warning about OpenGL; the refused device is told with its reason."""
     for name in doctor.GRAPHICS_VARIABLES:
         monkeypatch.delenv(name, raising=False)
-    found = findings()
+    found = results()
     assert about("EGL device 0", found, "ok") == "A Card, OpenGL 4.6"
     assert about("EGL device 2", found, "note") == "refused: no driver"
     assert not about("OpenGL", found, "warning")
 
 
-def test_software_rendering_is_told_loudly() -> None:
-    """Where no device is hardware, there is a warning that says so."""
-    found = findings(graphics=({"devices": [SOFTWARE, REFUSED]}, ""))
+def without_library() -> None:
+    raise NativeLibraryError("there is no library")
+
+
+def test_without_graphics_hardware_the_native_renderer_draws() -> None:
+    """That is no error: a note says what draws."""
+    for devices in ([SOFTWARE, REFUSED], [REFUSED], []):
+        found = results(graphics=({"devices": devices}, ""))
+        assert "native renderer draws" in about("OpenGL", found, "note")
+        assert not about("OpenGL", found, "warning")
+        assert about("native library", found, "ok")
+
+
+def test_software_rendering_is_told_loudly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the native library and hardware, warnings say so and how to mend it."""
+    monkeypatch.setattr(doctor, "native_library", without_library)
+    found = results(graphics=({"devices": [SOFTWARE, REFUSED]}, ""))
     assert "SOFTWARE" in about("OpenGL", found, "warning")
+    assert "apt-get install g++" in about("native library", found, "warning")
 
 
-def test_without_opengl_the_fallback_is_enough() -> None:
-    """OpenGL's fault is told with the packages that mend it; the fallback's frame counts."""
-    found = findings(
+def test_without_anything_the_fallback_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """OpenGL's error is told with the packages that mend it; the fallback's frame counts."""
+    monkeypatch.setattr(doctor, "native_library", without_library)
+    found = results(
         graphics=({"devices": [REFUSED]}, ""),
-        frame_by_gl=(None, "no OpenGL context"),
+        frame_by_auto=(None, "no OpenGL context"),
+        frame_by_native=(None, "no library"),
         frame_by_tiny=(FRAME, ""),
     )
     assert "apt-get install libegl1" in about("OpenGL", found, "warning")
-    assert "no OpenGL context" in about("OpenGL", found, "warning")
+    assert "no OpenGL context" in about("renderer", found, "warning")
     assert "FALLBACK" in about("renderer", found, "warning")
     assert "FAILED" not in {one.level for one in found}
 
@@ -80,8 +98,12 @@ def test_without_opengl_the_fallback_is_enough() -> None:
 @pytest.mark.parametrize(
     "changes",
     [
-        {"frame_by_gl": (None, "crashed"), "frame_by_tiny": (None, "crashed too")},
-        {"frame_by_gl": ({**FRAME, "instances": 0}, "")},
+        {
+            "frame_by_auto": (None, "crashed"),
+            "frame_by_native": (None, "crashed"),
+            "frame_by_tiny": (None, "crashed too"),
+        },
+        {"frame_by_auto": ({**FRAME, "instances": 0}, "")},
         {"scenes": (None, "crashed")},
     ],
 )
@@ -91,7 +113,7 @@ def test_what_keeps_a_simulator_from_rendering_fails(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """No renderer, an empty picture or no scene: said in words, and status 1."""
-    found = findings(**changes)
+    found = results(**changes)
     monkeypatch.setattr(doctor, "diagnose", lambda **_: iter(found))
     assert main(["doctor"]) == 1
     assert "cannot render here" in capsys.readouterr().out
@@ -100,7 +122,7 @@ def test_what_keeps_a_simulator_from_rendering_fails(
 def test_without_ros_the_simulator_still_renders() -> None:
     """Missing ROS is a warning that names what is missing and what brings it."""
     missing = {"missing": ["rclpy (No module named 'rclpy')"]}
-    found = findings(ros=(missing, ""))
+    found = results(ros=(missing, ""))
     assert "rclpy" in about("ROS", found, "warning")
     assert "scripts/setup" in about("ROS", found, "warning")
     assert "FAILED" not in {one.level for one in found}
@@ -116,14 +138,14 @@ def test_a_folder_of_definitions_is_no_package(monkeypatch: pytest.MonkeyPatch) 
 def test_two_ros_at_once_are_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
     """A sourced ROS and another one from PyPI do not go together."""
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
-    assert "must not be mixed" in about("ROS", findings(), "warning")
+    assert "must not be mixed" in about("ROS", results(), "warning")
 
 
 @pytest.mark.parametrize("domain", ["twelve", ""])
 def test_a_domain_that_is_no_number_is_told(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Doctor survives the settings that keep others from starting."""
     monkeypatch.setenv("ROS_DOMAIN_ID", domain)
-    found = findings()
+    found = results()
     if domain:
         assert "twelve" in about("domain", found, "warning")
     else:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.coco import COCO_NAMES, PAPER_CLASSES, index_of_category_id
+from sailenv_ros.experiments.coco_classes import COCO_NAMES, PAPER_CLASSES, index_of_category_id
 from sailenv_ros.experiments.decoders import DECODERS, class_indices, recognised
 
 SIZE = (128, 96)

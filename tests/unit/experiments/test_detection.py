@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailenv_ros.experiments.coco import COCO_NAMES
+from sailenv_ros.experiments.coco_classes import COCO_NAMES
 from sailenv_ros.experiments.detection import class_scores, overall_scores, scored, with_boxes
 from sailenv_ros.experiments.detections import Detections, box_iou, kept_boxes, mask_iou
 from sailenv_ros.experiments.detector import fitted
-from sailenv_ros.experiments.views import View
+from sailenv_ros.experiments.viewpoints import Viewpoint
 
 CHAIR, COUCH = COCO_NAMES.index("chair"), COCO_NAMES.index("couch")
 
 
-def view() -> View:
+def viewpoint() -> Viewpoint:
     """A chair of 20 × 10 px in a picture of 40 × 30."""
     target = np.zeros((30, 40), bool)
     target[5:15, 10:30] = True
-    return View(
+    return Viewpoint(
         category="chair",
         room="room",
         name="a chair",
@@ -50,13 +50,13 @@ def found(*entries: tuple[tuple[float, ...], float, int], masks: bool = False) -
 
 def test_a_box_holds_every_pixel() -> None:
     """Its sides are edges of pixels."""
-    np.testing.assert_array_equal(view().box, (10, 5, 30, 15))
+    np.testing.assert_array_equal(viewpoint().box, (10, 5, 30, 15))
 
 
 def test_the_right_box_of_the_right_class_counts() -> None:
     """Not the surest one, nor one of another class, nor one below the threshold."""
     result = scored(
-        view(),
+        viewpoint(),
         found(
             ((10, 5, 30, 15), 0.2, CHAIR),
             ((10, 5, 30, 15), 0.9, COUCH),
@@ -74,21 +74,23 @@ def test_the_right_box_of_the_right_class_counts() -> None:
 
 def test_what_was_not_named_scores_nothing() -> None:
     """Zero, not left out; without masks there is no pixel IoU, with none found it is 0."""
-    assert scored(view(), found(), 0.3).box_iou == 0.0
-    assert scored(view(), found(((10, 5, 30, 15), 0.9, COUCH), masks=True), 0.3).pixel_iou == 0.0
+    assert scored(viewpoint(), found(), 0.3).box_iou == 0.0
+    assert (
+        scored(viewpoint(), found(((10, 5, 30, 15), 0.9, COUCH), masks=True), 0.3).pixel_iou == 0.0
+    )
 
 
 def test_masks_of_the_class_are_joined() -> None:
     """Two halves of the chair make the whole."""
     halves = found(((10, 5, 20, 15), 0.9, CHAIR), ((20, 5, 30, 15), 0.8, CHAIR), masks=True)
-    assert scored(view(), halves, 0.3).pixel_iou == 1.0
+    assert scored(viewpoint(), halves, 0.3).pixel_iou == 1.0
 
 
 def test_a_class_is_summed_up_over_its_views() -> None:
     """Mean and deviation of 1 and 0, a hit rate of one half."""
     results = [
-        scored(view(), found(((10, 5, 30, 15), 0.9, CHAIR)), 0.3),
-        scored(view(), found(), 0.3),
+        scored(viewpoint(), found(((10, 5, 30, 15), 0.9, CHAIR)), 0.3),
+        scored(viewpoint(), found(), 0.3),
     ]
     entry = class_scores("chair", results, 2)
     assert entry["hit_rate"] == 0.5
@@ -133,12 +135,12 @@ def test_a_picture_that_was_fitted_is_brought_back(size: tuple[int, int]) -> Non
         Detections(boxes=box, scores=np.ones(1), classes=np.zeros(1, np.int64), masks=(mask,))
     )
     np.testing.assert_allclose(back.boxes[0], (10, 5, 30, 15), atol=1.2 / fit.scale)
-    assert mask_iou((back.masks or ())[0], view().target) > 0.75
+    assert mask_iou((back.masks or ())[0], viewpoint().target) > 0.75
 
 
 def test_boxes_are_drawn_on_a_copy() -> None:
-    """The view keeps its picture."""
-    shown = view()
+    """The viewpoint keeps its picture."""
+    shown = viewpoint()
     drawn = with_boxes(shown, scored(shown, found(((8, 4, 33, 18), 0.9, CHAIR)), 0.3))
     assert drawn.any()
     assert not shown.picture.any()

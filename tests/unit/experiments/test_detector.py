@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.experiments.coco import COCO_NAMES
+from sailenv_ros.experiments.coco_classes import COCO_NAMES
 from sailenv_ros.experiments.detector import INPUTS, Detector
 from tests.support.tiny_onnx import constant_network
 from tests.unit.experiments.test_decoders import BOX, CASES, SIZE

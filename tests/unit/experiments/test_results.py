@@ -13,15 +13,15 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.errors import InvalidRequest, MissingPackage
-from sailenv_ros.experiments.extras import need
 from sailenv_ros.experiments.machine import cpu_name, provenance
 from sailenv_ros.experiments.paper import DETECTION, FLOW_MS
 from sailenv_ros.experiments.plots import plot_names, plot_png
-from sailenv_ros.experiments.report import write_report
+from sailenv_ros.experiments.report_page import write_report
 from sailenv_ros.experiments.result_tables import tables_of
 from sailenv_ros.experiments.results import EXPERIMENTS, load_result, save_result
 from sailenv_ros.experiments.statistics import mean_and_deviation, summary_ms
 from sailenv_ros.experiments.tables import Table, number
+from sailenv_ros.extras import need
 from tests.unit.experiments.samples import DATA, TOLD
 
 
@@ -124,7 +124,7 @@ def test_what_is_missing_is_said(folder: Path) -> None:
 
 
 def test_a_table_has_as_many_cells_as_heads() -> None:
-    """A row that is too short is a fault of ours, found at once; a missing number is a dash."""
+    """A row that is too short is an error of ours, found at once; a missing number is a dash."""
     with pytest.raises(InvalidRequest, match="2 cells"):
         Table(title="t", columns=("a", "b"), rows=(("1",),))
     assert (number(None), number(float("nan")), number(1.26)) == ("–", "–", "1.3")
@@ -159,7 +159,7 @@ def test_the_report_is_one_file_that_loads_nothing(
         drawn.append((name, theme))
         return b"a plot"
 
-    monkeypatch.setattr("sailenv_ros.experiments.report.plot_png", draw)
+    monkeypatch.setattr("sailenv_ros.experiments.report_page.plot_png", draw)
     path = write_report(folder, folder / "out" / "report.html")
     text = path.read_text(encoding="utf-8")
     page = _Page()
@@ -180,7 +180,7 @@ def test_the_report_names_what_was_not_measured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With the command that would; a folder without any result is refused."""
-    monkeypatch.setattr("sailenv_ros.experiments.report.plot_png", lambda *_: b"a plot")
+    monkeypatch.setattr("sailenv_ros.experiments.report_page.plot_png", lambda *_: b"a plot")
     save_result(tmp_path, "detection", TOLD, DATA["detection"])
     text = write_report(tmp_path, tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Not measured yet: <code>sailenv bench flow-speed</code>" in text

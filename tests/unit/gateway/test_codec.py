@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sailenv_ros.catalogue.uploads import MAX_UPLOAD_BYTES
 from sailenv_ros.errors import ProtocolError, UnknownName
 from sailenv_ros.gateway.codec import (
     MAX_DOCUMENT_LENGTH,
@@ -21,8 +22,7 @@ from sailenv_ros.gateway.codec import (
     pack_string,
     pack_strings,
 )
-from sailenv_ros.gateway.commands import commands_of
-from sailenv_ros.simulation.uploads import MAX_UPLOAD_BYTES
+from sailenv_ros.gateway.protocol_commands import commands_of
 from tests.unit.gateway.wire import hello, messages
 
 PROTOCOLS = st.sampled_from(("0.5", "0.6"))

@@ -16,7 +16,9 @@ import sailenv_ros.simulation.simulation as module
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest, ProtocolError, SailenvError
 from sailenv_ros.gateway.codec import Message, MessageReader
-from sailenv_ros.gateway.commands import commands_of
+from sailenv_ros.gateway.light_answers import LightAnswers
+from sailenv_ros.gateway.object_answers import ObjectAnswers
+from sailenv_ros.gateway.protocol_commands import commands_of
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.gateway.steps import Ask
 from sailenv_ros.simulation import Simulation
@@ -62,7 +64,9 @@ def driven(session: Session, simulation: Simulation, message: Message) -> bytes:
         result = error = None
         try:
             if isinstance(step, Ask):
-                result = simulation.request(step.name, *step.args, **step.kwargs).result(60.0)
+                result = step.operation.submit_to(simulation, *step.args, **step.kwargs).result(
+                    60.0
+                )
             else:
                 result = step.function()
         except SailenvError as problem:
@@ -70,7 +74,7 @@ def driven(session: Session, simulation: Simulation, message: Message) -> bytes:
 
 
 def answered(session: Session, simulation: Simulation, *sent: bytes) -> list[bytes]:
-    """Feed bytes after a registration, or a registration; give the answers."""
+    """Feed bytes after a registration, or a registration; return the answers."""
     reader = MessageReader("0.6")
     if not sent[0].startswith(hello(16, 12)):
         reader.feed(hello())
@@ -91,7 +95,8 @@ def test_every_command_has_an_answer() -> None:
     """The tables name no command that a session has no method for."""
     for protocol in ("0.5", "0.6"):
         for kind in commands_of(protocol).values():
-            assert callable(getattr(Session, kind.name))
+            groups = (Session, ObjectAnswers, LightAnswers)
+            assert [callable(getattr(group, kind.name, None)) for group in groups].count(True) == 1
 
 
 def test_registration_tells_a_number_and_the_scenes(simulation: Simulation) -> None:
@@ -210,4 +215,4 @@ def test_any_commands_are_answered_or_end_the_conversation(
     finally:
         if session.agent:
             simulation.delete_agent(session.agent)
-    assert simulation.lights() == simulation.info.lights
+    assert simulation.lights == simulation.info.lights

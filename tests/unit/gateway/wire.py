@@ -7,7 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from sailenv_ros.gateway.commands import CommandKind, Field
+from sailenv_ros.gateway.protocol_commands import CommandKind, Field
 
 FLOATS = st.floats(width=32, allow_nan=False)
 
@@ -24,7 +24,7 @@ VALUES: dict[Field, st.SearchStrategy[Any]] = {
 
 
 def written(field: Field, value: Any) -> bytes:
-    """Write a value as the original client does: a text's length is that of its characters."""
+    """Write a value as the SAILenv client does: a text's length is that of its characters."""
     if field in (Field.BYTE, Field.BOOL):
         return bytes([value])
     if field is Field.INT:
@@ -52,7 +52,7 @@ def hello(width: int = 64, height: int = 48, *, use_gzip: bool = False) -> bytes
 def messages(
     draw: st.DrawFn, commands: dict[int, CommandKind]
 ) -> tuple[bytes, str, dict[str, Any]]:
-    """Give the bytes of some command, its name and its fields."""
+    """Return the bytes of some command, its name and its fields."""
     byte, kind = draw(st.sampled_from(sorted(commands.items(), key=lambda item: item[0])))
     values = {name: draw(VALUES[field]) for name, field in kind.fields}
     if kind.extra and values[kind.fields[-1][0]]:

@@ -49,6 +49,22 @@ def test_arrays_that_are_not_contiguous_are_sent_as_they_look(view: tuple[str, n
     assert received.tobytes() == np.ascontiguousarray(mirrored).tobytes()
 
 
+def test_the_private_attribute_that_is_set_is_the_one_that_is_sent() -> None:
+    """`image._data` is rclpy's own: should a release keep the bytes elsewhere, this tells it.
+
+    Sending without a copy and reading recordings set it, because the public setter looks at each
+    byte.
+    """
+    image = Image(height=1, width=4, encoding="mono8", step=4)
+    assert "_data" in Image.__slots__
+    for own in (bytearray(b"abcd"), memoryview(b"efgh")):
+        image._data = own
+        assert image.data is own
+        assert bytes(deserialize_message(serialize_message(image), Image).data) == bytes(own)
+    image.data = b"ijkl"
+    assert bytes(image._data) == b"ijkl"
+
+
 @given(views())
 def test_what_is_sent_without_a_copy_is_the_same_on_the_wire(view: tuple[str, np.ndarray]) -> None:
     """A message that looks at the array's own memory arrives just the same."""

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sailenv_ros.errors import UnknownName
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import Category, CategoryTable, colour_instances
 from sailenv_ros.pictures import (
@@ -19,6 +20,7 @@ from sailenv_ros.pictures import (
     grey_depth,
     view_picture,
 )
+from sailenv_ros.pictures.colours import encoded_colour
 
 NAN, INF = math.nan, math.inf
 TABLE = CategoryTable([Category(id=3, name="cube", colour=(9, 80, 255))])
@@ -74,6 +76,22 @@ def test_every_view_can_be_shown(view: str) -> None:
     picture = view_picture(view, values, table=TABLE)
     assert (picture.shape, picture.dtype) == ((4, 6, 3), np.uint8)
     assert not np.shares_memory(picture, values)
+
+
+def test_an_unknown_view_is_refused_with_the_known_ones() -> None:
+    """It becomes no picture of another shape."""
+    with pytest.raises(UnknownName, match="view must be one of: rgb, depth, category"):
+        view_picture("heat", np.zeros((4, 6, 3), np.float32), table=TABLE)
+
+
+def test_linear_colour_is_shown_by_its_srgb_codes() -> None:
+    """Every code's light is shown as that code; values outside 0 to 1 by the nearest inside."""
+    codes = np.arange(256)
+    light = np.where(codes <= 10, codes / 255 / 12.92, ((codes / 255 + 0.055) / 1.055) ** 2.4)
+    shown = encoded_colour(np.stack([light] * 3, axis=-1)[None].astype(np.float32))
+    assert np.array_equal(shown[0, :, 1], codes)
+    odd = np.array([[[-1.0, 7.0, NAN]]], np.float32)
+    assert encoded_colour(odd).tolist() == [[[0, 255, 0]]]
 
 
 def test_pictures_show_what_their_views_say() -> None:

@@ -14,7 +14,7 @@ from sailenv_ros.pictures.contact_sheet import GAP_PX
 
 
 def plain(colour: tuple[int, int, int], width: int = 120, height: int = 90) -> np.ndarray:
-    """Give a picture of one colour."""
+    """Return a picture of one colour."""
     return np.full((height, width, 3), colour, np.uint8)
 
 

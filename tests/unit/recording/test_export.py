@@ -20,7 +20,7 @@ from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.recording.export import FORMATS, export
-from sailenv_ros.recording.export.coco import run_lengths, run_lengths_text
+from sailenv_ros.recording.export.coco_export import run_lengths, run_lengths_text
 from tests.support.recordings import write_noise
 
 pytestmark = pytest.mark.ros

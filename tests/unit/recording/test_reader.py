@@ -11,7 +11,6 @@ import pytest
 from mcap.writer import CompressionType, IndexType, Writer
 
 from sailenv_ros import Agent
-from sailenv_ros.agent.frame_dict import frame_dict
 from sailenv_ros.agent.recorded import RecordedAgent
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
@@ -79,16 +78,7 @@ def test_a_recorded_agent_gives_the_live_agents_dict(tmp_path: Path) -> None:
     with Agent.from_recording(tmp_path / "bag") as agent:
         assert (agent.id, len(agent), agent.views) == ("eye", 3, views)
         for frame in frames:
-            expected = frame_dict(
-                {view: values.copy() for view, values in frame.views.items()},
-                camera=frame.camera,
-                depth_range_m=10.0,
-                scene="noise",
-                sequence=frame.sequence,
-                stamp_ns=frame.stamp_ns,
-                dt_ns=frame.dt_ns,
-                render_s=0.25,
-            )
+            expected = frame.to_dict()
             read = agent.get_frame()
             np.testing.assert_allclose(
                 read["world_from_camera"], expected["world_from_camera"], rtol=0, atol=1e-12
@@ -118,6 +108,9 @@ def test_frames_are_found_by_number_and_by_time(tmp_path: Path) -> None:
         assert agent.frame_at(100.0)["sequence"] == 5
         with pytest.raises(RecordingError, match=r"at or before -1 s"):
             agent.frame_at(-1.0)
+        for time_s in (float("nan"), float("inf"), "soon"):
+            with pytest.raises(InvalidRequest, match="time_s must be a finite number"):
+                agent.frame_at(time_s)  # type: ignore[arg-type]  # on purpose
         for wrong in (5, -6):
             with pytest.raises(IndexError):
                 agent[wrong]

@@ -17,8 +17,9 @@ from rosbags.rosbag2 import Reader
 
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import RecordingError
+from sailenv_ros.recording.bag_recovery import is_whole, recover
+from sailenv_ros.recording.mcap.recovery import recover_file
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.recording.recovery import is_whole, recover, recover_file
 from sailenv_ros.recording.topics import RecordedTopic, RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
 from tests.support.recordings import write_noise
@@ -30,7 +31,7 @@ NOTE = RecordedTopic(name="/note", type="std_msgs/msg/String", schema="string da
 
 
 def numbers(path: Path) -> list[int]:
-    """Give the numbers of all messages, read by the format's own library."""
+    """Return the numbers of all messages, read by the format's own library."""
     with path.open("rb") as stream:
         return [m.log_time for _, _, m in make_reader(stream, validate_crcs=True).iter_messages()]
 

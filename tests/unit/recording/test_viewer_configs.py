@@ -12,7 +12,7 @@ from sailenv_ros.nodes.parameters import Parameter
 from sailenv_ros.nodes.player import PARAMETERS as PLAYER
 from sailenv_ros.nodes.recorder import PARAMETERS as RECORDER
 from sailenv_ros.recording.channels import AGENT_TOPICS
-from sailenv_ros.resources import resource_path
+from sailenv_ros.system.resources import resource_path
 
 pytestmark = pytest.mark.ros
 
@@ -20,7 +20,7 @@ KNOWN = {f"/sailenv/agent/{name}" for name in AGENT_TOPICS} | {"/sailenv/scene_i
 
 
 def panels(layout: object) -> set[str]:
-    """Give the names of the panels that a layout places."""
+    """Return the names of the panels that a layout places."""
     if isinstance(layout, str):
         return {layout}
     assert isinstance(layout, dict)

@@ -9,19 +9,14 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import look_at
-from sailenv_ros.render.clusters import (
-    CLUSTER,
-    CLUSTER_TRIANGLES,
-    MARGIN,
-    clusters_of,
-    seen_indices,
-)
+from sailenv_ros.render.cluster_culling import MARGIN, seen_indices
+from sailenv_ros.render.clusters import CLUSTER, CLUSTER_TRIANGLES, clusters_of
 
 LENS = CameraIntrinsics(width=64, height=48, vertical_fov_deg=60.0)
 
 
 def soup(seed: int, count: int) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Give scattered triangles within two metres of the origin, some of them without area."""
+    """Return scattered triangles within two metres of the origin, some of them without area."""
     random = np.random.default_rng(seed)
     middles = random.uniform(-2.0, 2.0, (count, 1, 3))
     corners = middles + random.normal(0.0, 0.2, (count, 3, 3))
@@ -33,7 +28,7 @@ def soup(seed: int, count: int) -> tuple[NDArray[np.float32], NDArray[np.uint32]
 
 
 def ball(steps: int) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Give a sphere of radius 1, its triangles counter-clockwise from outside."""
+    """Return a sphere of radius 1, its triangles counter-clockwise from outside."""
     around = np.linspace(0.0, 2.0 * np.pi, 2 * steps, endpoint=False)
     up = np.linspace(0.0, np.pi, steps + 1)[1:-1]
     ring = np.stack([np.cos(around), np.sin(around)], axis=1)
@@ -60,7 +55,7 @@ def seen(
     *,
     one_sided: bool,
 ) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float64]]:
-    """Give the ordered triangles, those gathered for an eye, and its clip matrix."""
+    """Return the ordered triangles, those gathered for an eye, and its clip matrix."""
     ordered, clusters = clusters_of(positions, triangles)
     camera = Camera(intrinsics=LENS, pose=look_at(eye, target))
     clip = LENS.clip_from_optical() @ camera.camera_from_world

@@ -1,4 +1,4 @@
-"""Helpers of the tests of scene files: text in, spec or faults out."""
+"""Helpers of the tests of scene files: text in, spec or errors out."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 from sailenv_ros.errors import SceneError
 from sailenv_ros.scene import SceneKnowledge, SceneSpec, load_scene
-from sailenv_ros.scene.knowledge import Faults
+from sailenv_ros.scene.knowledge import Diagnostics
 
 
-def _behaviour_faults(type_: str, parameters: Mapping[str, Any]) -> Faults:
+def _behaviour_errors(type_: str, parameters: Mapping[str, Any]) -> Diagnostics:
     if type_ != "spin":
         yield ("type",), "must be one of: spin"
     elif "rate" in parameters and not isinstance(parameters["rate"], int):
@@ -21,7 +21,7 @@ def _behaviour_faults(type_: str, parameters: Mapping[str, Any]) -> Faults:
 KNOWLEDGE = SceneKnowledge(
     assets=("cube", "Cube", "sphere", "chair_01", "Chair 01"),
     categories=("background", "cube", "chair", "dining table"),
-    behaviour_faults=_behaviour_faults,
+    behaviour_errors=_behaviour_errors,
     surfaces=("plaster", "oak_planks", "white_tiles"),
 )
 
@@ -34,10 +34,13 @@ def read(
     return load_scene(path, knowledge=knowledge)
 
 
-def faults(folder: Path, text: str | bytes) -> list[str]:
-    """Give the faults as ``line:column: field: message``; empty if there are none."""
+def diagnostics(folder: Path, text: str | bytes) -> list[str]:
+    """Return the errors as ``line:column: field: message``; empty if there are none."""
     try:
         read(folder, text)
     except SceneError as error:
-        return [str(fault).removeprefix(f"{folder / 'room.yaml'}:") for fault in error.faults]
+        return [
+            str(diagnostic).removeprefix(f"{folder / 'room.yaml'}:")
+            for diagnostic in error.diagnostics
+        ]
     return []

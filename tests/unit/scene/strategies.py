@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
 unhurried = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-"""A busy machine is no fault of the code under test."""
+"""A busy machine is no error of the code under test."""
 
 Entries = st.SearchStrategy[dict[str, Any]]
 

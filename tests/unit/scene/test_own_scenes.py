@@ -1,4 +1,4 @@
-"""The scenes of the package load without a fault and are what they say."""
+"""The scenes of the package load without an error and are what they say."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sailenv_ros.assets import AssetLibrary, ObjectFit, load_categories
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.behaviours import behaviour_faults
+from sailenv_ros.behaviours import behaviour_errors
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose, interpolate
 from sailenv_ros.scene import SceneCatalogue, SceneKnowledge, SceneSpec, load_scene
@@ -21,8 +21,8 @@ LIBRARY = AssetLibrary(installed_sources())
 KNOWLEDGE = SceneKnowledge(
     assets=LIBRARY.all_names,
     categories=tuple(category.name for category in load_categories().values()),
-    behaviour_faults=behaviour_faults,
-    object_faults=ObjectFit(LIBRARY),
+    behaviour_errors=behaviour_errors,
+    object_errors=ObjectFit(LIBRARY),
     surfaces=surface_names(),
     skies=tuple(sky_files(pack.folder for pack in installed_packs())),
 )

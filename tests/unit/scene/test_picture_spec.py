@@ -12,7 +12,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.scene import SceneSpec
-from sailenv_ros.scene.describing import agent_entry
+from sailenv_ros.scene.serialisation import agent_entry
 
 
 def settings_of(**picture: Any) -> PictureSettings:
@@ -27,7 +27,7 @@ def test_what_is_left_out_is_as_everywhere() -> None:
 
 
 def test_every_setting_can_be_written() -> None:
-    """A file can say all that the noun holds, with lengths named without their unit."""
+    """A file can say all that the data type holds, with lengths named without their unit."""
     given = PictureSettings(
         exposure=-1.5,
         tone_curve="linear",
@@ -49,7 +49,7 @@ def test_every_setting_can_be_written() -> None:
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits_are_those_of_the_settings(name: str) -> None:
-    """What the noun would refuse is refused in the file already."""
+    """What the data type would refuse is refused in the file already."""
     low, high, _ = LIMITS[name]
     key = name.removesuffix("_m")
     for accepted in (low, high):
@@ -70,7 +70,7 @@ def test_supersampling_is_a_small_whole_number(refused: object) -> None:
 def test_a_picture_of_too_many_samples_is_refused_in_the_file(
     size: tuple[int, int], times: int
 ) -> None:
-    """With its place, where the noun would refuse it as well; one less is accepted."""
+    """With its place, where the data type would refuse it as well; one less is accepted."""
 
     def agent(number: int) -> AgentSpec:
         entry = {"name": "eye", "width": size[0], "height": size[1]}

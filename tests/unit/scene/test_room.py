@@ -1,4 +1,4 @@
-"""The `room:` section: short forms, defaults, and every fault with its place."""
+"""The `room:` section: short forms, defaults, and every error with its place."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sailenv_ros.scene import SceneSpec
 from sailenv_ros.scene.room_rules import room_part_names
 from sailenv_ros.scene.schema import scene_schema
 from sailenv_ros.scene.spec_room import DoorSpec, RoomSpec, SkirtingSpec, SurfaceSpec, WindowSpec
-from tests.unit.scene.reading import faults, read
+from tests.unit.scene.reading import diagnostics, read
 
 HEAD = "version: 1\nroom:\n  size: [4, 3, 2.5]\n"
 WINDOW = "    - {type: window, wall: north, "
@@ -79,7 +79,7 @@ def test_names_of_parts_count_windows_and_doors() -> None:
     assert "door 2" not in names
 
 
-FAULTS = {
+ERRORS = {
     "unknown material, short form": (
         "  walls: plastr",
         "4:10: room.walls: there is no material 'plastr'; did you mean 'plaster'?",
@@ -144,10 +144,10 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("case", FAULTS)
+@pytest.mark.parametrize("case", ERRORS)
 def test_a_fault_is_told_with_its_place(tmp_path: Path, case: str) -> None:
-    text, expected = FAULTS[case]
-    assert faults(tmp_path, HEAD + text) == [expected]
+    text, expected = ERRORS[case]
+    assert diagnostics(tmp_path, HEAD + text) == [expected]
 
 
 def test_openings_on_different_walls_never_overlap(tmp_path: Path) -> None:
@@ -178,6 +178,6 @@ def test_numbers_beyond_all_floats_are_faults_like_others(tmp_path: Path) -> Non
     endless = "9" * 400
     opening = f"  openings:\n    - {{type: door, wall: north, at: {endless}}}\n"
     cone = f"lights:\n  - {{name: a, type: spot, inner_cone: {endless}}}"
-    at, inner = faults(tmp_path, HEAD + opening + cone)
+    at, inner = diagnostics(tmp_path, HEAD + opening + cone)
     assert at.startswith("5:37: room.openings[0].at: must be a number from -50 to 50 [m], got 999")
     assert inner.startswith("7:39: lights[0].inner_cone: must be a number from 0 to 89 [deg]")

@@ -42,13 +42,13 @@ def _refused_or_read(folder: Path, content: bytes) -> None:
     try:
         read(folder, content)
     except SceneError as error:
-        told = error.faults
+        told = error.diagnostics
     else:
         return
     assert told
-    for fault in told:
-        assert fault.message
-        assert "\n" not in str(fault)
+    for diagnostic in told:
+        assert diagnostic.message
+        assert "\n" not in str(diagnostic)
 
 
 @unhurried
@@ -103,5 +103,5 @@ def test_one_wrong_value_in_a_good_scene_is_told_where_it_stands(
     line = next(i for i, row in enumerate(text.splitlines(), 1) if row.startswith(f"{key}:"))
     with pytest.raises(SceneError) as caught:
         read(tmp_path_factory.getbasetemp(), text)
-    found = [(f.line, f.column) for f in caught.value.faults if f.field == key]
+    found = [(f.line, f.column) for f in caught.value.diagnostics if f.field == key]
     assert found == [(line, len(key) + 3)]

@@ -1,4 +1,4 @@
-"""`sailenv scene` tells faults with their places and ends with status 1."""
+"""`sailenv scene` tells errors with their places and ends with status 1."""
 
 from __future__ import annotations
 

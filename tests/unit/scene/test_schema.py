@@ -18,7 +18,7 @@ from sailenv_ros.scene import SceneCatalogue, reference
 from sailenv_ros.scene.schema import SCHEMA_FILE, is_stale, scene_schema, schema_text
 from sailenv_ros.scene.yaml_nodes import compose
 from tests.unit.scene.strategies import scenes, unhurried
-from tests.unit.scene.test_faults import HEAD, VALUES
+from tests.unit.scene.test_scene_diagnostics import HEAD, VALUES
 
 BEHAVIOURS = {name: kind.parameters for name, kind in behaviour_kinds().items()}
 OWN_FOLDER = SceneCatalogue().folders[-1]
@@ -61,9 +61,9 @@ def test_the_schema_is_a_schema() -> None:
 @pytest.mark.parametrize("name", SceneCatalogue().names)
 def test_the_package_s_scenes_fit_it(name: str) -> None:
     # Not PyYAML's own reader: to it, the key `on` is true (YAML 1.1).
-    node, faults = compose(SceneCatalogue().path(name).read_text(encoding="utf-8"))
+    node, diagnostics = compose(SceneCatalogue().path(name).read_text(encoding="utf-8"))
     assert node is not None
-    assert not faults
+    assert not diagnostics
     _validator(BEHAVIOURS).validate(node.plain())
 
 

@@ -1,4 +1,4 @@
-"""The models of a scene file become the nouns that the other stages take."""
+"""The models of a scene file become the data types that the other stages take."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from pydantic import ValidationError
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.colour import linear_from_hex
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.labels import Category
 from sailenv_ros.lights import Environment, Light
-from sailenv_ros.scene.kinds import linear_from_srgb
 from sailenv_ros.scene.spec import (
     AgentSpecModel,
     BehaviourSpec,
@@ -73,13 +73,13 @@ def test_a_light_with_a_name_alone_has_the_noun_s_defaults(kind: str) -> None:
 )
 def test_hexadecimal_colours_are_srgb(hexadecimal: str, linear: float) -> None:
     """0xbc is the encoded value of half the light (IEC 61966-2-1)."""
-    assert linear_from_srgb(hexadecimal) == pytest.approx((linear,) * 3, abs=1e-5)
+    assert linear_from_hex(hexadecimal) == pytest.approx((linear,) * 3, abs=1e-5)
 
 
 @unhurried
 @given(st.integers(0, 254))
 def test_the_srgb_curve_rises(value: int) -> None:
-    low, high = (linear_from_srgb(f"#{v:02x}0000")[0] for v in (value, value + 1))
+    low, high = (linear_from_hex(f"#{v:02x}0000")[0] for v in (value, value + 1))
     assert low < high
 
 

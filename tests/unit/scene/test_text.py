@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from sailenv_ros.scene import yaml_nodes
-from tests.unit.scene.reading import faults
+from tests.unit.scene.reading import diagnostics
 
 TEXTS = {
     "empty": ("", "1:1: is empty; a scene is a mapping (key: value)"),
@@ -49,7 +49,7 @@ TEXTS = {
 
 @pytest.mark.parametrize(("text", "first"), TEXTS.values(), ids=TEXTS)
 def test_a_text_that_is_refused(tmp_path: Path, text: str | bytes, first: str) -> None:
-    told = faults(tmp_path, text)
+    told = diagnostics(tmp_path, text)
     assert first in told
 
 
@@ -64,18 +64,18 @@ def test_a_text_that_is_refused(tmp_path: Path, text: str | bytes, first: str) -
     ],
 )
 def test_a_syntax_fault_has_its_place(tmp_path: Path, text: str, place: str) -> None:
-    told = faults(tmp_path, text)
+    told = diagnostics(tmp_path, text)
     assert len(told) == 1
     assert told[0].startswith(f"{place}is not YAML: ")
 
 
 def test_tabs_are_named_as_the_culprit(tmp_path: Path) -> None:
-    (told,) = faults(tmp_path, "version: 1\nmover:\n\tloop: true\n")
+    (told,) = diagnostics(tmp_path, "version: 1\nmover:\n\tloop: true\n")
     assert told.endswith("(indent with spaces, not tabs)")
 
 
 def test_a_control_character_is_refused(tmp_path: Path) -> None:
-    (told,) = faults(tmp_path, "version: 1\ntitle: a\x07b\n")
+    (told,) = diagnostics(tmp_path, "version: 1\ntitle: a\x07b\n")
     assert "is not YAML: " in told
 
 
@@ -83,23 +83,23 @@ def test_an_alias_bomb_is_refused_before_it_is_written_out(tmp_path: Path) -> No
     lines = ["version: 1", "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
     for before, after in zip("abcdefghi", "bcdefghij", strict=True):
         lines.append(f"{after}: &{after} [{', '.join(['*' + before] * 10)}]")
-    told = faults(tmp_path, "\n".join(lines))
+    told = diagnostics(tmp_path, "\n".join(lines))
     assert told == ["7:4: the file stands for more than 200000 values"]
 
 
 def test_a_file_that_is_too_large_is_not_parsed(tmp_path: Path) -> None:
-    (told,) = faults(tmp_path, b"#" * 4_000_001)
+    (told,) = diagnostics(tmp_path, b"#" * 4_000_001)
     assert told.endswith("is larger than the 4 MB that a scene may have")
 
 
 def test_anchors_of_an_honest_size_may_be_used(tmp_path: Path) -> None:
     text = "version: 1\nobjects:\n  - {name: a, asset: cube, position: &p [1, 2, 3]}\n"
-    assert faults(tmp_path, text + "  - {name: b, asset: cube, position: *p}\n") == []
+    assert diagnostics(tmp_path, text + "  - {name: b, asset: cube, position: *p}\n") == []
 
 
 def test_a_fault_behind_an_alias_is_told_where_the_value_stands(tmp_path: Path) -> None:
     text = "version: 1\nmover: {position: &p [1, 2, x]}\nagents: [{name: a, position: *p}]\n"
-    assert [line[:5] for line in faults(tmp_path, text)] == ["2:29:", "2:29:"]
+    assert [line[:5] for line in diagnostics(tmp_path, text)] == ["2:29:", "2:29:"]
 
 
 @pytest.mark.parametrize(

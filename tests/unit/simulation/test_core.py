@@ -14,7 +14,14 @@ from hypothesis import strategies as st
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, NameTaken, SceneError, UnknownName
+from sailenv_ros.errors import (
+    DeadlineExceeded,
+    InvalidRequest,
+    InvalidState,
+    NameTaken,
+    SceneError,
+    UnknownName,
+)
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.scene_info import SceneInfo
@@ -54,6 +61,24 @@ def test_streamed_frames_fall_on_the_rate_s_grid() -> None:
     assert steps == list(range(0, 241, 8))
     assert stream.dropped == 30
     assert stream.get(0.0).sequence == 31
+
+
+def test_views_that_the_renderer_cannot_make_are_refused_where_they_are_asked_for() -> None:
+    """At the capture and at the stream, before a frame falls due; what was wanted stays so."""
+    core, renderer = make_core()
+    renderer.supported_views = ("rgb", "depth")
+    core.register_agent(spec())
+    refused = pytest.raises(InvalidRequest, match="that this renderer makes: rgb, depth, got")
+    with refused:
+        core.capture(("depth", "normals"), agent="eye")
+    with refused:
+        core.open_stream("eye", ("normals",), lambda _: None)
+    stream = core.open_stream("eye", ("depth",), lambda _: None)
+    with refused:
+        stream.set_views(("normals",))
+    core.render_due()
+    assert [views for *_, views in renderer.calls] == [("depth",)]
+    assert list(stream.get(0.0).views) == ["depth"]
 
 
 @settings(max_examples=12, deadline=None)
@@ -100,11 +125,11 @@ def test_flow_refers_to_the_last_frame_of_an_earlier_instant() -> None:
     """The first frame has no past; two frames of one instant share theirs; a step moves it on."""
     core, renderer = make_core()
     core.register_agent(spec())
-    first = core.capture("eye", ["flow"])
-    again = core.capture("eye", ["flow"])
+    first = core.capture(["flow"], agent="eye")
+    again = core.capture(["flow"], agent="eye")
     core.step(3)
-    third = core.capture("eye", ["flow"])
-    fourth = core.capture("eye", ["flow"])
+    third = core.capture(["flow"], agent="eye")
+    fourth = core.capture(["flow"], agent="eye")
     assert (first.dt_ns, again.dt_ns) == (0, 0)
     assert third.dt_ns == fourth.dt_ns == 12_500_000
     pasts = [previous for _, previous, *_ in renderer.calls]
@@ -117,25 +142,25 @@ def test_flow_refers_to_the_last_frame_of_an_earlier_instant() -> None:
 def test_a_set_pose_is_motion_and_a_teleport_is_not(core: SimulationCore) -> None:
     """After set_position the next frame keeps its past; after a teleport it has none."""
     core.register_agent(spec(following=False))
-    core.capture("eye", ["depth"])
+    core.capture(["depth"], agent="eye")
     core.step(8)
-    core.set_position("eye", (1.0, 0.0, 1.0))
-    assert core.capture("eye", ["depth"]).dt_ns > 0
+    core.set_position((1.0, 0.0, 1.0), agent="eye")
+    assert core.capture(["depth"], agent="eye").dt_ns > 0
     core.step(8)
-    core.set_position("eye", (2.0, 0.0, 1.0), teleport=True)
-    assert core.capture("eye", ["depth"]).dt_ns == 0
+    core.set_position((2.0, 0.0, 1.0), teleport=True, agent="eye")
+    assert core.capture(["depth"], agent="eye").dt_ns == 0
 
 
 def test_a_following_agent_moves_its_mover_and_all_who_follow(core: SimulationCore) -> None:
     """set_position on a follower moves every follower; a free agent stays."""
     for name, following in (("a", True), ("b", True), ("free", False)):
         core.register_agent(spec(name, following=following))
-    before = core.get_pose("free").pose
-    core.set_position("a", (1.0, 2.0, 3.0))
+    before = core.get_pose(agent="free")
+    core.set_position((1.0, 2.0, 3.0), agent="a")
     core.step(24)
-    assert core.get_pose("a").pose == core.get_pose("b").pose
-    assert core.get_pose("b").pose.position_m == (1.0, 2.0, 3.0)
-    assert core.get_pose("free").pose == before
+    assert core.get_pose(agent="a") == core.get_pose(agent="b")
+    assert core.get_pose(agent="b").position_m == (1.0, 2.0, 3.0)
+    assert core.get_pose(agent="free") == before
     assert core.info.movers[0].controller == "rigidbody"
 
 
@@ -143,22 +168,22 @@ def test_an_agent_that_stops_following_stays_where_it_is(core: SimulationCore) -
     """toggle_follow leaves the agent in place; toggled back it is at the mover again."""
     core.register_agent(spec())
     core.step(100)
-    here = core.get_pose("eye").pose
-    assert core.toggle_follow("eye") is False
+    here = core.get_pose(agent="eye")
+    assert core.toggle_follow(agent="eye") is False
     core.step(100)
-    assert core.get_pose("eye").pose == here
-    assert core.toggle_follow("eye") is True
-    assert core.get_pose("eye").pose != here
+    assert core.get_pose(agent="eye") == here
+    assert core.toggle_follow(agent="eye") is True
+    assert core.get_pose(agent="eye") != here
 
 
 def test_rotation_and_position_leave_each_other_alone(core: SimulationCore) -> None:
     """set_rotation keeps the position, set_position the rotation, to the bit."""
     core.register_agent(spec(following=False, pose=Pose.from_rpy_deg((1, 2, 3), (10, 20, 30))))
-    core.set_rotation("eye", (0.0, 0.0, 90.0))
-    assert core.get_pose("eye").pose.position_m == (1.0, 2.0, 3.0)
-    turned = core.get_pose("eye").pose.orientation_xyzw
-    core.set_position("eye", (0.0, 0.0, 1.0))
-    assert core.get_pose("eye").pose.orientation_xyzw == turned
+    core.set_rotation((0.0, 0.0, 90.0), agent="eye")
+    assert core.get_pose(agent="eye").position_m == (1.0, 2.0, 3.0)
+    turned = core.get_pose(agent="eye").orientation_xyzw
+    core.set_position((0.0, 0.0, 1.0), agent="eye")
+    assert core.get_pose(agent="eye").orientation_xyzw == turned
 
 
 def test_a_new_scene_and_a_reset_have_no_past() -> None:
@@ -166,13 +191,13 @@ def test_a_new_scene_and_a_reset_have_no_past() -> None:
     core, renderer = make_core()
     core.register_agent(spec())
     core.step(50)
-    core.capture("eye", ["flow"])
+    core.capture(["flow"], agent="eye")
     core.change_scene("solid_benchmark")
     assert core.info.scene == "solid_benchmark"
-    assert core.capture("eye", ["flow"]).dt_ns == 0
+    assert core.capture(["flow"], agent="eye").dt_ns == 0
     core.step(10)
     assert core.reset() == 3
-    frame = core.capture("eye", ["flow"])
+    frame = core.capture(["flow"], agent="eye")
     assert (frame.dt_ns, frame.stamp_ns, frame.epoch) == (0, 0, 3)
     assert renderer.calls[-1][1] is None
 
@@ -182,14 +207,14 @@ def test_a_reset_puts_every_byte_back(core: SimulationCore) -> None:
     core.register_agent(spec())
     core.step(200)
     before = core.world.snapshot().world_from_body.tobytes()
-    pose = core.get_pose("eye").pose
-    core.set_position("eye", (9.0, 9.0, 9.0))
-    core.toggle_follow("eye")
+    pose = core.get_pose(agent="eye")
+    core.set_position((9.0, 9.0, 9.0), agent="eye")
+    core.toggle_follow(agent="eye")
     core.step(33)
     core.reset()
     core.step(200)
     assert core.world.snapshot().world_from_body.tobytes() == before
-    assert core.get_pose("eye").pose == pose
+    assert core.get_pose(agent="eye") == pose
 
 
 def test_no_frame_is_newer_than_the_scene_info_told() -> None:
@@ -200,7 +225,7 @@ def test_no_frame_is_newer_than_the_scene_info_told() -> None:
     core.register_agent(spec())
     for change in (core.reset, lambda: core.change_scene("solid_benchmark")):
         change()
-        frame = core.capture("eye", ["instance"])
+        frame = core.capture(["instance"], agent="eye")
         assert frame.revision <= told[-1].revision
         assert frame.epoch == told[-1].epoch
     assert [info.revision for info in told] == sorted({info.revision for info in told})
@@ -208,12 +233,20 @@ def test_no_frame_is_newer_than_the_scene_info_told() -> None:
 
 BAD_REQUESTS = [
     (lambda c: c.change_scene("optcal"), UnknownName, "did you mean 'optical'"),
-    (lambda c: c.set_position("eye", (float("nan"), 0, 0)), InvalidRequest, "three finite numbers"),
-    (lambda c: c.set_position("eye", (float("inf"), 0, 0)), InvalidRequest, "three finite numbers"),
-    (lambda c: c.set_position("eye", (1e9, 0, 0)), InvalidRequest, "within ±10000"),
-    (lambda c: c.set_rotation("eye", (0, 0)), InvalidRequest, "three finite numbers"),
-    (lambda c: c.set_position("nobody", (0, 0, 0)), UnknownName, "agent must be one of: eye"),
-    (lambda c: c.get_pose("nobody"), UnknownName, "agent must be one of: eye"),
+    (
+        lambda c: c.set_position((float("nan"), 0, 0), agent="eye"),
+        InvalidRequest,
+        "three finite numbers",
+    ),
+    (
+        lambda c: c.set_position((float("inf"), 0, 0), agent="eye"),
+        InvalidRequest,
+        "three finite numbers",
+    ),
+    (lambda c: c.set_position((1e9, 0, 0), agent="eye"), InvalidRequest, "within ±10000"),
+    (lambda c: c.set_rotation((0, 0), agent="eye"), InvalidRequest, "three finite numbers"),
+    (lambda c: c.set_position((0, 0, 0), agent="nobody"), UnknownName, "agent must be one of: eye"),
+    (lambda c: c.get_agent_pose(agent="nobody"), UnknownName, "agent must be one of: eye"),
     (lambda c: c.delete_agent("nobody"), UnknownName, "agent must be one of: eye"),
     (lambda c: c.register_agent(spec()), NameTaken, "agent name must be a name that is not in use"),
     (
@@ -225,9 +258,9 @@ BAD_REQUESTS = [
     (lambda c: c.step(0), InvalidRequest, "steps must be an integer from 1"),
     (lambda c: c.step(1.5), InvalidRequest, "steps must be an integer from 1"),
     (lambda c: c.reset(-1), InvalidRequest, "seed must be an integer from 0"),
-    (lambda c: c.capture("eye", ["colour"]), UnknownName, "view must be one of: rgb, depth"),
-    (lambda c: c.capture("eye", []), InvalidRequest, "views must be at least one of"),
-    (lambda c: c.pause(), InvalidRequest, "mode must be realtime to be paused"),
+    (lambda c: c.capture(["colour"], agent="eye"), UnknownName, "view must be one of: rgb, depth"),
+    (lambda c: c.capture([], agent="eye"), InvalidRequest, "views must be at least one of"),
+    (lambda c: c.pause(), InvalidState, "a lockstep simulation cannot be paused"),
 ]
 
 
@@ -235,11 +268,11 @@ BAD_REQUESTS = [
 def test_a_refused_request_changes_nothing(core: SimulationCore, call, error, sentence) -> None:  # type: ignore[no-untyped-def]  # three columns of a table
     """Each bad request gets one sentence, and world, agents and info are as before."""
     core.register_agent(spec())
-    info, snapshot, pose = core.info, core.world.snapshot(), core.get_pose("eye")
+    info, snapshot, pose = core.info, core.world.snapshot(), core.get_agent_pose(agent="eye")
     with pytest.raises(error, match=sentence):
         call(core)
     assert core.world.snapshot() is snapshot
-    assert core.get_pose("eye") == pose
+    assert core.get_agent_pose(agent="eye") == pose
     assert core.info.revision == info.revision
     assert core.info.agents == info.agents
 
@@ -247,13 +280,13 @@ def test_a_refused_request_changes_nothing(core: SimulationCore, call, error, se
 def test_a_scene_file_with_faults_leaves_the_present_one(
     core: SimulationCore, tmp_path: Path
 ) -> None:
-    """Changing to a broken file raises all its faults and the old world goes on."""
+    """Changing to a broken file raises all its errors and the old world goes on."""
     broken = tmp_path / "broken.yaml"
     broken.write_text("version: 1\nobjects:\n  - {name: a, asset: cubee, colr: red}\n")
     world = core.world
     with pytest.raises(SceneError) as caught:
         core.change_scene(str(broken))
-    assert len(caught.value.faults) == 2
+    assert len(caught.value.diagnostics) == 2
     assert core.world is world
     core.step(1)
 
@@ -262,14 +295,14 @@ def test_at_most_sixteen_agents(core: SimulationCore) -> None:
     """The seventeenth is refused in words."""
     for number in range(16):
         core.register_agent(spec(f"agent_{number}"))
-    with pytest.raises(InvalidRequest, match="at most 16; delete one first"):
+    with pytest.raises(InvalidState, match="16 agents, which is the most; delete one first"):
         core.register_agent(spec("one_more"))
 
 
 def test_a_running_simulation_is_not_stepped_by_hand() -> None:
     """step is for paused and lockstep simulations."""
     core, renderer = make_core(mode="realtime")
-    with pytest.raises(InvalidRequest, match="simulation must be paused"):
+    with pytest.raises(InvalidState, match="pause it first"):
         core.step(1)
     core.pause()
     assert core.step(2) == 8_333_333
@@ -283,18 +316,18 @@ def test_picture_settings_go_to_the_camera_and_survive_a_reset(core: SimulationC
     assert isinstance(renderer, BlankRenderer)
     first, second = PictureSettings(exposure=1.0), PictureSettings(full_well=500.0)
     core.register_agent(spec(rate_hz=0.0, picture=first))
-    core.capture("eye", ("rgb",))
-    core.set_picture("eye", second)
-    core.capture("eye", ("rgb",))
+    core.capture(("rgb",), agent="eye")
+    core.set_picture(second, agent="eye")
+    core.capture(("rgb",), agent="eye")
     core.reset()
-    core.capture("eye", ("rgb",))
+    core.capture(("rgb",), agent="eye")
     cameras = [camera for *_, camera, _ in renderer.calls]
     assert [camera.picture for camera in cameras] == [first, second, second]
     assert {camera.name for camera in cameras} == {"eye"}
     with pytest.raises(InvalidRequest, match="PictureSettings"):
-        core.set_picture("eye", {"exposure": 1.0})  # type: ignore[arg-type]  # on purpose
+        core.set_picture({"exposure": 1.0}, agent="eye")  # type: ignore[arg-type]  # on purpose
     with pytest.raises(UnknownName, match="agent"):
-        core.set_picture("nobody", first)
+        core.set_picture(first, agent="nobody")
     assert core.info.agents[-1].picture == second
 
 
@@ -302,30 +335,32 @@ def test_some_settings_of_a_picture_are_changed(core: SimulationCore) -> None:
     """The others stay; what is refused, or names nothing, changes nothing and is not announced."""
     begun = PictureSettings(bloom=0.5, smooth_edges=False)
     core.register_agent(spec(rate_hz=0.0, picture=begun))
-    changed = core.set_picture("eye", exposure=1.0, tone_curve="linear")
+    changed = core.set_picture(exposure=1.0, tone_curve="linear", agent="eye")
     assert changed == PictureSettings(
         bloom=0.5, smooth_edges=False, exposure=1.0, tone_curve="linear"
     )
-    assert core.get_picture("eye") == core.info.agents[-1].picture == changed
-    assert core.set_picture("eye", begun, bloom=0.25) == replace(begun, bloom=0.25)
+    assert core.get_picture(agent="eye") == core.info.agents[-1].picture == changed
+    assert core.set_picture(begun, bloom=0.25, agent="eye") == replace(begun, bloom=0.25)
     before = core.info
     refused: list[dict[str, Any]] = [
         {"exposure": 1.0, "bloom": 2.0},
         {"exposure": "bright"},
         {"exposure": 1.0, "tone_curve": "log"},
-        {"exposure": 1.0, "agent": "eye"},
+        {"exposure": 1.0, "rate_hz": 2.0},
         {"exposure": 1.0, "settings": begun},
         {"smooth_edges": 1},
     ]
     for changes in refused:
         with pytest.raises(InvalidRequest, match="must be"):
-            core.set_picture("eye", **changes)
+            core.set_picture(**changes, agent="eye")
     with pytest.raises(UnknownName, match="did you mean 'exposure'"):
-        core.set_picture("eye", exposur=1.0)
-    assert core.set_picture("eye") == core.get_picture("eye") == replace(begun, bloom=0.25)
+        core.set_picture(exposur=1.0, agent="eye")
+    assert (
+        core.set_picture(agent="eye") == core.get_picture(agent="eye") == replace(begun, bloom=0.25)
+    )
     assert core.info.revision == before.revision
     with pytest.raises(UnknownName, match="agent"):
-        core.get_picture("nobody")
+        core.get_picture(agent="nobody")
 
 
 def test_an_agent_s_picture_is_an_object_of_settings() -> None:
@@ -338,14 +373,14 @@ def test_a_picture_of_too_many_samples_changes_nothing(core: SimulationCore) -> 
     """Neither by its settings nor by its size, whichever comes second."""
     wide = CameraIntrinsics(width=2048, height=16)
     core.register_agent(spec(rate_hz=0.0))
-    core.set_intrinsics("eye", wide)
+    core.set_intrinsics(wide, agent="eye")
     twice = PictureSettings(supersampling=2)
-    core.set_picture("eye", twice)
+    core.set_picture(twice, agent="eye")
     before = core.info.agents
     with pytest.raises(InvalidRequest, match="supersampling must be at most 2 for 2048 x 16 px"):
-        core.set_picture("eye", PictureSettings(supersampling=3))
+        core.set_picture(PictureSettings(supersampling=3), agent="eye")
     with pytest.raises(InvalidRequest, match="supersampling must be at most 1 for 4096 x 16 px"):
-        core.set_intrinsics("eye", CameraIntrinsics(width=4096, height=16))
+        core.set_intrinsics(CameraIntrinsics(width=4096, height=16), agent="eye")
     assert core.info.agents == before
 
 
@@ -354,7 +389,7 @@ def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
     core.register_agent(spec(rate_hz=30.0))
     stream = core.open_stream("eye", ("depth",), lambda _: None)
     core.step(10)
-    core.set_rate("eye", 60.0)
+    core.set_rate(60.0, agent="eye")
     stamps = []
     for _ in range(12):
         core.step(1)
@@ -363,7 +398,7 @@ def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
     assert stamps == [8, 12, 16, 20]
     core.reset()
     assert core.info.agents[-1].rate_hz == 60.0
-    core.set_rate("eye", 0.0)
+    core.set_rate(0.0, agent="eye")
     core.step(48)
     with pytest.raises(DeadlineExceeded):
         stream.get(0.0)
@@ -372,17 +407,17 @@ def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
 def test_another_lens_begins_without_a_past(core: SimulationCore) -> None:
     """The next frame has the new size and refers to no earlier one; a reset keeps the lens."""
     core.register_agent(spec())
-    core.capture("eye", ("depth",))
+    core.capture(("depth",), agent="eye")
     core.step(8)
     wide = CameraIntrinsics(width=20, height=10, vertical_fov_deg=90.0)
-    core.set_intrinsics("eye", wide)
-    frame = core.capture("eye", ("depth", "flow"))
+    core.set_intrinsics(wide, agent="eye")
+    frame = core.capture(("depth", "flow"), agent="eye")
     assert frame["depth"].shape == (10, 20)
     assert frame.dt_ns == 0
     core.reset()
     assert core.info.agents[-1].intrinsics == wide
     with pytest.raises(InvalidRequest):
-        core.set_intrinsics("eye", CameraIntrinsics(near_m=20.0))
+        core.set_intrinsics(CameraIntrinsics(near_m=20.0), agent="eye")
     assert core.info.agents[-1].intrinsics == wide
 
 
@@ -391,5 +426,5 @@ def test_a_rate_out_of_range_changes_nothing(core: SimulationCore, rate: object)
     """The old rate stays."""
     core.register_agent(spec(rate_hz=30.0))
     with pytest.raises(InvalidRequest, match="a number from 0 to 240"):
-        core.set_rate("eye", rate)  # type: ignore[arg-type]  # on purpose
+        core.set_rate(rate, agent="eye")  # type: ignore[arg-type]  # on purpose
     assert core.info.agents[-1].rate_hz == 30.0

@@ -196,7 +196,7 @@ def test_what_slept_upon_an_object_falls_when_it_goes(core: SimulationCore, how:
     if how == "despawn":
         core.despawn_object("table")
     elif how == "move":
-        core.move_object("table", Pose((0.0, 1.3, 0.25)))
+        core.move_object("table", pose=Pose((0.0, 1.3, 0.25)))
     else:
         core.change_object("table", scale=0.1)
     core.step(120)
@@ -272,12 +272,12 @@ def test_a_light_that_cannot_be_saved_is_refused(
     core: SimulationCore, name: str, type_: Any, attributes: dict[str, Any], error: str
 ) -> None:
     core.add_light("lamp", "spot")
-    before = core.lights()
+    before = core.lights
     with pytest.raises(InvalidRequest, match=error):
         core.add_light(name, type_, **attributes)
     with pytest.raises(UnknownName, match="lamp"):
         core.remove_light("torch")
-    assert core.lights() == before
+    assert core.lights == before
 
 
 # -- tracks ------------------------------------------------------------------------------------
@@ -290,50 +290,50 @@ def test_waypoints_are_told_and_driven_through(core: SimulationCore, told: list[
     (mover,) = told[-1].movers
     assert (mover.waypoints, mover.total_time_s, mover.loop) == (tuple(track), 4.0, True)
     core.step(240)
-    assert core.mover_pose().position_m == pytest.approx((0.5, 0.0, 1.0))
+    assert core.get_mover_pose().position_m == pytest.approx((0.5, 0.0, 1.0))
 
 
 def test_a_waypoint_more_leaves_the_mover_where_it_is(core: SimulationCore) -> None:
     """On its second leg it is as far on it as before; only the way home is another."""
     core.step(3 * 240)
-    here = core.mover_pose()
+    here = core.get_mover_pose()
     assert here.position_m == pytest.approx((1.0, 0.5, 1.0))
     core.set_waypoints([Pose((-1.0, 2.0, 1.0))], append=True)
-    assert core.mover_pose().position_m == pytest.approx(here.position_m, abs=1e-6)
+    assert core.get_mover_pose().position_m == pytest.approx(here.position_m, abs=1e-6)
     assert len(core.info.movers[0].waypoints) == 5
 
 
 def test_without_waypoints_it_stays_where_it_is(core: SimulationCore) -> None:
     """And waypoints that come later are run through in the time that was set before."""
     core.step(240)
-    here = core.mover_pose()
+    here = core.get_mover_pose()
     core.set_waypoints([])
     core.step(240)
-    assert core.mover_pose() == here
+    assert core.get_mover_pose() == here
     core.set_waypoints([here, Pose((0.0, 0.0, 2.0))])
     assert core.info.movers[0].total_time_s == 8.0
-    assert core.mover_pose() == here
+    assert core.get_mover_pose() == here
 
 
 def test_a_driven_mover_is_not_moved_by_a_new_track(core: SimulationCore) -> None:
     """Only once the waypoints are given control it goes there."""
-    core.set_mover_controller("", "rigidbody")
-    here = core.mover_pose()
+    core.set_mover_controller("rigidbody")
+    here = core.get_mover_pose()
     core.set_waypoints([Pose((0.0, 0.0, 2.0))])
-    assert core.mover_pose() == here
-    core.set_mover_controller("", "waypoint")
-    assert core.mover_pose() == Pose((0.0, 0.0, 2.0))
+    assert core.get_mover_pose() == here
+    core.set_mover_controller("waypoint")
+    assert core.get_mover_pose() == Pose((0.0, 0.0, 2.0))
 
 
 def test_an_open_track_that_grows_is_gone_on_with(core: SimulationCore) -> None:
     """At its end it waits, and leaves for a waypoint that is added."""
     core.set_waypoints([Pose((0.0, 0.0, 1.0)), Pose((1.0, 0.0, 1.0))], total_time_s=1.0, loop=False)
     core.step(480)
-    assert core.mover_pose().position_m == pytest.approx((1.0, 0.0, 1.0))
+    assert core.get_mover_pose().position_m == pytest.approx((1.0, 0.0, 1.0))
     core.set_waypoints([Pose((1.0, 1.0, 1.0))], append=True)
-    assert core.mover_pose().position_m == pytest.approx((1.0, 0.0, 1.0), abs=1e-6)
+    assert core.get_mover_pose().position_m == pytest.approx((1.0, 0.0, 1.0), abs=1e-6)
     core.step(60)  # half of a leg of 0.5 s
-    assert core.mover_pose().position_m == pytest.approx((1.0, 0.5, 1.0), abs=1e-6)
+    assert core.get_mover_pose().position_m == pytest.approx((1.0, 0.5, 1.0), abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.bake.bake import bake
-from sailenv_ros.bake.files import store_baked
 from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.light_files import store_baked
+from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
@@ -103,10 +103,10 @@ def test_the_command_bakes_once(
         return quick_bake(SceneLibrary(), cell)
 
     monkeypatch.setattr(scene_bake, "_with_a_bar", fake)
-    scene_bake.bake_before_running(str(cell), [])
+    scene_bake.bake_before_running(str(cell), [], allow_modules=False)
     assert main(["scene", "bake", str(cell)]) == 0
     assert "baked already" in capsys.readouterr().out
-    scene_bake.bake_before_running(str(cell), [])
+    scene_bake.bake_before_running(str(cell), [], allow_modules=False)
     assert len(times) == 1
     assert main(["scene", "bake", "--force", str(cell)]) == 0
     assert "MB" in capsys.readouterr().out

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from sailenv_ros.agents import MAX_AGENTS, AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.errors import InvalidRequest, SailenvError, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState, SailenvError, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
@@ -97,7 +97,7 @@ def spec(name: str, **kwargs: Any) -> AgentSpec:
 
 
 def position(core: SimulationCore, agent: str) -> tuple[float, float, float]:
-    return core.get_pose(agent).pose.position_m
+    return core.get_pose(agent=agent).position_m
 
 
 # -- behaviours --------------------------------------------------------------------------------
@@ -107,16 +107,24 @@ def test_an_attached_behaviour_begins_now_and_is_announced(core: SimulationCore)
     """Its clock starts at the request, `moving` tells; detached, the object is left alone."""
     told: list[SceneInfo] = []
     core.on_info = told.append
-    id_ = core.spawn_object("cube", name="box", pose=Pose((0.0, 1.0, 1.0)), scale=(0.1, 0.1, 0.1))
+    id_ = core.spawn_object(
+        "cube",
+        object_name="box",
+        pose=Pose((0.0, 1.0, 1.0)),
+        scale=(0.1, 0.1, 0.1),
+        remove_dynamics=False,
+    )
     core.step(100)
-    core.move_object("box", Pose((0.0, 1.0, 1.0)))
+    core.move_object("box", pose=Pose((0.0, 1.0, 1.0)))
     track = [{"position": [0.0, 1.0, 1.0]}, {"position": [1.0, 1.0, 1.0]}]
-    core.attach_behaviour("box", "linear_waypoints", {"waypoints": track, "total_time": 2.0})
+    core.add_behaviour(
+        "box", {"type": "linear_waypoints", **{"waypoints": track, "total_time": 2.0}}
+    )
     assert id_ in told[-1].moving
     core.step(120)
     assert core.get_object("box").pose.position_m[0] == pytest.approx(0.5, abs=1e-3)
     assert core.get_object("box").behaviours[0]["type"] == "linear_waypoints"
-    core.detach_behaviours(id_)
+    core.remove_behaviours(id_)
     assert id_ not in told[-1].moving
     assert core.get_object("box").behaviours == ()
 
@@ -124,15 +132,18 @@ def test_an_attached_behaviour_begins_now_and_is_announced(core: SimulationCore)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("ball", "levitate"), "levitate"),
-        (("ghost", "poltergeist"), "ghost"),
-        ((9999, "poltergeist"), "9999"),
-        (("floor", "poltergeist"), "static"),
-        (("ball", "linear_waypoints", {"waypoints": []}), "at least 1"),
-        (("ball", "linear_waypoints", {"waypoints": [{"position": [0, 0]}]}), "three numbers"),
-        (("ball", "poltergeist", {"duration": -1.0}), "above 0"),
-        (("ball", "poltergeist", [1]), "mapping"),
-        (("ball", "no_such_module:thing"), "no_such_module"),
+        (("ball", {"type": "levitate"}), "levitate"),
+        (("ghost", {"type": "poltergeist"}), "ghost"),
+        ((9999, {"type": "poltergeist"}), "9999"),
+        (("floor", {"type": "poltergeist"}), "static"),
+        (("ball", {"type": "linear_waypoints", "waypoints": []}), "at least 1"),
+        (
+            ("ball", {"type": "linear_waypoints", "waypoints": [{"position": [0, 0]}]}),
+            "three numbers",
+        ),
+        (("ball", {"type": "poltergeist", "duration": -1.0}), "above 0"),
+        (("ball", [1]), "mapping"),
+        (("ball", {"type": "no_such_module:thing"}), "no_such_module"),
     ],
 )
 def test_a_refused_behaviour_changes_nothing(
@@ -141,7 +152,7 @@ def test_a_refused_behaviour_changes_nothing(
     """One sentence with the user's own word; the same scene as before."""
     before = core.info
     with pytest.raises(SailenvError, match=words):
-        core.attach_behaviour(*arguments)
+        core.add_behaviour(*arguments)
     after = core.info
     assert (after.revision, after.moving) == (before.revision, before.moving)
     assert after.instances == before.instances
@@ -156,8 +167,8 @@ def test_a_reset_puts_every_byte_back(core: SimulationCore) -> None:
         return core.world.snapshot().world_from_body.tobytes()
 
     first = run()
-    core.attach_behaviour("ball", "poltergeist", {"mean_interval": 0.1})
-    core.drive_mover("cart", linear_m_s=(1, 0, 0))
+    core.add_behaviour("ball", {"type": "poltergeist", **{"mean_interval": 0.1}})
+    core.drive_mover(linear_m_s=(1, 0, 0), mover="cart")
     core.step(100)
     core.reset()
     assert run() == first
@@ -194,7 +205,7 @@ def test_an_object_is_kept_in_an_agents_view(core: SimulationCore) -> None:
     """30 s of bouncing about: its middle is never further outside than it goes in a step or two."""
     record = core.info.agents[0]
     assert record.name == "watcher"
-    camera = Camera(intrinsics=record.intrinsics, pose=core.get_pose("watcher").pose)
+    camera = Camera(intrinsics=record.intrinsics, pose=core.get_pose(agent="watcher"))
     planes, worst = view_planes(camera, 10.0), np.inf
     places = []
     for _ in range(720):
@@ -225,15 +236,15 @@ def test_agents_follow_movers_of_their_own(core: SimulationCore) -> None:
     core.register_agent(spec("first", mover="rail"))
     core.register_agent(spec("second", mover="cart"))
     rail = position(core, "first")
-    core.set_position("second", (0.5, 0.5, 1.0))
+    core.set_position((0.5, 0.5, 1.0), agent="second")
     assert position(core, "rider") == (0.5, 0.5, 1.0)
     assert position(core, "first") == rail
-    core.drive_mover("cart", linear_m_s=(0.5, 0.0, 0.0))
+    core.drive_mover(linear_m_s=(0.5, 0.0, 0.0), mover="cart")
     core.step(120)
     assert position(core, "rider") == pytest.approx((0.75, 0.5, 1.0), abs=1e-6)
     assert position(core, "first") == pytest.approx((-1.0, 0.125, 1.5), abs=1e-9)
-    core.toggle_follow("rider")
-    core.set_position("rider", (0.0, 0.0, 1.0))
+    core.toggle_follow(agent="rider")
+    core.set_position((0.0, 0.0, 1.0), agent="rider")
     assert position(core, "second") == pytest.approx((0.75, 0.5, 1.0), abs=1e-6)
 
 
@@ -242,25 +253,25 @@ def test_a_controller_is_switched_while_running(core: SimulationCore) -> None:
     core.register_agent(spec("eye", mover="rail"))
     told: list[SceneInfo] = []
     core.on_info = told.append
-    with pytest.raises(InvalidRequest, match="set_mover_controller"):
-        core.drive_mover("rail", linear_m_s=(1, 0, 0))
+    with pytest.raises(InvalidState, match="set_mover_controller"):
+        core.drive_mover(linear_m_s=(1, 0, 0), mover="rail")
     core.step(240)
-    core.set_mover_controller("rail", "rigidbody")
+    core.set_mover_controller("rigidbody", "rail")
     assert [mover.controller for mover in told[-1].movers] == ["rigidbody", "rigidbody"]
     here = position(core, "eye")
     assert here == pytest.approx((-1.0, 0.25, 1.5))
     core.step(100)
     assert position(core, "eye") == here
-    core.drive_mover("rail", linear_m_s=(0, -1, 0))
+    core.drive_mover(linear_m_s=(0, -1, 0), mover="rail")
     core.step(60)
     assert position(core, "eye") == pytest.approx((-1.0, 0.0, 1.5), abs=1e-6)
-    core.set_mover_controller("rail", "waypoint")
+    core.set_mover_controller("waypoint", "rail")
     core.step(240)
     assert position(core, "eye") == pytest.approx((-1.0, 0.5, 1.5))
     with pytest.raises(UnknownName, match="waypoint"):
-        core.set_mover_controller("rail", "autopilot")  # type: ignore[arg-type]  # what is refused
+        core.set_mover_controller("autopilot", "rail")  # type: ignore[arg-type]  # what is refused
     with pytest.raises(UnknownName, match="tram"):
-        core.set_mover_controller("tram", "waypoint")
+        core.set_mover_controller("waypoint", "tram")
 
 
 # -- many agents -------------------------------------------------------------------------------
@@ -268,37 +279,37 @@ def test_a_controller_is_switched_while_running(core: SimulationCore) -> None:
 
 def test_a_mover_is_turned_at_once_and_walks_on(core: SimulationCore) -> None:
     """Angles add up, pitch ends before the zenith, and a command that moves it goes on."""
-    core.drive_mover("cart", linear_m_s=(-0.5, 0.0, 0.0))
+    core.drive_mover(linear_m_s=(-0.5, 0.0, 0.0), mover="cart")
     core.step(24)
-    before = core.mover_pose("cart")
-    core.turn_mover("cart", pitch_rad=0.1, yaw_rad=0.2)
-    core.turn_mover("cart", yaw_rad=0.2)
-    turned = core.mover_pose("cart")
+    before = core.get_mover_pose("cart")
+    core.turn_mover(pitch_rad=0.1, yaw_rad=0.2, mover="cart")
+    core.turn_mover(yaw_rad=0.2, mover="cart")
+    turned = core.get_mover_pose("cart")
     assert turned.position_m == before.position_m
     assert turned.rpy_deg == pytest.approx((0.0, np.degrees(0.1), np.degrees(0.4)))
     core.step(24)
-    assert core.mover_pose("cart").position_m != before.position_m
-    core.turn_mover("cart", pitch_rad=-3.0)
-    assert core.mover_pose("cart").rpy_deg[1] == pytest.approx(-89.0)
+    assert core.get_mover_pose("cart").position_m != before.position_m
+    core.turn_mover(pitch_rad=-3.0, mover="cart")
+    assert core.get_mover_pose("cart").rpy_deg[1] == pytest.approx(-89.0)
 
 
 @pytest.mark.parametrize(
-    ("mover", "angles"),
+    ("mover", "angles", "error"),
     [
-        ("rail", {"yaw_rad": 0.1}),
-        ("cart", {"yaw_rad": 4.0}),
-        ("cart", {"pitch_rad": float("nan")}),
-        ("nobody", {"yaw_rad": 0.1}),
+        ("rail", {"yaw_rad": 0.1}, InvalidState),
+        ("cart", {"yaw_rad": 4.0}, InvalidRequest),
+        ("cart", {"pitch_rad": float("nan")}, InvalidRequest),
+        ("nobody", {"yaw_rad": 0.1}, InvalidRequest),
     ],
 )
 def test_a_turn_that_is_none_is_refused(
-    core: SimulationCore, mover: str, angles: dict[str, float]
+    core: SimulationCore, mover: str, angles: dict[str, float], error: type[Exception]
 ) -> None:
     """Waypoints turn a mover themselves; more than half a turn is a mistake."""
-    before = core.mover_pose("cart")
-    with pytest.raises(InvalidRequest):
-        core.turn_mover(mover, **angles)
-    assert core.mover_pose("cart") == before
+    before = core.get_mover_pose("cart")
+    with pytest.raises(error):
+        core.turn_mover(**angles, mover=mover)
+    assert core.get_mover_pose("cart") == before
 
 
 def test_sixteen_agents_each_at_their_own_rate(core: SimulationCore) -> None:
@@ -308,14 +319,14 @@ def test_sixteen_agents_each_at_their_own_rate(core: SimulationCore) -> None:
     for name, rate in rates.items():
         core.register_agent(spec(name, rate_hz=rate))
         streams[name] = core.open_stream(name, ("depth",), lambda _: None)
-    with pytest.raises(InvalidRequest, match="at most 16"):
+    with pytest.raises(InvalidState, match="16 agents, which is the most"):
         core.register_agent(spec("one_more"))
     taken = dict.fromkeys(rates, 0)
     for _ in range(240):
         core.step(1)
         for name in list(rates)[1:]:
             frame = None
-            while streams[name].delivered + streams[name].dropped < core._agents[name].sequence:
+            while streams[name].delivered + streams[name].dropped < core.agents[name].sequence:
                 frame = streams[name].get(1.0)
             taken[name] += frame is not None
     for name, rate in list(rates.items())[1:]:
@@ -347,8 +358,8 @@ def test_a_scenes_agents_are_there_after_a_change_to_it(hall: Path) -> None:
     core.register_agent(spec("eye"))
     core.change_scene("hall")
     assert [agent.name for agent in core.info.agents] == ["eye", "watcher", "rider"]
-    assert core.get_pose("eye").mover == "rail"
-    assert core.get_pose("rider").mover == "cart"
+    assert core.get_agent_pose(agent="eye").mover == "rail"
+    assert core.get_agent_pose(agent="rider").mover == "cart"
     core.change_scene("optical")
     core.change_scene("hall")
     assert len(core.info.agents) == 3
@@ -361,7 +372,7 @@ def test_a_scene_whose_agents_do_not_fit_is_refused(hall: Path) -> None:
     for number in range(MAX_AGENTS - 1):
         core.register_agent(spec(f"agent_{number}"))
     before = core.info
-    with pytest.raises(InvalidRequest, match="at most 16"):
+    with pytest.raises(InvalidState, match="there would be 17 agents, and 16 is the most"):
         core.change_scene("hall")
     after = core.info
     assert (after.scene, after.epoch, after.agents) == (before.scene, before.epoch, before.agents)

@@ -14,15 +14,15 @@ from hypothesis import strategies as st
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.catalogue.uploads import asset_from_upload
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
 from sailenv_ros.geometry import Pose
-from sailenv_ros.scene.describing import light_entry
+from sailenv_ros.scene.serialisation import light_entry
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.simulation.uploads import asset_from_upload
 from tests.support.blank_renderer import BlankRenderer
-from tests.support.uploads import box_zip
+from tests.support.upload_files import box_zip
 
 EXAMPLES = 30
 
@@ -148,10 +148,10 @@ def poses(core: SimulationCore) -> dict[str, Pose]:
         for place, pose in enumerate(mover.waypoints):
             found[f"waypoint {mover.name} {place}"] = pose
         if mover.controller == "rigidbody" or not mover.waypoints:
-            found[f"mover {mover.name}"] = core.mover_pose(mover.name)
+            found[f"mover {mover.name}"] = core.get_mover_pose(mover.name)
     for agent in core.info.agents:
         if not agent.following:
-            found[f"agent {agent.name}"] = core.get_pose(agent.name).pose
+            found[f"agent {agent.name}"] = core.get_pose(agent=agent.name)
     return found
 
 
@@ -165,7 +165,7 @@ def assert_same_poses(first: dict[str, Pose], second: dict[str, Pose]) -> None:
 
 
 def assert_comes_back(core: SimulationCore) -> str:
-    """Save, begin what was saved, and compare; give the text."""
+    """Save, begin what was saved, and compare; return the text."""
     contents, places = told(core), poses(core)
     text = Path(core.save_scene("again", overwrite=True)).read_text(encoding="utf-8")
     begin(core, "again")
@@ -179,7 +179,7 @@ def assert_comes_back(core: SimulationCore) -> str:
 
 
 def has_settled(before: dict[str, Pose], after: dict[str, Pose]) -> set[str]:
-    """Give the objects that stand as their entry says, from which they had sunk by 2 mm at most."""
+    """Return the objects that stand as their entry says, sunk by 2 mm at most."""
     sunk_m = {name: math.dist(pose.position_m, after[name].position_m)
               for name, pose in before.items() if name.startswith("object ")}  # fmt: skip
     return {name for name, by_m in sunk_m.items() if 2e-6 < by_m <= 0.002}
@@ -215,7 +215,7 @@ def test_a_saved_scene_passes_the_check_and_says_the_same_again(
 ) -> None:
     """`sailenv scene check` has nothing to say, and saving what was loaded changes no letter."""
     core.step(30)
-    core.move_object("table", Pose.from_rpy_deg((0.4, 0.1, 0.25), (0.0, 0.0, 31.7)))
+    core.move_object("table", pose=Pose.from_rpy_deg((0.4, 0.1, 0.25), (0.0, 0.0, 31.7)))
     path = Path(core.save_scene("checked", overwrite=True))
     assert main(["scene", "check", str(path)]) == 0
     capsys.readouterr()
@@ -270,8 +270,8 @@ _edits = st.one_of(
     st.tuples(st.just("move_object"), _names, _poses),
     st.tuples(st.just("change_object"), _names, _changes),
     st.tuples(st.just("despawn_object"), _names),
-    st.tuples(st.just("attach_behaviour"), st.sampled_from(["cup", "toy"]), _numbers),
-    st.tuples(st.just("detach_behaviours"), _names),
+    st.tuples(st.just("add_behaviour"), st.sampled_from(["cup", "toy"]), _numbers),
+    st.tuples(st.just("remove_behaviours"), _names),
     st.tuples(st.just("set_light"), st.sampled_from(["sun", "lamp"]), _lights),
     st.tuples(st.just("add_light"), st.sampled_from(["moon", "glow"]), _lights),
     st.tuples(st.just("remove_light"), st.sampled_from(["sun", "lamp", "moon"])),
@@ -291,7 +291,7 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
     """Ask for one edit as its request wants it."""
     if name == "spawn_object":
         asset, pose, static = given
-        core.spawn_object(asset, pose=pose, scale=0.2, static=static)
+        core.spawn_object(asset, pose=pose, scale=0.2, remove_dynamics=static)
     elif name in ("change_object", "set_light"):
         getattr(core, name)(given[0], **given[1])
     elif name == "add_light":
@@ -299,12 +299,18 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
         core.add_light(given[0], attributes.pop("type"), **attributes)
     elif name == "set_environment":
         core.set_environment(**given[0])
-    elif name == "attach_behaviour":
-        core.attach_behaviour(
-            given[0], "rotate_rigidbody", {"angular_velocity": [given[1], 0.0, 1.0]}
+    elif name == "add_behaviour":
+        core.add_behaviour(
+            given[0], {"type": "rotate_rigidbody", **{"angular_velocity": [given[1], 0.0, 1.0]}}
         )
     elif name == "set_waypoints":
         core.set_waypoints(given[1], mover=given[0], append=given[2], total_time_s=5.0)
+    elif name == "set_mover_controller":
+        core.set_mover_controller(given[1], given[0])
+    elif name == "move_object":
+        core.move_object(given[0], pose=given[1])
+    elif name in ("set_pose", "set_follow"):
+        getattr(core, name)(given[1], agent=given[0])
     else:
         getattr(core, name)(*given)
 
@@ -330,11 +336,13 @@ def test_an_edited_world_comes_back_as_it_was(core: SimulationCore, edits: list[
 
 def test_waypoints_lights_and_objects_that_are_new_are_in_the_file(core: SimulationCore) -> None:
     """Each of the edits of an editor, by its words in the file."""
-    core.spawn_object("Sphere", pose=Pose.from_rpy_deg((1, 0.5, 1), (0, 0, 30)), static=True)
+    core.spawn_object(
+        "Sphere", pose=Pose.from_rpy_deg((1, 0.5, 1), (0, 0, 30)), remove_dynamics=True
+    )
     core.change_object("table", scale=(1, 2, 0.5), category="couch", name="desk", colour="#00ff00")
     core.set_light("lamp", intensity=0.25)
     core.set_waypoints([Pose((0.5, 0.5, 1.25))], mover="rail", append=True)
-    core.attach_behaviour("cup", "poltergeist")
+    core.add_behaviour("cup", {"type": "poltergeist"})
     text = assert_comes_back(core)
     for words in (
         "{name: sphere_1, asset: Sphere, position: [1, 0.5, 1], rotation: [0, 0, 30], static:",
@@ -355,14 +363,18 @@ def test_what_stands_upon_something_that_went_keeps_its_place(core: SimulationCo
     """Neither a carrier that was taken away, nor another that came by its name, carries it."""
     place = core.get_object("cup").pose
     core.despawn_object("table")
-    core.spawn_object("cube", name="table", pose=Pose((1.5, -1.0, 0.5)), static=True)
+    core.spawn_object(
+        "cube", object_name="table", pose=Pose((1.5, -1.0, 0.5)), remove_dynamics=True
+    )
     assert "on: table" not in assert_comes_back(core)
     assert core.get_object("cup").pose.position_m == pytest.approx(place.position_m, abs=1e-6)
 
 
 def test_what_flies_goes_on_flying(core: SimulationCore) -> None:
     """Speeds are saved: [m/s] along, and [deg/s] about, the world's axes."""
-    core.spawn_object("cube", name="stone", pose=Pose((0.0, 0.0, 2.0)), scale=0.1)
+    core.spawn_object(
+        "cube", object_name="stone", pose=Pose((0.0, 0.0, 2.0)), scale=0.1, remove_dynamics=False
+    )
     core.step(60)
     before = core.get_object("stone")
     assert_comes_back(core)
@@ -379,23 +391,23 @@ def test_objects_of_a_scenario_are_saved_too(core: SimulationCore) -> None:
 
 def test_pictures_are_saved_as_they_are(core: SimulationCore) -> None:
     """Settings that were changed at run time are in the file, and in the scene that it begins."""
-    changed = core.set_picture("watcher", exposure=-0.5, tone_curve="linear")
+    changed = core.set_picture(exposure=-0.5, tone_curve="linear", agent="watcher")
     assert "tone_curve: linear" in assert_comes_back(core)
-    assert core.get_picture("watcher") == changed
+    assert core.get_picture(agent="watcher") == changed
 
 
 def test_agents_of_clients_are_saved_where_they_are_named(core: SimulationCore) -> None:
     """The scene's own are saved as they are now; those of clients come and go with them."""
     lens = CameraIntrinsics(width=64, height=48, vertical_fov_deg=75.0)
     core.register_agent(AgentSpec(name="visitor", intrinsics=lens, following=False))
-    core.set_pose("visitor", Pose((1.0, 1.0, 1.0)))
+    core.set_pose(Pose((1.0, 1.0, 1.0)), agent="visitor")
     core.delete_agent("rider")
     assert "visitor" not in core.scene_text()
     path = core.save_scene("seen", overwrite=True, cameras=["visitor"])
     begin(core, "seen")
     assert {agent.name for agent in core.info.agents} == {"watcher", "visitor"}
-    assert core.get_pose("visitor").pose == Pose((1.0, 1.0, 1.0))
-    assert core.capture("visitor", ["depth"]).camera.intrinsics == lens
+    assert core.get_pose(agent="visitor") == Pose((1.0, 1.0, 1.0))
+    assert core.capture(["depth"], agent="visitor").camera.intrinsics == lens
     assert "vertical_fov: 75" in Path(path).read_text(encoding="utf-8")
     with pytest.raises(UnknownName, match="nobody"):
         core.scene_text(cameras=["nobody"])
@@ -407,7 +419,7 @@ def test_agents_of_clients_are_saved_where_they_are_named(core: SimulationCore) 
 def test_parts_of_the_room_that_were_moved_are_told(core: SimulationCore) -> None:
     """A file describes the room as a whole; nothing is left out silently."""
     core.despawn_object("window 1")
-    core.move_object("north wall", Pose((0.0, 1.0, 0.0)))
+    core.move_object("north wall", pose=Pose((0.0, 1.0, 0.0)))
     with pytest.raises(InvalidEntry, match=r"'window 1' .*taken out.*'north wall' .*moved"):
         core.save_scene("broken")
     assert "broken" not in core.info.scenes
@@ -428,7 +440,11 @@ def test_an_uploaded_model_is_kept_or_told(
     """No file can name a model that this simulator alone has; in one's own pack it can."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     asset = asset_from_upload(box_zip(), name="my_box", filename="box.zip", category="chair")
-    core.spawn_object(core.add_model(asset, rename=False), pose=Pose((1.0, 0.0, 1.0)))
+    core.spawn_object(
+        core.editor.add_model(asset, rename=False),
+        pose=Pose((1.0, 0.0, 1.0)),
+        remove_dynamics=False,
+    )
     with pytest.raises(InvalidRequest, match=r"keep_models .*'my_box'"):
         core.save_scene("boxed")
     path = core.save_scene("boxed", keep_models=True)
@@ -466,7 +482,7 @@ def test_a_file_is_replaced_only_where_that_is_asked_for(
     assert "title: The second" in path.read_text(encoding="utf-8")
     with pytest.raises(InvalidRequest, match=r"optical\.yaml, which would be hidden"):
         core.save_scene("optical", overwrite=True)
-    assert not [p for p in folder.iterdir() if p.suffix not in (".yaml",)]
+    assert {p.name for p in folder.iterdir() if p.suffix != ".yaml"} <= {".lock"}
 
 
 def test_a_link_is_replaced_and_not_followed(core: SimulationCore, folder: Path) -> None:

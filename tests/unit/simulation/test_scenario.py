@@ -1,4 +1,4 @@
-"""Scenarios: the original's words, timings against arithmetic, refusals."""
+"""Scenarios: SAILenv's words, timings against arithmetic, refusals."""
 
 from __future__ import annotations
 

@@ -69,8 +69,8 @@ def test_a_lockstep_simulation_moves_by_step_alone(start: Callable[..., Simulati
     """Nothing happens between requests, and captures repeat themselves."""
     simulation = start(mode="lockstep")
     simulation.register_agent(EYE)
-    first = simulation.capture("eye", ["depth"])
-    assert simulation.capture("eye", ["depth"]).stamp_ns == first.stamp_ns == 0
+    first = simulation.capture(["depth"], agent="eye")
+    assert simulation.capture(["depth"], agent="eye").stamp_ns == first.stamp_ns == 0
     assert simulation.step(240) == 1_000_000_000
 
 
@@ -83,7 +83,7 @@ def test_requests_from_many_threads_are_all_answered(start: Callable[..., Simula
         name = f"agent_{number}"
         simulation.register_agent(AgentSpec(name=name, intrinsics=SMALL))
         for sequence in range(1, 21):
-            frame = simulation.capture(name, ["depth"])
+            frame = simulation.capture(["depth"], agent=name)
             if (frame.agent, frame.sequence) != (name, sequence):
                 wrong.append(f"{name}: {frame.agent} {frame.sequence}")
         simulation.delete_agent(name)
@@ -106,7 +106,10 @@ def test_a_slow_consumer_loses_frames_and_knows_it(start: Callable[..., Simulati
         newest = stream.get(5.0)
         assert newest.stamp_ns == 40 * 1_000_000_000 // 240
         assert stream.dropped == newest.sequence - 1 > 5
-        with pytest.raises(DeadlineExceeded, match=r"waited 0\.01 s for a frame of agent 'eye'"):
+        with pytest.raises(
+            DeadlineExceeded,
+            match=r"timed out after 0\.01 s while waiting for a frame of agent 'eye'",
+        ):
             stream.get(0.01)
 
 
@@ -136,22 +139,24 @@ def test_listeners_hear_of_changes_until_they_leave(start: Callable[..., Simulat
 
 
 def test_requests_have_names_and_errors_reach_the_asker(start: Callable[..., Simulation]) -> None:
-    """A future raises what the request raised; unknown requests are refused at once."""
+    """A future raises what the operation raised; unknown arguments are refused at once."""
     simulation = start(mode="lockstep")
-    future = simulation.request("change_scene", "nowhere")
+    future = simulation.change_scene.submit("nowhere")
     with pytest.raises(UnknownName, match="scene must be one of"):
         future.result(5.0)
-    with pytest.raises(UnknownName, match="request must be one of"):
-        simulation.request("explode")
-    assert simulation.request("step", 2).result(5.0) == 8_333_333
+    with pytest.raises(TypeError, match="unexpected keyword argument 'speed'"):
+        simulation.step.submit(2, speed=3)  # type: ignore[call-arg]  # on purpose
+    assert simulation.step.submit(2).result(5.0) == 8_333_333
 
 
 def test_a_request_that_takes_too_long_names_itself(start: Callable[..., Simulation]) -> None:
     """The deadline passes while the loop is busy with another's request."""
     simulation = start(mode="lockstep")
-    busy = simulation.request("step", 100_000)
-    with pytest.raises(DeadlineExceeded, match=r"waited 0\.01 s for the request 'pause'"):
-        simulation.pause(timeout_s=0.01)
+    busy = simulation.step.submit(100_000)
+    with pytest.raises(
+        DeadlineExceeded, match=r"timed out after 0\.01 s while waiting for the operation 'pause'"
+    ):
+        simulation.pause.within(0.01)()
     simulation.close()
     assert busy.done()
 
@@ -204,5 +209,5 @@ def test_a_fault_of_the_engine_ends_it_with_the_reason(
     with pytest.raises(SimulationClosed, match="the world came apart"):
         drain()
     with pytest.raises(SimulationClosed, match="the world came apart"):
-        simulation.get_pose("eye")
+        simulation.get_agent_pose(agent="eye")
     assert "the simulation ends because of a fault" in caplog.text

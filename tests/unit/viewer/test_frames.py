@@ -12,12 +12,12 @@ import pytest
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.viewer.encoding import outline, packed_frame, view_png
+from sailenv_ros.viewer.encoding import outline, packed_frame, view_png, views_to_json
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from tests.support.tiny_scenes import CATEGORIES
 
@@ -193,3 +193,30 @@ def test_an_outline_goes_around_holes_too() -> None:
     ring[3:6, 3:6] = 0
     assert len(outline(ring, 7)) == 2
     assert outline(ring, 8) == []
+
+
+def test_every_view_is_told_of_a_pixel() -> None:
+    """Views that the page has no words for are told as numbers, or None where there are none."""
+    rng = np.random.default_rng(5)
+    views: dict[str, Any] = {
+        name: rng.integers(0, 2, spec.shape(HEIGHT, WIDTH)).astype(spec.dtype)
+        for name, spec in VIEWS.items()
+    }
+    views["normals"][6, 4] = (0.25, -0.5, 0.75)
+    views["normals"][0, 0] = math.nan
+    frame = frame_of(**views)
+    told = json.loads(json.dumps(values_at(frame, info_with("box"), 4, 6)))
+    assert told.keys() == {*VIEWS, "category_id", "instance_id", "u", "v", "sequence"}
+    assert told["normals"] == [0.25, -0.5, 0.75]
+    assert told["occlusion"] is bool(views["occlusion"][6, 4])
+    assert values_at(frame, info_with("box"), 0, 0)["normals"] is None
+
+
+def test_the_page_is_told_of_the_views_that_can_be_rendered() -> None:
+    """In their order, with what it needs to lay them out and to write their values."""
+    told = views_to_json(("rgb", "depth", "occlusion"))
+    assert [(view["name"], view["shown"], view["unit"]) for view in told] == [
+        ("rgb", True, ""),
+        ("depth", True, "m"),
+        ("occlusion", False, ""),
+    ]

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sailenv_ros.assets.standard.build import build_standard_pack
+from sailenv_ros.assets.standard.pack_build import build_standard_pack
 from sailenv_ros.errors import AssetError, SceneError
 from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
-from sailenv_ros.world.rehearsal import obstructions, overlaps, shifts
+from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 from sailenv_ros.world.world import World
 
 ROOMS = {
@@ -45,7 +45,7 @@ def room(request: pytest.FixtureRequest, library: SceneLibrary) -> Iterator[Worl
 
 
 def test_rooms_hold_what_they_are_known_for(room: World) -> None:
-    """The categories that the original's rooms have are there."""
+    """The categories that SAILenv's rooms have are there."""
     categories = {i.instance.category for i in room.contents.instances}
     assert categories >= ROOMS[room.scene] | {"wall", "floor", "ceiling", "window", "door"}
 
@@ -158,7 +158,7 @@ def test_at_a_wall_the_front_looks_into_the_room(
 
 
 @pytest.mark.parametrize(
-    ("objects", "room", "fault"),
+    ("objects", "room", "diagnostic"),
     [
         ("  - {name: a, asset: cube, on: b}", "", "there is no object 'b'|has no object 'b'"),
         (
@@ -178,8 +178,8 @@ def test_at_a_wall_the_front_looks_into_the_room(
     ],
 )
 def test_impossible_places_are_faults_with_their_line(
-    tmp_path: Path, library: SceneLibrary, objects: str, room: str, fault: str
+    tmp_path: Path, library: SceneLibrary, objects: str, room: str, diagnostic: str
 ) -> None:
     """What cannot be placed is told by the check, before anything is built."""
-    with pytest.raises(SceneError, match=rf"test\.yaml:\d+:\d+: .*({fault})"):
+    with pytest.raises(SceneError, match=rf"test\.yaml:\d+:\d+: .*({diagnostic})"):
         library.load(scene(tmp_path, objects, room))

@@ -15,7 +15,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.model import BoxShape
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
-from tests.support.solids import UNIT_BALL, placed, solid
+from tests.support.simple_solids import UNIT_BALL, placed, solid
 from tests.unit.world.test_world import make_world
 
 HALF_M = 2.0

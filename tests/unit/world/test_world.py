@@ -13,7 +13,7 @@ from sailenv_ros.labels import Category, CategoryTable
 from sailenv_ros.model import BoxShape, TriangleShape
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
-from tests.support.solids import UNIT_BALL, placed, solid
+from tests.support.simple_solids import UNIT_BALL, placed, solid
 
 CATEGORIES = CategoryTable([Category(id=1, name="solid", colour=(200, 30, 30))])
 

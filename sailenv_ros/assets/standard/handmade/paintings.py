@@ -19,7 +19,7 @@ Field = NDArray[np.float64]
 
 
 def painting(number: int, width: float, height: float, frame: Vector3) -> list[RawPart]:
-    """Give a framed picture that hangs on the wall behind it and looks along x."""
+    """Return a framed picture that hangs on the wall behind it and looks along x."""
     edge, depth = 0.035, 0.03
     canvas = RawMesh(
         positions=np.array(

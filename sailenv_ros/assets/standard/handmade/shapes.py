@@ -15,7 +15,7 @@ Vector3 = tuple[float, float, float]
 
 
 def part(name: str, mesh: RawMesh | Mesh, **material: object) -> RawPart:
-    """Give a mesh with a material of that name; the rest of the material in keywords."""
+    """Return a mesh with a material of that name; the rest of the material in keywords."""
     return RawPart(
         name=name,
         mesh=mesh if isinstance(mesh, RawMesh) else raw_mesh(mesh),
@@ -25,7 +25,7 @@ def part(name: str, mesh: RawMesh | Mesh, **material: object) -> RawPart:
 
 
 def raw_mesh(mesh: Mesh) -> RawMesh:
-    """Give a finished mesh as one that can be worked on."""
+    """Return a finished mesh as one that can be worked on."""
     return RawMesh(
         positions=mesh.positions.astype(np.float64),
         uvs=mesh.uvs.astype(np.float64),
@@ -35,7 +35,7 @@ def raw_mesh(mesh: Mesh) -> RawMesh:
 
 
 def box(size: Vector3, centre: Vector3) -> RawMesh:
-    """Give a box."""
+    """Return a box."""
     raw = raw_mesh(box_mesh(size))
     return RawMesh(
         positions=raw.positions + np.asarray(centre),
@@ -46,7 +46,7 @@ def box(size: Vector3, centre: Vector3) -> RawMesh:
 
 
 def rod(radius: float, length: float, centre: Vector3, end_radius: float | None = None) -> RawMesh:
-    """Give a cylinder or a cone's stump along x."""
+    """Return a cylinder or a cone's stump along x."""
     raw = raw_mesh(cylinder_mesh(1.0, 1.0))
     z = raw.positions[:, 2] + 0.5
     scale = radius + (radius if end_radius is None else end_radius) * z - radius * z

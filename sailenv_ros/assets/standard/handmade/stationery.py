@@ -12,7 +12,7 @@ __all__ = ["books", "mirror", "notebook", "pen"]
 
 
 def pen(body: Vector3, cap: Vector3) -> list[RawPart]:
-    """Give a ball pen that lies along x."""
+    """Return a ball pen that lies along x."""
     r = 0.005
     return [
         part("body plastic", rod(r, 0.085, (-0.005, 0.0, r)), base_colour=(*body, 1.0)),
@@ -23,7 +23,7 @@ def pen(body: Vector3, cap: Vector3) -> list[RawPart]:
 
 
 def notebook(cover: Vector3) -> list[RawPart]:
-    """Give a closed A5 notebook with an elastic band."""
+    """Return a closed A5 notebook with an elastic band."""
     depth, width, height, board = 0.210, 0.148, 0.016, 0.0015
     leather = {"base_colour": (*cover, 1.0), "roughness": 0.6}
     pages = box((depth - 0.006, width - 0.004, height - 2 * board), (0.0, -0.001, height / 2))
@@ -45,7 +45,7 @@ def notebook(cover: Vector3) -> list[RawPart]:
 
 
 def books(number: int, count: int) -> list[RawPart]:
-    """Give books piled up, each turned a little."""
+    """Return books piled up, each turned a little."""
     generator = np.random.default_rng(100 + number)
     covers = ((0.35, 0.05, 0.04), (0.03, 0.10, 0.22), (0.42, 0.30, 0.10), (0.05, 0.16, 0.09))
     parts, base = [], 0.0
@@ -81,7 +81,7 @@ def books(number: int, count: int) -> list[RawPart]:
 
 
 def mirror(width: float, height: float) -> list[RawPart]:
-    """Give a bathroom mirror that hangs on the wall behind it and looks along x."""
+    """Return a bathroom mirror that hangs on the wall behind it and looks along x."""
     glass = box((0.006, width, height), (0.017, 0.0, height / 2))
     back = box((0.014, width - 0.06, height - 0.06), (0.007, 0.0, height / 2))
     return [

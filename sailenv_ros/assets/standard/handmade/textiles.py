@@ -17,7 +17,7 @@ Colours = tuple[Vector3, ...]
 
 
 def cushion(width: float, depth: float, height: float, colour: Vector3) -> list[RawPart]:
-    """Give a cushion that lies flat: full in the middle, thin at its seam, with pulled corners."""
+    """Return a cushion that lies flat: full in the middle, thin at its seam, corners pulled."""
     steps = 28
     t = np.linspace(-1.0, 1.0, steps + 1)
     u, v = np.meshgrid(t, t, indexing="ij")
@@ -44,7 +44,7 @@ def cushion(width: float, depth: float, height: float, colour: Vector3) -> list[
 
 
 def folded_towel(width: float, depth: float, layers: int, colours: Colours) -> list[RawPart]:
-    """Give towels folded and laid upon one another, each rounded at its fold."""
+    """Return towels folded and laid upon one another, each rounded at its fold."""
     parts = []
     for layer in range(layers):
         thick = 0.032
@@ -55,7 +55,7 @@ def folded_towel(width: float, depth: float, layers: int, colours: Colours) -> l
 
 
 def _rounded_slab(depth: float, width: float, height: float, base: float) -> RawMesh:
-    """Give a slab along y whose long edges are round."""
+    """Return a slab along y whose long edges are round."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, 9)
     radius = height / 2
     front = np.stack([depth / 2 - radius + radius * np.cos(angles), radius * np.sin(angles)], 1)
@@ -86,7 +86,7 @@ def _rounded_slab(depth: float, width: float, height: float, base: float) -> Raw
 
 
 def hanging_towel(width: float, length: float, colour: Vector3) -> list[RawPart]:
-    """Give a towel over a rail on the wall behind it; the origin is at its lower middle."""
+    """Return a towel over a rail on the wall behind it; the origin is at its lower middle."""
     rail = rod(0.008, 1.0, (0.0, 0.0, 0.0))
     turned = rail.positions[:, [1, 0, 2]] * [1.0, width + 0.08, 1.0] + [0.06, 0.0, length]
     rail = RawMesh(positions=turned, uvs=rail.uvs, triangles=rail.triangles[:, ::-1])
@@ -125,7 +125,7 @@ def hanging_towel(width: float, length: float, colour: Vector3) -> list[RawPart]
 
 
 def rug(width: float, depth: float, pattern: str) -> list[RawPart]:
-    """Give a rug with its short edge along x; ``oriental`` or ``striped``."""
+    """Return a rug with its short edge along x; ``oriental`` or ``striped``."""
     thick = 0.012
     picture = _oriental(width, depth) if pattern == "oriental" else _striped(width, depth)
     top = RawMesh(
@@ -143,7 +143,7 @@ def rug(width: float, depth: float, pattern: str) -> list[RawPart]:
 
 
 def _pile(picture: NDArray[np.float64], seed: int) -> Texture:
-    """Give a pattern the unevenness of wool."""
+    """Add the unevenness of wool to a pattern."""
     generator = np.random.default_rng(seed)
     fine = ndimage.gaussian_filter(generator.standard_normal(picture.shape[:2]), 0.8)
     broad = ndimage.gaussian_filter(generator.standard_normal(picture.shape[:2]), (2.0, 30.0))

@@ -7,8 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.surfaces import Surface, surface, surface_names
-from sailenv_ros.assets.surfaces.catalogue import _made
 from sailenv_ros.assets.surfaces.maps import SurfaceMaps, surface_of
+from sailenv_ros.assets.surfaces.surface_catalogue import _made
+from sailenv_ros.colour import LINEAR_OF_SRGB8
 from sailenv_ros.errors import UnknownName
 
 NAMES = surface_names()
@@ -25,8 +26,7 @@ def _textures(made: Surface) -> list[NDArray[np.uint8]]:
 
 
 def _linear(texture: NDArray[np.uint8]) -> NDArray[np.float64]:
-    encoded = texture[..., :3] / 255.0
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    return LINEAR_OF_SRGB8[texture[..., :3]]
 
 
 def test_the_kinds_that_rooms_need_are_there() -> None:

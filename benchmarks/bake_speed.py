@@ -1,0 +1,149 @@
+"""Time the baking of light: stages, rays, texels, memory, and loading what was baked.
+
+    python benchmarks/bake_speed.py [--scene NAME ...] [--workers N] [--json FILE]
+
+Nothing is read from the cache or written to it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import os
+import platform
+import resource
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sailenv_ros.bake import light_files as files
+from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.bake.rays import RayScene
+from sailenv_ros.bake.static_geometry import static_geometry_of
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.snapshot import WorldSnapshot
+
+RAYS = 1_000_000
+
+
+class Stages:
+    """Notes when each stage begins."""
+
+    def __init__(self) -> None:
+        self._begun: list[tuple[str, float, float]] = []
+
+    def __call__(self, stage: str, share: float) -> None:
+        """Take note of progress."""
+        if not self._begun or self._begun[-1][0] != stage:
+            self._begun.append((stage, time.perf_counter(), time.process_time()))
+
+    def seconds(self) -> dict[str, tuple[float, float]]:
+        """Return wall and processor seconds of each stage, after the last has ended."""
+        marks = [*self._begun, ("", time.perf_counter(), time.process_time())]
+        return {
+            stage: (after[1] - wall, after[2] - cpu)
+            for (stage, wall, cpu), after in itertools.pairwise(marks)
+        }
+
+
+def rays_per_second(snapshot: WorldSnapshot) -> float:
+    """Cast rays from one thread, from the scene's middle to everywhere."""
+    geometry = static_geometry_of(snapshot)
+    scene = RayScene(geometry)
+    generator = np.random.default_rng(0)
+    low, high = geometry.bounds()
+    spread = generator.uniform(-0.3, 0.3, (RAYS, 3)) * (high - low)
+    origins = ((low + high) / 2 + spread).astype(np.float32)
+    directions = generator.normal(size=(RAYS, 3)).astype(np.float32)
+    started = time.perf_counter()
+    scene.hits(origins, directions)
+    return RAYS / (time.perf_counter() - started)
+
+
+def never_hashed(snapshot: WorldSnapshot) -> WorldSnapshot:
+    """Return the same with copies of the models: hashes of those that were built are kept."""
+    contents = snapshot.contents
+    copies = {drawn.model: replace(drawn.model) for drawn in contents.instances}
+    instances = tuple(replace(drawn, model=copies[drawn.model]) for drawn in contents.instances)
+    return replace(snapshot, contents=replace(contents, instances=instances))
+
+
+def measured(library: SceneLibrary, scene: str, workers: int) -> dict[str, Any]:
+    """Bake a scene and say what it took."""
+    world = library.build(scene, seed=0, epoch=0, next_revision=itertools.count().__next__)
+    try:
+        snapshot = world.snapshot()
+    finally:
+        world.close()
+    stages = Stages()
+    started = time.perf_counter()
+    baked = bake(snapshot, report=stages, workers=workers)
+    total = time.perf_counter() - started
+    seconds = stages.seconds()
+    unknown = never_hashed(snapshot)
+    started = time.perf_counter()
+    fingerprint(unknown)
+    named = time.perf_counter() - started
+    path = files.store_baked(baked)
+    started = time.perf_counter()
+    files.load_baked(baked.fingerprint)
+    loaded = time.perf_counter() - started
+    side = baked.layers[0].direct.shape[0]
+    return {
+        "scene": scene,
+        "total_s": total,
+        "stages_s": {stage: wall for stage, (wall, _) in seconds.items()},
+        "processor_s": sum(cpu for _, cpu in seconds.values()),
+        "map": side,
+        "texels_lit": int(np.any([y.bounced.any(axis=-1) for y in baked.layers], axis=0).sum()),
+        "layers": len(baked.layers),
+        "probes": int(np.prod(baked.probes.shape)),
+        "rays_per_s": rays_per_second(snapshot),
+        "file_mb": path.stat().st_size / 1e6,
+        "load_s": loaded,
+        "fingerprint_s": named,
+        "peak_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,
+    }
+
+
+def _print(result: dict[str, Any]) -> None:
+    print(f"\n{result['scene']}: {result['total_s']:.1f} s")
+    for stage, seconds in result["stages_s"].items():
+        print(f"  {stage:<24} {seconds:7.1f} s")
+    print(
+        f"  processor time {result['processor_s']:.0f} s; "
+        f"{result['rays_per_s'] / 1e6:.1f} million rays/s from one thread\n"
+        f"  map {result['map']} x {result['map']}, {result['texels_lit']:,} texels lit, "
+        f"{result['layers']} layers, {result['probes']} probes\n"
+        f"  file {result['file_mb']:.0f} MB, loaded in {result['load_s']:.2f} s; "
+        f"fingerprint {1000 * result['fingerprint_s']:.0f} ms; peak {result['peak_gb']:.2f} GB"
+    )
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scene", action="append", help="default: room_01")
+    parser.add_argument("--workers", type=int, default=0, help="threads (default: one a core)")
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    args = parser.parse_args()
+    library = SceneLibrary()  # finds the furniture in the user's cache, before it is moved
+    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores")
+    results = []
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["SAILENV_CACHE"] = folder
+        for scene in args.scene or ["room_01"]:
+            results.append(measured(library, scene, args.workers))
+            _print(results[-1])
+    if args.json:
+        args.json.write_text(json.dumps(results, indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

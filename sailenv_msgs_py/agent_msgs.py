@@ -1,0 +1,63 @@
+"""`AgentSpec` to and from `sailenv_msgs/AgentInfo`.
+
+The message has no pose: where an agent starts stands beside it in a request, and where it is
+stands on its pose topic.
+"""
+
+from __future__ import annotations
+
+from sailenv_msgs.msg import AgentInfo
+from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.geometry import Pose
+
+__all__ = ["agent_spec_from_msg", "agent_spec_to_msg"]
+
+
+def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
+    """Make the message of an agent, less its start pose."""
+    camera = spec.intrinsics
+    return AgentInfo(
+        name=spec.name,
+        width=camera.width,
+        height=camera.height,
+        vertical_fov_deg=float(camera.vertical_fov_deg),
+        near_m=float(camera.near_m),
+        far_m=float(camera.far_m),
+        depth_range_m=float(spec.depth_range_m),
+        rate_hz=float(spec.rate_hz),
+        views=list(spec.views),
+        following=spec.following,
+        mover=spec.mover,
+        picture=picture_to_msg(spec.picture),
+    )
+
+
+def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpec:
+    """Read an agent; no views at all mean the five.
+
+    Raises
+    ------
+    InvalidRequest
+        If a name, size, angle, distance, rate, view or setting is out of its range.
+    """
+    intrinsics = CameraIntrinsics(
+        width=msg.width,
+        height=msg.height,
+        vertical_fov_deg=msg.vertical_fov_deg,
+        near_m=msg.near_m,
+        far_m=msg.far_m,
+    )
+    return AgentSpec(
+        name=msg.name,
+        intrinsics=intrinsics,
+        depth_range_m=msg.depth_range_m,
+        rate_hz=msg.rate_hz,
+        views=tuple(msg.views) or FIVE_VIEWS,
+        following=bool(msg.following),
+        mover=msg.mover,
+        picture=picture_from_msg(msg.picture),
+        pose=pose,
+    )

@@ -1,0 +1,164 @@
+"""The catalogue of assets: a name in, an `Asset` out, each loaded once.
+
+Where assets come from is a matter of its sources: built-in solids, packs on disk.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Mapping
+from typing import Protocol
+
+from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.errors import NameTaken, UnknownName
+from sailenv_ros.model import Asset
+
+__all__ = ["AssetLibrary", "AssetSource"]
+
+
+class AssetSource(Protocol):
+    """Something that has assets and loads them on demand."""
+
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        """Display name of each catalogue name; cheap, loads nothing."""
+        ...
+
+    def load(self, name: str) -> Asset:
+        """Load the asset of a catalogue name.
+
+        Raises
+        ------
+        AssetError
+            If it cannot be used.
+        """
+        ...
+
+
+class AssetLibrary:
+    """All assets of all sources; may be used from several threads.
+
+    Parameters
+    ----------
+    sources : iterable of AssetSource
+        By default the built-in solids alone.
+
+    Raises
+    ------
+    NameTaken
+        If two assets have the same catalogue or display name.
+    """
+
+    def __init__(self, sources: Iterable[AssetSource] | None = None) -> None:
+        self._source_of: dict[str, AssetSource] = {}
+        self._name_of: dict[str, str] = {}
+        self._loaded: dict[str, Asset] = {}
+        self._lock = threading.Lock()
+        for source in (Primitives(),) if sources is None else sources:
+            for name, display_name in source.display_names.items():
+                self._add(name, display_name, source)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Catalogue names, in the order of the sources."""
+        return tuple(self._source_of)
+
+    @property
+    def all_names(self) -> tuple[str, ...]:
+        """Catalogue names and display names: all that `get` takes."""
+        return tuple(self._name_of)
+
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        """Display name of each catalogue name, in the order of the sources."""
+        # The display name is the last alias that an asset is given.
+        return {name: alias for alias, name in self._name_of.items()}
+
+    def canonical(self, name: str) -> str:
+        """Return the catalogue name of a catalogue name or display name.
+
+        Raises
+        ------
+        UnknownName
+            If no asset has that name.
+        """
+        if not isinstance(name, str) or name not in self._name_of:
+            raise UnknownName("asset", name, self._name_of)
+        return self._name_of[name]
+
+    def get(self, name: str) -> Asset:
+        """Return an asset; the same object each time.
+
+        Parameters
+        ----------
+        name : str
+            Catalogue name (``"chair_01"``) or display name (``"Chair 01"``).
+
+        Raises
+        ------
+        UnknownName
+            If no asset has that name.
+        AssetError
+            If it cannot be loaded.
+        """
+        name = self.canonical(name)
+        with self._lock:
+            if name not in self._loaded:
+                self._loaded[name] = self._source_of[name].load(name)
+            return self._loaded[name]
+
+    def peek(self, name: str) -> Asset:
+        """Return an asset as `get` does, but keep none that was not in use.
+
+        Raises
+        ------
+        UnknownName, AssetError
+            As `get`.
+        """
+        name = self.canonical(name)
+        with self._lock:
+            loaded = self._loaded.get(name)
+        return loaded or self._source_of[name].load(name)
+
+    def source(self, name: str) -> AssetSource:
+        """Return what an asset comes from, by its catalogue or display name.
+
+        Raises
+        ------
+        UnknownName
+            If no asset has that name.
+        """
+        return self._source_of[self.canonical(name)]
+
+    def add(self, asset: Asset) -> None:
+        """Add an asset that is there already, e.g. one that a user uploaded.
+
+        Raises
+        ------
+        NameTaken
+            If its catalogue or display name is in use.
+        """
+        with self._lock:
+            self._add(asset.name, asset.display_name, _Ready(asset))
+
+    def _add(self, name: str, display_name: str, source: AssetSource) -> None:
+        aliases = dict.fromkeys((name, display_name))
+        for alias in aliases:
+            if alias in self._name_of:
+                raise NameTaken("asset", alias)
+        self._name_of.update(dict.fromkeys(aliases, name))
+        self._source_of[name] = source
+
+
+class _Ready:
+    """A source of one asset that needs no loading."""
+
+    def __init__(self, asset: Asset) -> None:
+        self._asset = asset
+
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        return {self._asset.name: self._asset.display_name}
+
+    def load(self, name: str) -> Asset:
+        return self._asset

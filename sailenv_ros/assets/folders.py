@@ -1,0 +1,49 @@
+"""Where packs and what they are made from lie on this machine; nothing here reads them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+__all__ = ["cache_folder", "own_pack_folder", "pack_folders", "standard_pack_folder"]
+
+
+def cache_folder() -> Path:
+    """Return the folder for what can be made again: ``$SAILENV_CACHE``, else the user's cache."""
+    given = os.environ.get("SAILENV_CACHE")
+    if given:
+        return Path(given).expanduser()
+    return _base("XDG_CACHE_HOME", ".cache") / "sailenv_ros"
+
+
+def standard_pack_folder() -> Path:
+    """Return the folder that `sailenv assets build` fills."""
+    return cache_folder() / "packs" / "standard"
+
+
+def own_pack_folder() -> Path:
+    """Return the user's own pack, which `sailenv assets add` adds to."""
+    return _user_packs() / "own"
+
+
+def pack_folders() -> tuple[Path, ...]:
+    """Return the folders of the user's packs that exist: in ``$SAILENV_PACKS``, then in their home.
+
+    ``$SAILENV_PACKS`` lists folders of packs, separated as in ``$PATH``.
+    """
+    listed = [
+        Path(p).expanduser() for p in os.environ.get("SAILENV_PACKS", "").split(os.pathsep) if p
+    ]
+    home = _user_packs()
+    found = sorted(home.iterdir()) if home.is_dir() else []
+    return tuple(folder for folder in (*listed, *found) if folder.is_dir())
+
+
+def _user_packs() -> Path:
+    return _base("XDG_DATA_HOME", ".local/share") / "sailenv_ros" / "packs"
+
+
+def _base(variable: str, otherwise: str) -> Path:
+    given = os.environ.get(variable, "")
+    # The XDG specification wants relative paths ignored.
+    return Path(given) if given.startswith("/") else Path.home() / otherwise

@@ -1,0 +1,1 @@
+"""Which renderer draws, and the one that needs no OpenGL."""

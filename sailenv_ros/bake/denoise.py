@@ -1,0 +1,139 @@
+"""Denoises light within charts, and dilates it into texels that have none.
+
+From values at texels to values at texels. Knows neither rays nor lights.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.static_geometry import StaticGeometry
+from sailenv_ros.bake.texels import Texels
+
+__all__ = ["dilated", "denoised"]
+
+Floats = NDArray[np.float32]
+
+DILATIONS = 12
+"""How many texels light is dilated into what lies inside of other things."""
+
+
+def denoised(
+    geometry: StaticGeometry,
+    texels: Texels,
+    values: Floats,
+    valid: NDArray[np.bool_],
+    nearness: Floats,
+) -> Floats:
+    """Average over tiles of 4 by 4 texels, twice, as far as the surface goes on.
+
+    Where other things are near, light changes quickly: there it is averaged over less.
+
+    Parameters
+    ----------
+    values : (N, C) float32
+    valid : (N,) bool
+    nearness : (N,) float32
+        Harmonic mean of the distances of what each texel sees [m].
+    """
+    result = values.copy()
+    owner = geometry.owner[texels.triangle]
+    _denoise(
+        texels.index, texels.rows, texels.columns, owner, texels.positions, texels.normals,
+        values, valid, nearness, result,
+    )  # fmt: skip
+    return result
+
+
+def dilated(
+    geometry: StaticGeometry, texels: Texels, values: Floats, valid: NDArray[np.bool_]
+) -> Floats:
+    """Return texels inside of other things what their neighbours of the same surface have."""
+    values, known = values.copy(), valid.copy()
+    owner = geometry.owner[texels.triangle]
+    for _ in range(DILATIONS):
+        before = known.copy()
+        unknown = np.flatnonzero(~known).astype(np.int32)
+        if not len(unknown):
+            break
+        _dilate(
+            texels.index, texels.rows, texels.columns, owner, texels.faces,
+            unknown, before, known, values,
+        )  # fmt: skip
+    return values
+
+
+@numba.njit(cache=True, nogil=True)
+def _denoise(  # type: ignore[no-untyped-def]
+    index, rows, columns, owner, positions, normals, values, valid, nearness, result
+):
+    height, width = index.shape
+    channels = values.shape[1]
+    total = np.empty(channels, np.float32)
+    for k in range(len(rows)):
+        if not valid[k]:
+            continue
+        total[:] = 0.0
+        weights = 0.0
+        scale = 2.0 / max(nearness[k] * nearness[k], 1e-6)
+        for down in range(-3, 4):
+            row = rows[k] + down
+            if row < 0 or row >= height:
+                continue
+            for right in range(-3, 4):
+                column = columns[k] + right
+                if column < 0 or column >= width:
+                    continue
+                other = index[row, column]
+                if other < 0 or not valid[other] or owner[other] != owner[k]:
+                    continue
+                alike = 0.0
+                far2 = 0.0
+                off = 0.0
+                for c in range(3):
+                    alike += normals[other, c] * normals[k, c]
+                    step = positions[other, c] - positions[k, c]
+                    far2 += step * step
+                    off += step * normals[k, c]
+                if alike < 0.8 or far2 > 0.04 or off * off > 0.1 * far2 + 1e-8:
+                    continue
+                weight = (4 - abs(down)) * (4 - abs(right)) * alike * np.exp(-far2 * scale)
+                weights += weight
+                for c in range(channels):
+                    total[c] += weight * values[other, c]
+        for c in range(channels):
+            result[k, c] = total[c] / weights
+
+
+@numba.njit(cache=True, nogil=True)
+def _dilate(  # type: ignore[no-untyped-def]
+    index, rows, columns, owner, faces, unknown, before, known, values
+):
+    height, width = index.shape
+    channels = values.shape[1]
+    total = np.empty(channels, np.float32)
+    for place in range(len(unknown)):
+        k = unknown[place]
+        total[:] = 0.0
+        found = 0
+        for down in range(-1, 2):
+            for right in range(-1, 2):
+                row, column = rows[k] + down, columns[k] + right
+                if row < 0 or row >= height or column < 0 or column >= width:
+                    continue
+                other = index[row, column]
+                if other < 0 or not before[other] or owner[other] != owner[k]:
+                    continue
+                alike = 0.0
+                for c in range(3):
+                    alike += faces[other, c] * faces[k, c]
+                if alike > 0.5:
+                    found += 1
+                    for c in range(channels):
+                        total[c] += values[other, c]
+        if found:
+            known[k] = True
+            for c in range(channels):
+                values[k, c] = total[c] / found

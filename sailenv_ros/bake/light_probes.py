@@ -1,0 +1,130 @@
+"""Light at points in the air, for what moves. From the radiance of texels to a `ProbeGrid`."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.direct import samples_of
+from sailenv_ros.bake.gather import BACK, Surroundings
+from sailenv_ros.bake.rays import RayScene
+from sailenv_ros.bake.sampling import fibonacci_sphere
+from sailenv_ros.bake.settings import BakeSettings
+from sailenv_ros.bake.sky import sky_at
+from sailenv_ros.baked_light import ProbeGrid
+from sailenv_ros.lights import Light
+
+__all__ = ["dilated_grid", "probe_grid", "probe_light", "probe_positions", "straight_light"]
+
+Floats = NDArray[np.float32]
+
+
+def probe_grid(bounds: NDArray[np.float64], settings: BakeSettings) -> ProbeGrid:
+    """Lay a grid over a box."""
+    size = np.maximum(bounds[1] - bounds[0], 1e-3)
+    spacing = settings.probe_spacing_m
+    while True:
+        counts = np.ceil(size / spacing).astype(int) + 1
+        if counts.prod() <= settings.max_probes:
+            break
+        spacing *= 1.1
+    x, y, z = (size / (counts - 1)).tolist()
+    east, north, up = bounds[0].tolist()
+    return ProbeGrid(
+        origin_m=(east, north, up),
+        spacing_m=(x, y, z),
+        shape=(int(counts[2]), int(counts[1]), int(counts[0])),
+    )
+
+
+def probe_positions(grid: ProbeGrid) -> Floats:
+    """Return (Z Y X, 3) float32: where the probes are, x changing fastest."""
+    z, y, x = np.indices(grid.shape).reshape(3, -1)
+    points = np.stack([x, y, z], axis=1) * np.asarray(grid.spacing_m) + np.asarray(grid.origin_m)
+    positions: Floats = points.astype(np.float32)
+    return positions
+
+
+def probe_light(around: Surroundings, positions: Floats, radiance: Floats, rays: int) -> Floats:
+    """Return (N, 4, C) float32: what arrives at probes from surfaces and sky; see `LightLayer`."""
+    directions = fibonacci_sphere(rays)
+    light = np.zeros((len(positions), 4, radiance.shape[1]), dtype=np.float32)
+    for k, position in enumerate(positions):
+        hits = around.scene.hits(np.tile(position, (rays, 1)), directions)
+        texels = around.texels_hit(hits, directions)
+        clear = around.transmittance(texels, np.tile(position, (rays, 1)), directions)
+        _collect(texels, directions, clear, radiance, around.sky, light[k])
+    return light
+
+
+def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Floats) -> Floats:
+    """Return (N, 4) float32: what arrives at probes straight from a light."""
+    shifts = np.zeros((len(positions), 2), dtype=np.float32)
+    samples = samples_of(light, positions, shifts, pattern)
+    count = len(pattern)
+    free = scene.share_that_passes(
+        np.repeat(positions, count, axis=0),
+        samples.towards.reshape(-1, 3),
+        samples.lengths.reshape(-1),
+    ).reshape(-1, count)
+    power = samples.irradiance * free
+    length = np.maximum(np.linalg.norm(samples.towards, axis=2, keepdims=True), 1e-9)
+    arriving = np.empty((len(positions), 4), dtype=np.float32)
+    arriving[:, 0] = power.mean(axis=1) / (4.0 * math.pi)
+    arriving[:, 1:] = np.einsum("nm,nmx->nx", power, samples.towards / length)
+    arriving[:, 1:] /= 2.0 * math.pi * count
+    return arriving
+
+
+def dilated_grid(values: Floats, unknown: NDArray[np.bool_], grid: ProbeGrid) -> Floats:
+    """Return probes that know nothing the mean of their neighbours, from the nearest on.
+
+    Parameters
+    ----------
+    values : (Z Y X, 4, C) float32
+    unknown : (Z Y X,) bool
+    """
+    shape = grid.shape
+    field = values.reshape(*shape, -1).copy()
+    known = ~unknown.reshape(shape)
+    if not known.any():
+        return values
+    while not known.all():
+        weight = np.pad(known.astype(np.float32), 1)
+        padded = np.pad(field * known[..., None], ((1, 1), (1, 1), (1, 1), (0, 0)))
+        total, number = np.zeros_like(field), np.zeros(shape, np.float32)
+        for dz, dy, dx in np.ndindex(3, 3, 3):
+            near = (
+                slice(dz, dz + shape[0]), slice(dy, dy + shape[1]), slice(dx, dx + shape[2])
+            )  # fmt: skip
+            total += padded[near]
+            number += weight[near]
+        new = ~known & (number > 0)
+        field[new] = total[new] / number[new][:, None]
+        known = known | new
+    return field.reshape(values.shape)
+
+
+@numba.njit(cache=True, nogil=True)
+def _collect(texels, directions, clear, radiance, sky, light):  # type: ignore[no-untyped-def]
+    channels = radiance.shape[1]
+    rays = len(texels)
+    for m in range(rays):
+        texel = texels[m]
+        if texel == BACK:
+            continue
+        for c in range(channels):
+            if texel >= 0:
+                value = radiance[texel, c]
+            elif c < 3:
+                value = clear[m] * sky_at(
+                    sky, directions[m, 0], directions[m, 1], directions[m, 2], c
+                )
+            else:
+                break
+            light[0, c] += value / rays
+            for axis in range(3):
+                light[1 + axis, c] += 2.0 * value * directions[m, axis] / rays

@@ -1,0 +1,202 @@
+"""Frames and scenes as HTML for notebooks, and `show`, which shows a frame wherever it is called.
+
+`Frame`s and `SceneInfo`s in, HTML with embedded pictures or a PNG file out. Works without IPython.
+Importing this module makes frames display themselves in notebooks.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import importlib
+import io
+import os
+import sys
+import tempfile
+import webbrowser
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from sailenv_ros.assets.categories import load_categories
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["frame_html", "scene_html", "show"]
+
+TILE_WIDTH_PX = 320
+"""Larger views are shown at this width."""
+
+_VIEW_OF_KEY = {"main": "rgb", "depth_m": "depth"}
+"""Views that an `Agent`'s dict holds under other names."""
+
+
+def frame_html(frame: Frame, *, categories: CategoryTable | None = None) -> str:
+    """Return a frame as HTML: a line about it, and its views as pictures.
+
+    Parameters
+    ----------
+    frame : Frame
+    categories : CategoryTable or None
+        Colours of the categories; None takes the fixed table, in which categories that a scene
+        defines are grey.
+
+    Returns
+    -------
+    text : str
+        Needs no other file.
+    """
+    lens = frame.camera.intrinsics
+    about = (
+        f"{frame.agent} in {frame.scene}: frame {frame.sequence}, "
+        f"t = {frame.stamp_ns * 1e-9:.3f} s, Δt = {frame.dt_s:.3f} s, "
+        f"{lens.width} × {lens.height} px"
+    )
+    pictures = _pictures(frame, categories)
+    tiles = "".join(_tile(name, picture) for name, picture in pictures.items())
+    return (
+        f'<div><p style="margin:0 0 4px"><b>Frame</b> {html.escape(about)}</p>'
+        f'<div style="display:flex;flex-wrap:wrap;gap:6px">{tiles}</div></div>'
+    )
+
+
+def scene_html(title: str, info: SceneInfo) -> str:
+    """Return a table of what is simulated.
+
+    Parameters
+    ----------
+    title : str
+        E.g. the name of the class that is shown.
+    info : SceneInfo
+    """
+    agents = (
+        f"{a.name} ({a.intrinsics.width} × {a.intrinsics.height} px: {', '.join(a.views)})"
+        for a in info.agents
+    )
+    rows = {
+        "scene": info.scene,
+        "time": f"{info.mode}{', paused' if info.paused else ''}, seed {info.seed}",
+        "agents": _listed(agents),
+        "objects": str(len(info.instances)),
+        "lights": _listed(light.name for light in info.lights),
+        "movers": _listed(f"{mover.name} ({mover.controller})" for mover in info.movers),
+        "renderer": info.renderer,
+    }
+    cells = "".join(
+        f'<tr><th style="text-align:left">{name}</th>'
+        f'<td style="text-align:left">{html.escape(value)}</td></tr>'
+        for name, value in rows.items()
+    )
+    return f"<div><p><b>{html.escape(title)}</b></p><table>{cells}</table></div>"
+
+
+def show(
+    frame: Frame | Mapping[str, Any],
+    path: str | Path | None = None,
+    *,
+    categories: CategoryTable | None = None,
+) -> Path | None:
+    """Show all views of a frame: in a notebook below the cell, elsewhere as a PNG file.
+
+    Outside of a notebook the file is opened in the desktop's viewer if no path is given and there
+    is a desktop.
+
+    Parameters
+    ----------
+    frame : Frame or mapping
+        A frame, or the dict that `Agent.get_frame` returns.
+    path : str, Path or None
+        File to write, ``.png`` or ``.jpg``. None writes one only outside of a notebook, into the
+        folder for temporary files.
+    categories : CategoryTable or None
+        Colours of the categories; None takes the fixed table.
+
+    Returns
+    -------
+    path : Path or None
+        The file that was written; None if there is none.
+
+    Raises
+    ------
+    InvalidRequest
+        If the frame has no view, or the name of the file does not end in ``.png`` or ``.jpg``.
+    """
+    pictures = _pictures(frame, categories)
+    if not pictures:
+        raise InvalidRequest("frame", type(frame).__name__, "a frame with at least one view")
+    written = None if path is None else save_contact_sheet(path, pictures)
+    if _in_a_notebook():
+        if isinstance(frame, Frame):
+            text = frame_html(frame, categories=categories)
+        else:
+            tiles = "".join(_tile(name, picture) for name, picture in pictures.items())
+            text = f'<div style="display:flex;flex-wrap:wrap;gap:6px">{tiles}</div>'
+        display = importlib.import_module("IPython.display")
+        display.display(display.HTML(text))
+        return written
+    if written is None:
+        handle, name = tempfile.mkstemp(prefix="sailenv_frame_", suffix=".png")
+        os.close(handle)
+        written = save_contact_sheet(name, pictures)
+        if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+            webbrowser.open(written.as_uri())
+    return written
+
+
+def _pictures(
+    frame: Frame | Mapping[str, Any], categories: CategoryTable | None
+) -> dict[str, NDArray[np.uint8]]:
+    """Return (H, W, 3) RGB pictures of all views, by their names."""
+    table = load_categories() if categories is None else categories
+    return {name: view_picture(name, values, table=table) for name, values in _views(frame).items()}
+
+
+def _views(frame: Frame | Mapping[str, Any]) -> dict[str, NDArray[Any]]:
+    if isinstance(frame, Frame):
+        return {name: frame.views[name] for name in VIEWS if name in frame.views}
+    views = {}
+    for key, values in frame.items():
+        view = _VIEW_OF_KEY.get(key, key)
+        # The dict's own "depth" is an 8-bit picture.
+        if view in VIEWS and key != "depth":
+            views[view] = values[..., ::-1] if key == "main" else values
+    return views
+
+
+def _tile(name: str, picture: NDArray[np.uint8]) -> str:
+    image = Image.fromarray(np.ascontiguousarray(picture))
+    if image.width > TILE_WIDTH_PX:
+        size = (TILE_WIDTH_PX, max(1, round(image.height * TILE_WIDTH_PX / image.width)))
+        # The colours of ids mean something: they are not mixed.
+        kind = Image.Resampling.LANCZOS if name == "rgb" else Image.Resampling.NEAREST
+        image = image.resize(size, kind)
+    data = io.BytesIO()
+    image.save(data, format="PNG")
+    text = base64.b64encode(data.getvalue()).decode("ascii")
+    label = html.escape(name)
+    return (
+        f'<figure style="margin:0"><img alt="{label}" width="{image.width}" '
+        f'height="{image.height}" src="data:image/png;base64,{text}">'
+        f"<figcaption>{label}</figcaption></figure>"
+    )
+
+
+def _listed(names: Iterable[str], most: int = 8) -> str:
+    every = list(names)
+    more = f" and {len(every) - most} more" if len(every) > most else ""
+    return (", ".join(every[:most]) + more) or "none"
+
+
+def _in_a_notebook() -> bool:
+    """Tell if this is a kernel that shows HTML; a terminal with IPython is none."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    return getattr(shell, "kernel", None) is not None

@@ -1,0 +1,245 @@
+"""Operations on agents: which there are, where they stand, what they see, one frame of theirs.
+
+Where `agent` is None, it is the agent of the one who asks: an `Agent`'s own, a `Simulation`'s
+first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
+from sailenv_ros.agents import AgentPose, AgentSpec, checked_rate
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.geometry import Pose
+from sailenv_ros.operations import argument_checks as check
+from sailenv_ros.operations.operation import Caller, operation
+from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.validation import vector
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+
+__all__ = ["AgentOperations"]
+
+
+def _agent_spec(what: str, value: object) -> AgentSpec:
+    if not isinstance(value, AgentSpec):
+        raise InvalidRequest(what, value, "a sailenv_ros.agents.AgentSpec")
+    return value
+
+
+def _intrinsics(what: str, value: object) -> CameraIntrinsics:
+    if not isinstance(value, CameraIntrinsics):
+        raise InvalidRequest(what, value, "a sailenv_ros.camera.CameraIntrinsics")
+    return value
+
+
+class AgentOperations(Caller):
+    """Cameras in the world. Positions are in metres, rotations in degrees about fixed axes."""
+
+    @operation(spec=_agent_spec)
+    @staticmethod
+    def register_agent(core: SimulationCore, spec: AgentSpec) -> AgentSpec:
+        """Add an agent; return its description as accepted."""
+        accepted = core.agents.add(spec, core.world)
+        core.announce()
+        return accepted
+
+    @operation(name=check.text)
+    @staticmethod
+    def delete_agent(core: SimulationCore, name: str) -> None:
+        """Remove an agent and end its streams."""
+        core.agents.remove(name)
+        core.announce()
+
+    # -- pose ------------------------------------------------------------------------------
+
+    @operation()
+    @staticmethod
+    def get_agent_pose(core: SimulationCore, *, agent: str | None = None) -> AgentPose:
+        """Return where an agent is, when, and whether it follows a mover."""
+        return core.agents.pose(agent, core.world)
+
+    @operation(pose=check.pose, teleport=check.flag)
+    @staticmethod
+    def set_pose(
+        core: SimulationCore, pose: Pose, *, teleport: bool = False, agent: str | None = None
+    ) -> None:
+        """Move and turn an agent, or the mover that it follows (which leaves its waypoints then).
+
+        A set pose is motion, which flow shows; `teleport` makes the next frame one without flow.
+        """
+        before = core.agents[agent].spec
+        was_driven = before.following and core.world.mover(before.mover).controller == "waypoint"
+        core.agents.put(before.name, pose, core.world, teleport=teleport)
+        if was_driven:
+            core.announce()
+
+    @operation(position=vector, teleport=check.flag)
+    @staticmethod
+    def set_position(
+        core: SimulationCore,
+        position: ArrayLike,
+        *,
+        teleport: bool = False,
+        agent: str | None = None,
+    ) -> None:
+        """Move an agent to world coordinates [m] and leave its orientation; see `set_pose`."""
+        here = core.agents.pose(agent, core.world).pose
+        moved = Pose(vector("position", position), here.orientation_xyzw)
+        core.set_pose(moved, teleport=teleport, agent=agent)
+
+    @operation(rotation=vector, teleport=check.flag)
+    @staticmethod
+    def set_rotation(
+        core: SimulationCore,
+        rotation: ArrayLike,
+        *,
+        teleport: bool = False,
+        agent: str | None = None,
+    ) -> None:
+        """Turn an agent to roll, pitch, yaw about fixed axes [deg] and leave its position."""
+        here = core.agents.pose(agent, core.world).pose
+        turned = Pose.from_rpy_deg(here.position_m, rotation)
+        core.set_pose(turned, teleport=teleport, agent=agent)
+
+    def get_pose(self, *, agent: str | None = None) -> Pose:
+        """Return the pose of an agent's body (x forward, y left, z up) in the world."""
+        return self.get_agent_pose(agent=agent).pose
+
+    def get_position(self, *, agent: str | None = None) -> tuple[float, float, float]:
+        """Return an agent's world coordinates [m]."""
+        return self.get_pose(agent=agent).position_m
+
+    def get_rotation(self, *, agent: str | None = None) -> tuple[float, float, float]:
+        """Return an agent's roll, pitch, yaw about fixed axes [deg]."""
+        return self.get_pose(agent=agent).rpy_deg
+
+    @operation(following=check.flag)
+    @staticmethod
+    def set_follow(core: SimulationCore, following: bool, *, agent: str | None = None) -> bool:
+        """Follow the mover or stop following it; return the new state."""
+        result = core.agents.set_follow(agent, following, core.world)
+        core.announce()
+        return result
+
+    @operation()
+    @staticmethod
+    def toggle_follow(core: SimulationCore, *, agent: str | None = None) -> bool:
+        """Switch between following and not; return the new state."""
+        return core.set_follow(not core.agents[agent].spec.following, agent=agent)
+
+    # -- camera ----------------------------------------------------------------------------
+
+    @operation(rate_hz=checked_rate)
+    @staticmethod
+    def set_rate(core: SimulationCore, rate_hz: float, *, agent: str | None = None) -> None:
+        """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
+        core.agents.set_rate(agent, rate_hz, core.world)
+        core.announce()
+
+    @operation(intrinsics=_intrinsics)
+    @staticmethod
+    def set_intrinsics(
+        core: SimulationCore, intrinsics: CameraIntrinsics, *, agent: str | None = None
+    ) -> None:
+        """Change the lens or the size of an agent's camera; its next frame has no flow."""
+        core.agents.set_intrinsics(agent, intrinsics)
+        core.announce()
+
+    @operation()
+    @staticmethod
+    def get_picture(core: SimulationCore, *, agent: str | None = None) -> PictureSettings:
+        """Return how an agent's pictures are made."""
+        return core.agents[agent].spec.picture
+
+    @operation(settings=check.optional(PictureSettings.checked))
+    @staticmethod
+    def set_picture(
+        core: SimulationCore,
+        settings: PictureSettings | None = None,
+        /,
+        *,
+        agent: str | None = None,
+        **changes: Any,
+    ) -> PictureSettings:
+        """Change exposure, tone curve and effects of an agent's pictures from the next frame on.
+
+        Ground truth does not depend on them. They are kept by a reset.
+
+        Parameters
+        ----------
+        settings : PictureSettings or None
+            All of them at once; None leaves what `changes` do not name.
+        agent : str or None
+        **changes
+            Some of them by their names in `PictureSettings`.
+
+        Returns
+        -------
+        settings : PictureSettings
+            As they are then.
+
+        >>> agent.set_picture(exposure=1.0, bloom=0.1)  # doctest: +SKIP
+        """
+        record = core.agents[agent]
+        present = record.spec.picture
+        given = present if settings is None else settings
+        wanted = given.changed(changes)
+        if settings is not None or changes:
+            core.agents.set_picture(record.spec.name, wanted)
+            core.announce()
+        return wanted
+
+    # -- frames ----------------------------------------------------------------------------
+
+    @operation(views=check.optional(check.view_names))
+    @staticmethod
+    def capture(
+        core: SimulationCore, views: Iterable[str] | None = None, *, agent: str | None = None
+    ) -> Frame:
+        """Render one frame of an agent now.
+
+        It shows the world after every operation that was asked for before.
+
+        Parameters
+        ----------
+        views : iterable of str or None
+            Names in `sailenv_ros.frame.VIEWS`; None means the agent's own.
+        agent : str or None
+
+        Returns
+        -------
+        frame : Frame
+            Its arrays are read-only.
+        """
+        record = core.agents[agent]
+        return core.render(record, record.spec.views if views is None else views)
+
+    def get_frame(self, views: Sequence[str] = (), *, agent: str | None = None) -> dict[str, Any]:
+        """Render one frame now and return it as the dict of the SAILenv client.
+
+        Parameters
+        ----------
+        views : sequence of str
+            More views than the agent's own, for this frame alone.
+        agent : str or None
+
+        Returns
+        -------
+        frame : dict
+            See `sailenv_ros.frame.Frame.to_dict`; every array is the caller's own.
+        """
+        wanted = (*self._own_views(agent), *views) if views else None
+        return self.capture(wanted, agent=agent).to_dict()
+
+    def _own_views(self, agent: str | None) -> tuple[str, ...]:
+        """Return the views of an agent's frames, as announced."""
+        name = agent or self.own_agent
+        chosen = [spec for spec in self.info.agents if name in (None, spec.name)]
+        return chosen[0].views if chosen else FIVE_VIEWS

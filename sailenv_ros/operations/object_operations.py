@@ -1,0 +1,249 @@
+"""Operations on objects: what stands in a scene, and what moves it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import Pose
+from sailenv_ros.objects import ObjectState
+from sailenv_ros.operations import argument_checks as check
+from sailenv_ros.operations.operation import Caller, operation
+from sailenv_ros.validation import checked_flag, vector
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+
+__all__ = ["ObjectOperations"]
+
+
+def _behaviours(what: str, value: Any) -> tuple[Mapping[str, Any], ...]:
+    if isinstance(value, str | Mapping) or not hasattr(value, "__iter__"):
+        raise InvalidRequest(what, value, "a list of behaviours, as in a scene file")
+    return tuple(check.behaviour("behaviour", item) for item in value)
+
+
+def _scenario(what: str, value: Any) -> str | Mapping[str, Any]:
+    if isinstance(value, Path):
+        try:
+            return value.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as problem:
+            raise InvalidRequest(what, str(value), f"a file ({problem})") from None
+    if not isinstance(value, str | Mapping):
+        raise InvalidRequest(what, value, "a mapping with scene, objects, timings, or its text")
+    return value
+
+
+class ObjectOperations(Caller):
+    """Objects. They are named by instance id, the value of their pixels, or by name.
+
+    Positions are in metres, rotations are roll, pitch, yaw about fixed axes in degrees.
+    """
+
+    @property
+    def spawnable_objects_names(self) -> list[str]:
+        """Names of the catalogue that `spawn_object` takes."""
+        return list(self.info.spawnables)
+
+    @operation(
+        name=check.text,
+        position=vector,
+        rotation=vector,
+        remove_dynamics=check.optional(checked_flag),
+        scale=check.scale,
+        pose=check.optional(check.pose),
+        object_name=check.text,
+        category=check.text,
+        behaviours=_behaviours,
+        mass_kg=check.number,
+    )
+    @staticmethod
+    def spawn_object(
+        core: SimulationCore,
+        name: str,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        rotation: ArrayLike = (0.0, 0.0, 0.0),
+        remove_dynamics: bool | None = None,
+        scale: ArrayLike = (1.0, 1.0, 1.0),
+        use_parent: bool = True,
+        *,
+        pose: Pose | None = None,
+        object_name: str = "",
+        category: str = "",
+        behaviours: Sequence[Mapping[str, Any]] = (),
+        mass_kg: float = 0.0,
+    ) -> int:
+        """Add an object to the scene; return its instance id.
+
+        Parameters
+        ----------
+        name : str
+            One of `spawnable_objects_names`, a display name, or what `send_obj_zip` returned.
+        position : (3,) array-like
+            Of the asset's origin, world frame [m].
+        rotation : (3,) array-like
+            Roll, pitch, yaw about fixed axes [deg].
+        remove_dynamics : bool or None
+            True if physics shall never move it; None means True unless it has behaviours or a
+            mass.
+        scale : float or (3,) array-like
+            Along the asset's axes, 0.001 to 1000.
+        use_parent : bool
+            No effect: objects have no parents here. Scripts of the SAILenv client pass it.
+        pose : Pose or None
+            Instead of position and rotation.
+        object_name : str
+            Unique in the scene; empty makes one of the asset's.
+        category : str
+            Empty takes the asset's.
+        behaviours : sequence of mapping
+            What moves it, as in a scene file: ``type`` and the parameters. They start now.
+        mass_kg : float
+            0 takes the asset's, scaled [kg].
+
+        Raises
+        ------
+        UnknownName, NameTaken, InvalidEntry, AssetError
+            If it cannot be placed; the scene is as it was then.
+        """
+        is_static = not (behaviours or mass_kg) if remove_dynamics is None else remove_dynamics
+        entry = {
+            "name": object_name or core.editor.free_name(name),
+            "asset": name,
+            "scale": scale,
+            "static": bool(is_static),
+            "behaviours": behaviours,
+        }
+        if category:
+            entry["category"] = category
+        if mass_kg:
+            entry["mass"] = mass_kg
+        return core.editor.spawn(entry, check.pose_of(position, rotation, pose))
+
+    @operation(obj=check.object_reference)
+    @staticmethod
+    def despawn_object(core: SimulationCore, obj: int | str) -> None:
+        """Remove an object from the scene; its id is not used again."""
+        core.world.despawn(core.world.find(obj))
+        core.discard_frames()
+        core.announce()
+
+    @operation(
+        obj=check.object_reference,
+        position=check.optional(vector),
+        rotation=check.optional(vector),
+        pose=check.optional(check.pose),
+        teleport=check.flag,
+    )
+    @staticmethod
+    def move_object(
+        core: SimulationCore,
+        obj: int | str,
+        position: ArrayLike | None = None,
+        rotation: ArrayLike | None = None,
+        *,
+        pose: Pose | None = None,
+        teleport: bool = False,
+    ) -> None:
+        """Move an object and stop it.
+
+        Parameters
+        ----------
+        obj : int or str
+        position : (3,) array-like or None
+            Of its origin [m]; None leaves it where it is.
+        rotation : (3,) array-like or None
+            Roll, pitch, yaw about fixed axes [deg]; None leaves it turned as it is.
+        pose : Pose or None
+            Instead of position and rotation.
+        teleport : bool
+            False is motion, which flow shows; True gives the object no flow in the next frame.
+        """
+        number = core.world.find(obj)
+        if pose is None:
+            here = core.world.body(number).pose()
+            at = here.position_m if position is None else position
+            pose = (
+                Pose(vector("position", at), here.orientation_xyzw)
+                if rotation is None
+                else Pose.from_rpy_deg(at, rotation)
+            )
+        core.world.put_body(number, pose, teleport=teleport)
+
+    @operation(obj=check.object_reference)
+    @staticmethod
+    def change_object(core: SimulationCore, obj: int | str, /, **changes: Any) -> None:
+        """Change what an object is; its id, its place and its motion stay.
+
+        Parameters
+        ----------
+        obj : int or str
+            Not a part of a room.
+        **changes
+            ``name``, ``category``, ``scale``, ``static``, ``mass``, ``gravity``, ``friction``,
+            ``restitution``, ``colour``, ``metallic``, ``roughness``, as in a scene file; None
+            takes the asset's own. Where the scale changes, the next frame has no flow.
+
+        Raises
+        ------
+        UnknownName, NameTaken, InvalidEntry, InvalidRequest
+            If it cannot be such an object; it is as it was then.
+
+        >>> agent.change_object("chair 1", scale=1.2, colour="#aa3311")  # doctest: +SKIP
+        """
+        core.editor.change_object(core.world.find(obj), changes)
+
+    @operation(obj=check.object_reference)
+    @staticmethod
+    def get_object(core: SimulationCore, obj: int | str) -> ObjectState:
+        """Return what and where an object is now."""
+        return core.world.object_state(core.world.find(obj))
+
+    @operation(obj=check.object_reference, behaviour=check.behaviour)
+    @staticmethod
+    def add_behaviour(core: SimulationCore, obj: int | str, behaviour: Mapping[str, Any]) -> None:
+        """Add a behaviour to those that an object has.
+
+        Parameters
+        ----------
+        obj : int or str
+            Not a static one.
+        behaviour : mapping
+            As in a scene file: ``type`` and the parameters. It starts now.
+        """
+        core.editor.add_behaviour(core.world.find(obj), behaviour)
+
+    @operation(obj=check.object_reference)
+    @staticmethod
+    def remove_behaviours(core: SimulationCore, obj: int | str) -> None:
+        """End all behaviours of an object; its speed remains."""
+        body = core.world.body(core.world.find(obj))
+        if body.behaviours:
+            body.detach()
+            core.announce()
+
+    @operation(deadline_s=120.0, scenario=_scenario)
+    @staticmethod
+    def load_scenario(
+        core: SimulationCore, scenario: Mapping[str, Any] | str | Path
+    ) -> tuple[int, ...]:
+        """Begin a scene with more objects than its own; return their instance ids, in order.
+
+        Parameters
+        ----------
+        scenario : mapping, str or Path
+            `scene` (its name; left out: the present one), `objects` (as in a scene file) and
+            `timings`: as a mapping, as YAML or JSON text, or as the path of a file with it. A text
+            that is only a name is that of the scene.
+        """
+        return core.editor.load_scenario(_scenario("scenario", scenario))
+
+    @operation()
+    @staticmethod
+    def spawnable_display_names(core: SimulationCore) -> tuple[str, ...]:
+        """Return the names of what can be spawned as people write them, e.g. ``Chair 01``."""
+        return core.library.spawnable_display_names

@@ -1,0 +1,46 @@
+"""All groups of operations as one class, and all operations by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from sailenv_ros.operations.agent_operations import AgentOperations
+from sailenv_ros.operations.clock_operations import ClockOperations
+from sailenv_ros.operations.environment import EnvironmentOperations
+from sailenv_ros.operations.frame_pictures import FramePictures
+from sailenv_ros.operations.light_operations import LightOperations
+from sailenv_ros.operations.models import ModelOperations
+from sailenv_ros.operations.movers import MoverOperations
+from sailenv_ros.operations.object_operations import ObjectOperations
+from sailenv_ros.operations.operation import Operation
+from sailenv_ros.operations.saving_operations import SavingOperations
+from sailenv_ros.operations.scene_tables import SceneTables
+
+__all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
+
+
+class WorldOperations(
+    AgentOperations,
+    ObjectOperations,
+    LightOperations,
+    EnvironmentOperations,
+    MoverOperations,
+    SavingOperations,
+    ClockOperations,
+):
+    """Every operation on the world and its agents."""
+
+
+class Operations(WorldOperations, ModelOperations, SceneTables, FramePictures):
+    """Every operation; what `Simulation` and `Agent` have in common."""
+
+
+def _declared() -> dict[str, Operation[..., Any]]:
+    members = {name: getattr(Operations, name) for name in dir(Operations)}
+    return {name: member for name, member in members.items() if isinstance(member, Operation)}
+
+
+ALL_OPERATIONS: Mapping[str, Operation[..., Any]] = MappingProxyType(_declared())
+"""Every operation by its name."""

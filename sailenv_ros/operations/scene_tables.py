@@ -1,0 +1,80 @@
+"""The scene as it was announced last, by the names of the SAILenv client."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sailenv_ros.operations.operation import Caller
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["SceneObject", "SceneTables", "scene_objects"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SceneObject:
+    """One object of the scene.
+
+    Attributes
+    ----------
+    name : str
+        Its name in the scene, unique there.
+    category_id : int
+    category : str
+    static : bool
+        True if physics never moves it.
+    moving : bool
+        True if a behaviour moves it.
+    """
+
+    name: str
+    category_id: int
+    category: str
+    static: bool
+    moving: bool
+
+
+def scene_objects(info: SceneInfo) -> dict[int, SceneObject]:
+    """Return the objects of a scene by their ids, the values of the instance view."""
+    return {
+        instance.id: SceneObject(
+            name=instance.name,
+            category_id=instance.category_id,
+            category=instance.category,
+            static=instance.static,
+            moving=instance.id in info.moving,
+        )
+        for instance in info.instances
+    }
+
+
+class SceneTables(Caller):
+    """What is in the scene now; nothing here blocks."""
+
+    @property
+    def scene(self) -> str:
+        """Name of the present scene."""
+        return self.info.scene
+
+    @property
+    def scenes(self) -> list[str]:
+        """Names that `change_scene` takes."""
+        return list(self.info.scenes)
+
+    @property
+    def categories(self) -> dict[int, str]:
+        """Names of the categories by their ids, the values of the category view."""
+        return {category.id: category.name for category in self.info.categories.values()}
+
+    @property
+    def category_colours(self) -> dict[int, tuple[int, int, int]]:
+        """Red, green, blue of the categories' pictures by their ids."""
+        return {category.id: category.colour for category in self.info.categories.values()}
+
+    @property
+    def instances(self) -> dict[int, SceneObject]:
+        """The objects of the scene by their ids, the values of the instance view."""
+        return scene_objects(self.info)
+
+    def get_categories(self) -> dict[int, str]:
+        """Return `categories`, by the name that the SAILenv client has for it."""
+        return self.categories

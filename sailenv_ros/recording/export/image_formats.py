@@ -1,0 +1,124 @@
+"""Frames → picture files: PNG of each view, KITTI's PNG of depth and flow, Middlebury's .flo."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.frame import Frame, view_spec
+from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.recording.export.data_files import write_bytes, write_json, write_png
+from sailenv_ros.recording.flow_formats import (
+    backward_px,
+    flo_from_backward,
+    kitti_from_backward,
+)
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["FloExport", "KittiExport", "PngExport", "frame_record"]
+
+
+def frame_record(number: int, frame: Frame) -> dict[str, Any]:
+    """Return what belongs to a frame beside its views, for a table of frames."""
+    return {
+        "number": number,
+        "sequence": frame.sequence,
+        "stamp_ns": frame.stamp_ns,
+        "dt_ns": frame.dt_ns,
+        "scene": frame.scene,
+        "K": frame.camera.intrinsics.K.tolist(),
+        "world_from_camera": frame.camera.world_from_camera.tolist(),
+    }
+
+
+def _scaled(values: NDArray[np.float32], per_unit: float) -> NDArray[np.uint16]:
+    """Return depths as numbers of 16 bits; 0 where there is none or it does not fit."""
+    with np.errstate(invalid="ignore"):
+        steps = np.rint(values.astype(np.float64) * per_unit)
+        fits = (steps >= 1) & (steps <= 65535)
+    result = np.zeros(values.shape, np.uint16)
+    result[fits] = steps[fits].astype(np.uint16)
+    return result
+
+
+class PngExport:
+    """One folder for each view, one PNG for each frame, and `frames.json`.
+
+    Integers as they are; depth 16 bits [mm], 0 where nothing was hit or it is beyond 65.535 m;
+    truth values 0 and 255; other real numbers (flow, normals) as pictures in colour.
+    """
+
+    views: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._records: list[dict[str, Any]] = []
+
+    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+        """Write a frame's files."""
+        for view, values in frame.views.items():
+            write_png(self._folder / view / f"{number:06d}.png", _png(view, values))
+        self._records.append(frame_record(number, frame))
+
+    def finish(self) -> None:
+        """Write the table of frames."""
+        write_json(self._folder / "frames.json", self._records)
+
+
+def _png(view: str, values: NDArray[Any]) -> NDArray[Any]:
+    spec = view_spec(view)
+    if spec.png_per_unit is not None:
+        return _scaled(values, spec.png_per_unit)
+    if spec.dtype == np.bool_:
+        return values.astype(np.uint8) * np.uint8(255)
+    if np.issubdtype(spec.dtype, np.floating):
+        return view_picture(view, values, table=CategoryTable([]))
+    return values
+
+
+class KittiExport:
+    """`image_2`, `flow` and `depth` as KITTI's development kits read them.
+
+    The flow of a picture is the displacement to the one before, p_{t-1} - p_t [px]; depth is in
+    steps of 1/256 m, 0 where there is none.
+    """
+
+    views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "flow")
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+        """Write a frame's files."""
+        name = f"{number:06d}.png"
+        if "rgb" in frame.views:
+            write_png(self._folder / "image_2" / name, frame["rgb"])
+        if "depth" in frame.views:
+            write_png(self._folder / "depth" / name, _scaled(frame["depth"], 256.0))
+        if "flow" in frame.views:
+            backward = backward_px(frame["flow"], frame.dt_s)
+            write_png(self._folder / "flow" / name, kitti_from_backward(backward))
+
+    def finish(self) -> None:
+        """All is written."""
+
+
+class FloExport:
+    """One .flo file for each frame: the displacement to the one before, p_{t-1} - p_t [px]."""
+
+    views: ClassVar[tuple[str, ...]] = ("flow",)
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+        """Write a frame's file."""
+        backward = backward_px(frame["flow"], frame.dt_s)
+        write_bytes(self._folder / f"{number:06d}.flo", flo_from_backward(backward))
+
+    def finish(self) -> None:
+        """All is written."""

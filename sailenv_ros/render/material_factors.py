@@ -1,0 +1,70 @@
+"""What a material is apart from its textures: the numbers that shading multiplies them with.
+
+Knows no graphics library: every back end shades with the same numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sailenv_ros.model import Material
+from sailenv_ros.render.coverage import cutoff_by_level
+from sailenv_ros.render.texture_images import SIZES_PX, array_of
+
+__all__ = ["EMISSION_SCALE", "MaterialFactors", "material_factors"]
+
+EMISSION_SCALE = 16.0
+"""Radiance, in units of the base colour, that the G-buffer's 8 bits can hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialFactors:
+    """The numbers of one material.
+
+    Attributes
+    ----------
+    base : (3,) tuple of float
+        Square root of linear base colour.
+    colour : (4,) tuple of float
+        The same, or that of the glow where there is one, and alpha.
+    roughness, metallic : float
+    alpha_cutoff : float
+    emission : float
+        Radiance over base colour, 0 to `EMISSION_SCALE`.
+    cutoff_fall, least_cutoff : float
+        See `coverage.cutoff_by_level`.
+    """
+
+    base: tuple[float, float, float]
+    colour: tuple[float, float, float, float]
+    roughness: float
+    metallic: float
+    alpha_cutoff: float
+    emission: float
+    cutoff_fall: float
+    least_cutoff: float
+
+
+def material_factors(material: Material) -> MaterialFactors:
+    """Return the numbers of a material."""
+    base = np.asarray(material.base_colour, dtype=np.float64)
+    root_red, root_green, root_blue = (float(number) for number in np.sqrt(base[:3]))
+    glow = float(max(material.emission))
+    if glow > 0.0:
+        # The G-buffer holds one colour and one strength: what glows has the glow's colour.
+        base[:3] = np.asarray(material.emission) / glow
+    red, green, blue = (float(number) for number in np.sqrt(base[:3]))
+    edge = SIZES_PX[array_of(material.base_colour_texture)]
+    fall, least = cutoff_by_level(material, edge)
+    return MaterialFactors(
+        base=(root_red, root_green, root_blue),
+        colour=(red, green, blue, float(base[3])),
+        roughness=material.roughness,
+        metallic=material.metallic,
+        alpha_cutoff=material.alpha_cutoff,
+        emission=min(EMISSION_SCALE, glow),
+        cutoff_fall=fall,
+        least_cutoff=least,
+    )

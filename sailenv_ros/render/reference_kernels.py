@@ -1,0 +1,377 @@
+"""What the kernels of the native library compute, in plain NumPy: their definition.
+
+Each function takes and returns what the function of the same name in `sailenv_ros.native` does, and
+the same bytes: tests compare them. Where the native library is missing these run in its stead, ten
+to fifty times slower; see `kernels`. Arrays of float32 meet numbers of float32 alone, so that the
+order and the width of every operation are as in C++.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["annotate_pixels", "find_ambient_visibility", "make_picture", "resolve_samples"]
+
+F32 = np.float32
+
+FAR_M = F32(1e9)
+"""Depth that stands for no surface in `find_ambient_visibility`: its square is finite."""
+
+TILE = 16
+"""Edge of the tiles of samples that are left out where everything around them is baked."""
+
+ROUNDING_PX = 1e-3
+"""How far from a pixel's centre that pixel alone decides whether a point was hidden."""
+
+Floats = NDArray[np.float32]
+Doubles = NDArray[np.float64]
+
+
+def annotate_pixels(
+    surface: Floats,
+    category_of_instance: NDArray[np.uint8],
+    row_of_instance: NDArray[np.uint16],
+    motions: Doubles,
+    lens: Doubles,
+    dt_s: float,
+    tolerance: float,
+    past_depth: Floats | None,
+    views: Mapping[str, NDArray[Any]],
+    *,
+    threads: int,
+) -> None:
+    """Fill in the views; see `native.annotation`."""
+    focal, cx, cy, near_m, far_m = lens
+    height, width = surface.shape[:2]
+    z = surface[..., 0].astype(np.float64)
+    beyond = z > far_m
+    z[beyond] = np.inf
+    numbers = surface[..., 1]
+    known = ~beyond & (numbers >= 0.0) & (numbers < 65536.0)
+    ids = np.where(known, numbers, F32(0.0)).astype(np.intp)
+    too_near = z < near_m
+    views["depth"][:] = np.where(too_near, np.nan, z)
+    if "category" in views:
+        views["category"][:] = category_of_instance[ids]
+    if "instance" in views:
+        views["instance"][:] = ids
+    if not {"flow", "flow_valid", "occlusion"} & set(views):
+        return
+    u, v = np.arange(width, dtype=np.float64)[None], np.arange(height, dtype=np.float64)[:, None]
+    x, y = (u - cx) / focal, (v - cy) / focal
+    rows = row_of_instance[ids]
+    rows[rows >= len(motions)] = 0
+    at_infinity = z == np.inf
+    reach, shift = np.where(at_infinity, 1.0, z), np.where(at_infinity, 0.0, 1.0)
+    with np.errstate(all="ignore"):
+        d = [
+            reach * (m[..., 0] * x + m[..., 1] * y + m[..., 2]) + shift * m[..., 3]
+            for m in np.moveaxis(motions[rows], 2, 0)
+        ]
+        z_past = reach + d[2]
+        valid = (rows != 0) & (z_past > 0.0) & ~too_near
+        flow_u, flow_v = (x * d[2] - d[0]) / z_past, (y * d[2] - d[1]) / z_past
+        if "flow" in views:
+            scale = float(focal) / dt_s
+            for number, flow in enumerate((flow_u, flow_v)):
+                views["flow"][..., number] = np.where(
+                    valid, (scale * flow).astype(F32), F32(np.nan)
+                )
+        if "flow_valid" in views:
+            views["flow_valid"][:] = valid
+        if "occlusion" in views:
+            z_past[at_infinity] = np.inf
+            hidden = _hidden(
+                past_depth, u - focal * flow_u, v - focal * flow_v, z_past, valid, tolerance
+            )
+            views["occlusion"][:] = hidden
+
+
+def _hidden(
+    past_depth: Floats | None,
+    u: Doubles,
+    v: Doubles,
+    z: Doubles,
+    valid: NDArray[np.bool_],
+    tolerance: float,
+) -> NDArray[np.bool_]:
+    """Find which points at (u, v), depth z of the previous frame were not visible there."""
+    hidden = np.ones(z.shape, np.bool_)
+    if past_depth is None or not past_depth.size:
+        return hidden
+    rows, columns = past_depth.shape
+    inside = valid & (u >= -0.5) & (u <= columns - 0.5) & (v >= -0.5) & (v <= rows - 0.5)
+    u, v, z = u[inside], v[inside], z[inside]
+    seen = np.zeros(z.shape, np.bool_)
+    for row in (np.floor(v + ROUNDING_PX), np.ceil(v - ROUNDING_PX)):
+        for column in (np.floor(u + ROUNDING_PX), np.ceil(u - ROUNDING_PX)):
+            at = (
+                np.clip(row.astype(np.intp), 0, rows - 1),
+                np.clip(column.astype(np.intp), 0, columns - 1),
+            )
+            past = past_depth[at].astype(np.float64)
+            seen |= (past == z) | (past > z * (1.0 - tolerance))
+    hidden[inside] = ~seen
+    return hidden
+
+
+def find_ambient_visibility(
+    surface: Floats,
+    baked: NDArray[np.bool_],
+    numbers: Floats,
+    pattern: Floats,
+    *,
+    threads: int,
+) -> tuple[NDArray[np.uint8], Floats]:
+    """Compute the share of the light from around that arrives; see `native.ambient_visibility`."""
+    samples = surface[::2, ::2]
+    depth, ids = samples[..., 0], samples[..., 1]
+    hit = (depth > F32(1.0) / FAR_M) & (depth < FAR_M)
+    known = (ids >= 0.0) & (ids < 65536.0)
+    is_baked: NDArray[np.bool_] = (
+        hit & known & baked[np.where(known, ids, F32(0.0)).astype(np.intp)]
+    )
+    inverse: Floats = np.full(depth.shape, F32(-1.0) / FAR_M)
+    np.divide(np.where(is_baked, F32(-1.0), F32(1.0)), depth, out=inverse, where=hit)
+    tiles = _live_tiles(inverse > 0.0, int(numbers[5]) // TILE)
+    share = np.where(tiles, _raw_visibility(inverse, numbers, pattern), np.uint8(255))
+    same_surface = numbers[8]
+    for axis in (1, 0):
+        share = np.where(tiles, _mean_of_four(share, inverse, same_surface, axis), np.uint8(255))
+    return share, inverse
+
+
+def _live_tiles(live: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+    """Find the samples of tiles that a surface which is not baked may reach."""
+    rows, columns = live.shape
+    found = np.zeros(live.shape, np.bool_)
+    for row in range(0, rows, TILE):
+        for column in range(0, columns, TILE):
+            if live[row : row + TILE, column : column + TILE].any():
+                first_row = max(row - reach * TILE, 0)
+                first_column = max(column - reach * TILE, 0)
+                last_row, last_column = row + (reach + 1) * TILE, column + (reach + 1) * TILE
+                found[first_row:last_row, first_column:last_column] = True
+    return found
+
+
+def _raw_visibility(inverse: Floats, numbers: Floats, pattern: Floats) -> NDArray[np.uint8]:
+    focal, cx, cy, radius_m, least_reach_px, reach_px, bias, scale, _ = numbers
+    rows, columns = inverse.shape
+    one, zero, half = F32(1.0), F32(0.0), F32(0.5)
+    per_f, per_r2 = one / focal, one / (radius_m * radius_m)
+    u = np.arange(columns, dtype=F32)[None].repeat(rows, axis=0)
+    v = np.arange(rows, dtype=F32)[:, None].repeat(columns, axis=1)
+    w = np.abs(inverse)
+    reach = np.minimum(radius_m * focal * w, reach_px)
+    a, b = _slope(w, axis=1) * focal, _slope(w, axis=0) * focal
+    x, y = (u - cx) * per_f, (v - cy) * per_f
+    c = w - a * x - b * y
+    z = one / w
+    depth = one / inverse
+    px, py, self_m2 = x * z, y * z, F32(1e-7) * z * z
+    hidden = np.zeros(inverse.shape, F32)
+    block = (np.arange(rows) & 3)[:, None] * 4 + (np.arange(columns) & 3)
+    with np.errstate(all="ignore"):
+        plane_m = one / np.sqrt(a * a + b * b + c * c)
+        for tap in range(pattern.shape[2]):
+            at_u = u + half + pattern[block, 0, tap] * reach
+            at_v = v + half + pattern[block, 1, tap] * reach
+            inside = (at_u >= zero) & (at_u < F32(columns)) & (at_v >= zero) & (at_v < F32(rows))
+            tu = np.clip(at_u, zero, F32(columns - 1)).astype(np.int32)
+            tv = np.clip(at_v, zero, F32(rows - 1)).astype(np.int32)
+            other = depth[tv, tu]
+            tz = np.abs(other)
+            qx = (tu.astype(F32) - cx) * per_f * tz
+            qy = (tv.astype(F32) - cy) * per_f * tz
+            dx, dy, dz = qx - px, qy - py, tz - z
+            d2 = dx * dx + dy * dy + dz * dz + self_m2
+            fall = np.fmax(one - d2 * per_r2, zero)
+            height_m = (one - (a * qx + b * qy + c * tz)) * plane_m
+            rise = height_m / np.sqrt(d2) - bias
+            counts = inside & ((inverse > zero) | (other > zero))
+            hidden += np.where(counts, np.fmax(rise, zero) * fall, zero)
+    share = F32(255.0) * np.maximum(zero, one - scale * hidden) + half
+    return np.where(reach >= least_reach_px, share.astype(np.uint8), np.uint8(255))
+
+
+def _slope(w: Floats, axis: int) -> Floats:
+    """Slope of 1 / depth on the side where it changes less: the other crosses an edge."""
+    w = np.moveaxis(w, axis, 1)
+    padded = np.pad(w, ((0, 0), (1, 1)), mode="edge")
+    before, after = w - padded[:, :-2], padded[:, 2:] - w
+    takes_after = np.abs(after) < np.abs(before)
+    takes_after[:, -1] = False
+    takes_after[:, 0] = True
+    return np.moveaxis(np.where(takes_after, after, before), 1, axis)
+
+
+def _mean_of_four(
+    share: NDArray[np.uint8], inverse: Floats, same_surface: np.float32, axis: int
+) -> NDArray[np.uint8]:
+    """Average over four neighbours in a line that lie on one surface."""
+    w = np.abs(np.moveaxis(inverse, axis, 1))
+    size = w.shape[1]
+    beside = np.pad(w, ((0, 0), (1, 2)), constant_values=np.inf)
+    shares = np.pad(np.moveaxis(share, axis, 1).astype(np.int32), ((0, 0), (1, 2)))
+    off = same_surface * w
+    total, count = np.zeros(w.shape, np.int32), np.zeros(w.shape, np.int32)
+    for first in range(4):
+        same = np.abs(beside[:, first : first + size] - w) <= off
+        total += np.where(same, shares[:, first : first + size], 0)
+        count += same
+    return np.moveaxis(((total + (count >> 1)) // count).astype(np.uint8), 1, axis)
+
+
+def make_picture(
+    radiance: NDArray[np.float16],
+    table: NDArray[np.uint8],
+    visibility: NDArray[np.uint8] | None,
+    inverse: Floats | None,
+    surface: Floats | None,
+    *,
+    same_surface: float,
+    least_contrast: int,
+    reach_px: int,
+    threads: int,
+) -> NDArray[np.uint8]:
+    """Make the picture; see `native.picture_kernels`."""
+    bits = radiance.view(np.uint16)
+    light = bits[..., :3]
+    if visibility is not None and inverse is not None and surface is not None:
+        factors = _arriving_factors(bits[..., 3], visibility, inverse, surface, 1, same_surface)
+        light = _bits(_small_numbers(light) * factors[..., None])
+    rgb = table[light]
+    return _smooth_edges(rgb, least_contrast, reach_px) if least_contrast > 0 else rgb
+
+
+def resolve_samples(
+    samples: NDArray[np.float16],
+    times: int,
+    visibility: NDArray[np.uint8] | None,
+    inverse: Floats | None,
+    surface: Floats | None,
+    *,
+    same_surface: float,
+    keep_ambient_share: bool = False,
+    threads: int,
+) -> NDArray[np.float16]:
+    """Average the samples of each pixel; see `native.resolve`."""
+    bits = samples.view(np.uint16)
+    height, width = samples.shape[0] // times, samples.shape[1] // times
+    weights = np.full(bits.shape[:2], F32(1.0 / (times * times)))
+    if visibility is not None and inverse is not None and surface is not None:
+        weights *= _arriving_factors(
+            bits[..., 3], visibility, inverse, surface, times, same_surface
+        )
+    light = _small_numbers(bits[..., :3]) * weights[..., None]
+    total = np.zeros((height, width, 3), F32)
+    for row in range(times):
+        for column in range(times):
+            total += light[row::times, column::times]
+    result = np.zeros((height, width, 4), np.uint16)
+    result[..., :3] = _bits(total)
+    if keep_ambient_share:
+        result[..., 3] = bits[..., 3]
+    return result.view(np.float16)
+
+
+def _small_numbers(halves: NDArray[np.uint16]) -> Floats:
+    """Return half-precision numbers of 0 or more by their bits, 2^112 times smaller."""
+    return (halves.astype(np.int32) << 13).view(F32)
+
+
+def _bits(small: Floats) -> NDArray[np.uint16]:
+    return ((np.ascontiguousarray(small).view(np.int32) + 4096) >> 13).astype(np.uint16)
+
+
+def _arriving_factors(
+    ambient: NDArray[np.uint16],
+    visibility: NDArray[np.uint8],
+    inverse: Floats,
+    surface: Floats,
+    times: int,
+    same_surface: float,
+) -> Floats:
+    """Share of its light that is left to each sample, by the nearest number on its surface."""
+    rows = np.arange(ambient.shape[0])[:, None] // times // 2
+    columns = np.arange(ambient.shape[1])[None] // times // 2
+    arriving, missing = np.full(ambient.shape, 255), np.ones(ambient.shape, np.bool_)
+    one = F32(1.0)
+    for below in (0, 1):
+        row = np.minimum(rows + below, visibility.shape[0] - 1)
+        for right in (0, 1):
+            column = np.minimum(columns + right, visibility.shape[1] - 1)
+            with np.errstate(all="ignore"):
+                off = np.abs(inverse[row, column]) * surface[..., 0] - one
+            found = missing & (np.abs(off) <= F32(same_surface))
+            arriving = np.where(found, visibility[row, column], arriving)
+            missing &= ~found
+    share = _small_numbers(ambient) * F32(2.0**112)
+    closed = (255 - arriving).astype(F32) * F32(1.0 / 255.0)
+    factors: Floats = one - np.minimum(share, one) * closed
+    return factors
+
+
+def _smooth_edges(rgb: NDArray[np.uint8], least_contrast: int, reach_px: int) -> NDArray[np.uint8]:
+    weighted = rgb.astype(np.int32) * np.array([77, 150, 29], np.int32)
+    luma = (weighted.sum(axis=2) + 128) >> 8
+    height, width = luma.shape
+    result = rgb.copy()
+    if height < 3 or width < 3:
+        return result
+    inner = luma[1:-1, 1:-1]
+    up, down = np.abs(luma[:-2, 1:-1] - inner), np.abs(luma[2:, 1:-1] - inner)
+    left, right = np.abs(luma[1:-1, :-2] - inner), np.abs(luma[1:-1, 2:] - inner)
+    contrast = np.maximum.reduce([up, down, left, right])
+    at = np.nonzero(contrast >= least_contrast)
+    up, down, left, right, contrast = (a[at] for a in (up, down, left, right, contrast))
+    v, u = at[0] + 1, at[1] + 1
+    vertical = np.maximum(up, down) >= np.maximum(left, right)
+    dv = np.where(vertical, np.where(up > down, -1, 1), 0)
+    du = np.where(vertical, 0, np.where(left > right, -1, 1))
+    ends = [
+        _end(luma, v, u, dv, du, contrast, sense, reach_px) for sense in (-1, 1)
+    ]  # fmt: skip
+    (before, before_crosses), (after, after_crosses) = ends
+    first = before <= after
+    near = np.where(first, before, after)
+    crosses = np.where(first, before_crosses, after_crosses)
+    length = before + after - 1
+    share = np.where(length > 1, 0.5 - (near - 0.5) / np.maximum(length, 1), 0.25)
+    share = np.where(crosses & (near < reach_px), np.maximum(share, 0.0), 0.0)
+    own, across = rgb[v, u].astype(np.float64), rgb[v + dv, u + du].astype(np.float64)
+    result[v, u] = (own + (across - own) * share[:, None] + 0.5).astype(np.uint8)
+    return result
+
+
+def _end(
+    luma: NDArray[np.int32],
+    v: NDArray[np.intp],
+    u: NDArray[np.intp],
+    dv: NDArray[np.intp],
+    du: NDArray[np.intp],
+    contrast: NDArray[np.int32],
+    sense: int,
+    reach_px: int,
+) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Find the steps along each edge to its end, and whether it crosses to the pixel's side."""
+    height, width = luma.shape
+    twice_middle = luma[v, u] + luma[v + dv, u + du]
+    brighter = 2 * luma[v, u] > twice_middle
+    steps, crosses = np.full(v.shape, reach_px), np.zeros(v.shape, np.bool_)
+    open_ = np.ones(v.shape, np.bool_)
+    for step in range(1, reach_px + 1):
+        pv, pu = v + sense * step * np.abs(du), u + sense * step * np.abs(dv)
+        open_ &= (pv >= 0) & (pv < height) & (pu >= 0) & (pu < width)
+        pv, pu = np.clip(pv, 0, height - 1), np.clip(pu, 0, width - 1)
+        own, across = luma[pv, pu], luma[pv + dv, pu + du]
+        bright = 2 * own > twice_middle
+        ends = open_ & ((2 * np.abs(own - across) < contrast) | (bright != brighter))
+        steps[ends], crosses[ends] = step, (bright != brighter)[ends]
+        open_ &= ~ends
+    return steps, crosses

@@ -1,0 +1,76 @@
+"""Where scenes are found: folders with YAML files in, names and paths out; reads no file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.system.resources import resource_path
+
+__all__ = ["SceneCatalogue"]
+
+SUFFIXES = (".yaml", ".yml")
+
+
+class SceneCatalogue:
+    """Scenes by name: a file's name without its suffix.
+
+    Parameters
+    ----------
+    paths : iterable of Path
+        More folders, searched before the package's own: a scene there hides one of its name here.
+    own : Path or None
+        The package's own folder, if not the installed one.
+    """
+
+    def __init__(self, paths: Iterable[Path] = (), *, own: Path | None = None) -> None:
+        self._folders = (
+            *(Path(path) for path in paths),
+            resource_path("scenes") if own is None else own,
+        )
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """The folders, in the order of the search."""
+        return self._folders
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the scenes that there are now, sorted."""
+        return tuple(sorted(self._found()))
+
+    def path(self, scene: str | Path) -> Path:
+        """Find a scene's file.
+
+        Parameters
+        ----------
+        scene : str or Path
+            A name, or the path of a YAML file.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such scene.
+        """
+        found = self._found()
+        if str(scene) in found:
+            return found[str(scene)]
+        if Path(scene).suffix in SUFFIXES and _is_file(Path(scene)):
+            return Path(scene)
+        raise UnknownName("scene", str(scene), sorted(found))
+
+    def _found(self) -> dict[str, Path]:
+        found: dict[str, Path] = {}
+        for folder in self._folders:
+            for path in sorted(folder.glob("*.y*ml")) if folder.is_dir() else ():
+                if path.suffix in SUFFIXES and path.is_file():
+                    found.setdefault(path.stem, path)
+        return found
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name too long, or with a zero byte
+        return False

@@ -1,0 +1,203 @@
+"""Diagnostics: everything that is wrong with a scene's plain data, as places and sentences.
+
+Plain data and models in, `Diagnostic`s out. Pydantic's errors become sentences in the words of the
+file; unknown keys and names are answered with the nearest known one. Knows no YAML text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias, get_args
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from sailenv_ros.scene.field_types import FIELD_ERROR
+from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
+from sailenv_ros.scene.knowledge import SceneKnowledge
+from sailenv_ros.scene.messages import nearest, shown, suggestion
+from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
+from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
+from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
+from sailenv_ros.scene.traversal import Entry, entries
+from sailenv_ros.scene.yaml_nodes import Loc
+
+__all__ = ["Diagnostic", "diagnose"]
+
+
+Models: TypeAlias = Mapping[Loc, type[SceneModel]]
+"""Which model stands for the mapping at a place."""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One error.
+
+    Attributes
+    ----------
+    loc : tuple of str or int
+        The part that is wrong.
+    message : str
+    of_key : bool
+        True if the error is the key, not its value.
+    """
+
+    loc: Loc
+    message: str
+    of_key: bool = False
+
+
+def diagnose(
+    data: Mapping[str, Any], error: ValidationError | None, knowledge: SceneKnowledge | None
+) -> Iterator[Diagnostic]:
+    """Yield all errors of a scene.
+
+    Parameters
+    ----------
+    data : mapping
+        The scene as plain data.
+    error : ValidationError or None
+        What pydantic found wrong with it.
+    knowledge : SceneKnowledge or None
+        Names are not checked without it.
+    """
+    found = list(entries(SceneSpec, data))
+    if error is not None:
+        models = {loc: model for loc, model, _ in found}
+        for details in error.errors(include_url=False):
+            if details["type"] != BROKEN_RULE:
+                yield _translated(details, data, models)
+    for loc, model, entry in found:
+        for rule in model.rules:
+            for place, sentence in rule(entry):
+                yield Diagnostic((*loc, *place), sentence)
+    if knowledge is not None:
+        yield from _unknown_names(data, found, knowledge)
+
+
+def _unknown_names(
+    data: Mapping[str, Any], found: Iterable[Entry], knowledge: SceneKnowledge
+) -> Iterator[Diagnostic]:
+    listed = data.get("categories")
+    own = [c for c in listed if isinstance(c, Mapping)] if isinstance(listed, list) else []
+    own_names = [c["name"] for c in own if isinstance(c.get("name"), str)]
+    categories = [name for name in knowledge.categories if name != "background"] + own_names
+    for loc, model, entry in found:
+        if issubclass(model, ObjectSpec):
+            yield from _unknown(loc, entry, "asset", knowledge.assets)
+            yield from _unknown(loc, entry, "category", categories)
+            for place, sentence in knowledge.object_errors(entry):
+                yield Diagnostic((*loc, *place), sentence)
+        elif issubclass(model, RoomSpec | WallMaterialsSpec):
+            yield from _unknown_surfaces(loc, model, entry, knowledge.surfaces)
+        elif issubclass(model, EnvironmentSpec):
+            if entry.get("sky_map"):
+                yield from _unknown(loc, entry, "sky_map", knowledge.skies)
+        elif issubclass(model, CategorySpec):
+            if entry.get("name") in knowledge.categories:
+                yield Diagnostic(
+                    (*loc, "name"), f"{entry['name']!r} is in the fixed table already; use another"
+                )
+        elif issubclass(model, BehaviourSpec) and isinstance(entry.get("type"), str):
+            parameters = {key: value for key, value in entry.items() if key != "type"}
+            for place, sentence in knowledge.behaviour_errors(entry["type"], parameters):
+                of_key = len(place) == 1 and place[0] in parameters and "not a param" in sentence
+                yield Diagnostic((*loc, *place), sentence, of_key)
+
+
+def _unknown(
+    loc: Loc, entry: Mapping[str, Any], key: str, known: Iterable[str]
+) -> Iterator[Diagnostic]:
+    name = entry.get(key)
+    if isinstance(name, str) and name not in known:
+        yield Diagnostic((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
+
+
+def _unknown_surfaces(
+    loc: Loc, model: type[SceneModel], entry: Mapping[str, Any], known: Iterable[str]
+) -> Iterator[Diagnostic]:
+    """Check the materials of a room, each a name or a mapping with it."""
+    for key, field in model.model_fields.items():
+        value = entry.get(key)
+        if SurfaceSpec not in (field.annotation, *get_args(field.annotation)):
+            continue
+        if isinstance(value, str):
+            for diagnostic in _unknown((), {"material": value}, "material", known):
+                yield Diagnostic((*loc, key), diagnostic.message)
+        elif isinstance(value, Mapping):
+            yield from _unknown((*loc, key), value, "material", known)
+
+
+def _translated(details: ErrorDetails, data: Mapping[str, Any], models: Models) -> Diagnostic:
+    kind, context = details["type"], details.get("ctx", {})
+    loc = _without_tags(details["loc"], data)
+    got = shown(details["input"])
+    if kind == FIELD_ERROR:
+        return Diagnostic(loc, context["sentence"])
+    if kind == "extra_forbidden":
+        return Diagnostic(loc, _unknown_key(loc, models), of_key=True)
+    if kind == "missing":
+        return Diagnostic(loc, _missing(loc, models))
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        return _tag_diagnostic(kind, loc, context)
+    sentence = _SENTENCES.get(kind)
+    if sentence is None:
+        return Diagnostic(loc, f"{details['msg'][0].lower()}{details['msg'][1:]}, got {got}")
+    return Diagnostic(loc, sentence.format(got=got, **context))
+
+
+_SENTENCES: Mapping[str, str] = {
+    "model_type": "must be a mapping (key: value), got {got}",
+    "model_attributes_type": "must be a mapping (key: value), got {got}",
+    "dict_type": "must be a mapping (key: value), got {got}",
+    "tuple_type": "must be a list (each entry begins with -), got {got}",
+    "string_type": "must be a text, got {got}",
+    "string_too_long": "must be a text of at most {max_length} characters, got {got}",
+    "too_long": "must be a list of at most {max_length} entries, got {actual_length}",
+    "too_short": "must be a list of at least {min_length} entry, got {actual_length}",
+}
+"""Pydantic's types of errors that the models can give, besides our own, in words."""
+
+
+def _tag_diagnostic(kind: str, loc: Loc, context: Mapping[str, Any]) -> Diagnostic:
+    place = (*loc, "type")
+    if kind == "union_tag_not_found":
+        return Diagnostic(place, "is missing; it says which kind this is")
+    expected = context["expected_tags"].replace("'", "").split(", ")
+    tag = str(context["tag"])
+    near = nearest(tag, expected)
+    hint = f" (did you mean {near!r}?)" if near else ""
+    return Diagnostic(place, f"must be one of: {', '.join(expected)}{hint}, got {shown(tag)}")
+
+
+def _unknown_key(loc: Loc, models: Models) -> str:
+    model = models.get(loc[:-1])
+    known = list(model.model_fields) if model is not None else []
+    return f"is not a key that is known here; {suggestion(str(loc[-1]), known)}"
+
+
+def _missing(loc: Loc, models: Models) -> str:
+    model = models.get(loc[:-1])
+    field = model.model_fields.get(str(loc[-1])) if model is not None else None
+    return f"is missing ({field.description})" if field is not None else "is missing"
+
+
+def _without_tags(loc: Loc, data: object) -> Loc:
+    """Take out what the file lacks: kinds of lights, places inside a number for several."""
+    kept: list[str | int] = []
+    tagged = False
+    for index, part in enumerate(loc):
+        if not isinstance(data, Mapping | list):
+            break  # one number that stands for several
+        last = index == len(loc) - 1
+        if isinstance(data, Mapping) and part == data.get("type") and not tagged and not last:
+            tagged = True
+            continue
+        tagged = False
+        kept.append(part)
+        if isinstance(data, Mapping):
+            data = data.get(str(part))
+        elif isinstance(data, list) and isinstance(part, int) and part < len(data):
+            data = data[part]
+    return tuple(kept)

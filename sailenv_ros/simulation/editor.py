@@ -1,0 +1,169 @@
+"""Changes of what a world holds, described as a scene file describes it.
+
+Plain mappings with the keys of a scene file in, a changed world out; what cannot be accepted
+raises and leaves the world as it was. Knows no thread and no renderer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.geometry import Pose
+from sailenv_ros.model import Asset
+from sailenv_ros.scene.entries import checked_scene, free_name, plain_value, read_document
+from sailenv_ros.scene.serialisation import MOTION_KEYS, PLACE_KEYS
+from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
+from sailenv_ros.simulation.saving import environment_entry
+from sailenv_ros.simulation.scenario import scenario_entries
+from sailenv_ros.world.bullet import STEPS_PER_SECOND
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+
+__all__ = ["SceneEditor"]
+
+CHANGEABLE = (
+    "name",
+    "category",
+    "scale",
+    "static",
+    "mass",
+    "gravity",
+    "friction",
+    "restitution",
+    "colour",
+    "metallic",
+    "roughness",
+)
+"""Keys of an object that `change_object` takes; it is moved by `move_object`."""
+
+
+class SceneEditor:
+    """Changes the world of one simulation; see `operations` for arguments and errors."""
+
+    def __init__(self, core: SimulationCore) -> None:
+        self._core = core
+
+    # -- objects ---------------------------------------------------------------------------
+
+    def free_name(self, asset: str) -> str:
+        """Return the first of ``chair_01_1``, ``chair_01_2`` … that no object has."""
+        taken = (drawn.instance.name for drawn in self._core.world.contents.instances)
+        return free_name(self._core.library.canonical_asset(asset), taken)
+
+    def spawn(self, entry: Mapping[str, Any], pose: Pose) -> int:
+        """Add an object with the keys of a scene file at a pose; return its instance id."""
+        world = self._core.world
+        placement = self._core.library.placement(
+            {**entry, **_place(pose)},
+            world,
+            seed=self._core.seed,
+            start_s=self._now_s,
+        )
+        instance_id = world.spawn(placement)
+        self._core.announce()
+        return instance_id
+
+    def change_object(self, instance_id: int, changes: Mapping[str, Any]) -> None:
+        """Change what an object is; None takes the asset's own."""
+        world = self._core.world
+        body = world.body(instance_id)
+        present = body.placement.entry
+        if present is None:
+            accepted = "one of the scene's own; parts of the room are described by its file alone"
+            raise InvalidRequest("object", body.placement.name, accepted)
+        for key in changes:
+            if key not in CHANGEABLE:
+                raise UnknownName("key of an object that can be changed", key, CHANGEABLE)
+        placement = self._core.library.placement(
+            {**_without_place(present), **_place(body.pose()), **changes},
+            world,
+            seed=self._core.seed,
+            start_s=0.0,
+        )
+        assert placement.entry is not None
+        changed = {key: getattr(placement.entry, key) for key in changes}
+        entry = present.model_copy(update=changed)
+        world.replace_body(instance_id, replace(placement, entry=entry))
+        self._core.announce()
+
+    def add_behaviour(self, instance_id: int, behaviour: Mapping[str, Any]) -> None:
+        """Let an object move by one more behaviour: its ``type`` and its parameters."""
+        body = self._core.world.body(instance_id)
+        parameters = {key: value for key, value in behaviour.items() if key != "type"}
+        running = start_behaviour(
+            behaviour["type"],
+            parameters,
+            seed=self._core.seed,
+            object_name=body.placement.name,
+            place=len(body.behaviours),
+            start_s=self._now_s,
+        )
+        body.attach(running)
+        self._core.announce()
+
+    def add_model(self, asset: Asset, *, rename: bool) -> str:
+        """Add an imported model to the catalogue; return the name that it is spawned by.
+
+        Parameters
+        ----------
+        asset : Asset
+        rename : bool
+            True appends a number where the name is in use; False refuses it then.
+        """
+        self._core.world.categories.named(asset.category)
+        name = self._core.library.add_upload(asset, rename=rename)
+        self._core.announce()
+        return name
+
+    # -- surroundings and scenarios --------------------------------------------------------
+
+    def change_environment(self, changes: Mapping[str, Any]) -> None:
+        """Change the surroundings, by the keys of `environment` in a scene file."""
+        world, library = self._core.world, self._core.library
+        assert world.described is not None
+        for key in changes:
+            if key not in EnvironmentSpec.model_fields:
+                raise UnknownName("key of environment", key, EnvironmentSpec.model_fields)
+        entry = {**environment_entry(world), **plain_value(changes)}
+        data = {"version": 1, "environment": entry}
+        checked = checked_scene(data, library.knowledge, what="environment").environment
+        world.set_environment(library.environment(checked))
+        world.described = world.described.model_copy(update={"environment": checked})
+        self._core.announce()
+
+    def load_scenario(self, scenario: str | Mapping[str, Any]) -> tuple[int, ...]:
+        """Begin a scene with more objects than its own; return their instance ids, in order."""
+        wanted = read_document(scenario) if isinstance(scenario, str) else scenario
+        if isinstance(wanted, str):
+            wanted = {"scene": wanted}
+        if not isinstance(wanted, Mapping):
+            raise InvalidRequest("scenario", wanted, "a mapping with scene, objects, timings")
+        names = [wanted[key] for key in ("scene", "scene_name") if key in wanted]
+        scene = names[0] if names else self._core.world.scene
+        if not isinstance(scene, str) or len(names) > 1:
+            raise InvalidRequest("scene", names, "the name of a scene")
+        viewer = next((agent.name for agent in self._core.agents.specs), "")
+        more = scenario_entries(wanted, viewer=viewer)
+        self._core.begin(scene, self._core.seed, as_registered=False, more=more)
+        ids = [drawn.instance.id for drawn in self._core.world.contents.instances]
+        return tuple(ids[len(ids) - len(more) :])
+
+    # -- inside ----------------------------------------------------------------------------
+
+    @property
+    def _now_s(self) -> float:
+        return self._core.world.step_count / STEPS_PER_SECOND
+
+
+def _without_place(entry: ObjectSpec) -> dict[str, Any]:
+    """Return the keys of an entry, but for where it is and how it moves."""
+    return entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, *MOTION_KEYS})
+
+
+def _place(pose: Pose) -> dict[str, Any]:
+    return {"position": pose.position_m, "orientation": pose.orientation_xyzw}

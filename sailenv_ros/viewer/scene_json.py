@@ -1,0 +1,183 @@
+"""What the page gets of the scene, in plain values for JSON.
+
+`SceneInfo` and `ObjectState` in, dictionaries out. Knows no socket and no simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from functools import cache
+from typing import Any, get_args, get_type_hints
+
+from sailenv_ros.assets.skies import sky_files
+from sailenv_ros.assets.sources import installed_packs
+from sailenv_ros.behaviours import BehaviourKind, behaviour_kinds
+from sailenv_ros.geometry import Pose
+from sailenv_ros.labels import UNLABELLED_CATEGORY
+from sailenv_ros.lights import Light
+from sailenv_ros.objects import ObjectState
+from sailenv_ros.picture_settings import LIMITS, NAMES, PictureSettings
+from sailenv_ros.scene_info import MoverInfo, SceneInfo
+
+__all__ = [
+    "behaviours_to_json",
+    "object_to_json",
+    "picture_settings_to_json",
+    "pose_to_json",
+    "scene_to_json",
+    "skies_to_json",
+]
+
+_LIGHT_NUMBERS = ("intensity", "indirect_multiplier", "range_m")
+
+
+def scene_to_json(info: SceneInfo) -> dict[str, Any]:
+    """Tell what the scene is now."""
+    surroundings = info.environment
+    return {
+        "type": "scene",
+        "scene": info.scene,
+        "scenes": list(info.scenes),
+        "epoch": info.epoch,
+        "revision": info.revision,
+        "mode": info.mode,
+        "paused": info.paused,
+        "real_time_factor": info.real_time_factor,
+        "seed": info.seed,
+        "renderer": info.renderer,
+        "categories": [
+            {"id": category.id, "name": category.name, "colour": list(category.colour)}
+            for category in info.categories.values()
+            if category.id not in (0, UNLABELLED_CATEGORY)
+        ],
+        "instances": [
+            {
+                "id": instance.id,
+                "name": instance.name,
+                "asset": instance.asset,
+                "category_id": instance.category_id,
+                "category": instance.category,
+                "static": instance.static,
+                "moves": instance.id in info.moving,
+            }
+            for instance in info.instances
+        ],
+        "spawnables": list(info.spawnables),
+        "lights": [_light(light) for light in info.lights],
+        "environment": {
+            "ambient": list(surroundings.ambient),
+            "background": surroundings.background,
+            "background_colour": list(surroundings.background_colour),
+            "sky_map": surroundings.sky_map,
+            "sky_share": surroundings.sky_share,
+            "exposure": surroundings.exposure,
+        },
+        "agents": [
+            {
+                "name": agent.name,
+                "width": agent.intrinsics.width,
+                "height": agent.intrinsics.height,
+                "fov_deg": agent.intrinsics.vertical_fov_deg,
+                "rate_hz": agent.rate_hz,
+                "following": agent.following,
+                "mover": agent.mover,
+                "picture": asdict(agent.picture),
+            }
+            for agent in info.agents
+        ],
+        "movers": [_mover(mover) for mover in info.movers],
+    }
+
+
+def object_to_json(state: ObjectState) -> dict[str, Any]:
+    """Tell what and where an object is."""
+    return {
+        "id": state.id,
+        "name": state.name,
+        "asset": state.asset,
+        "category": state.category,
+        **pose_to_json(state.pose),
+        "scale": list(state.scale),
+        "size": list(state.size_m),
+        "static": state.static,
+        "mass_kg": state.mass_kg,
+        "behaviours": [_plain(dict(behaviour)) for behaviour in state.behaviours],
+    }
+
+
+def pose_to_json(pose: Pose) -> dict[str, Any]:
+    """Tell a pose: position [m] and roll, pitch, yaw [deg]."""
+    return {"position": list(pose.position_m), "rpy_deg": list(pose.rpy_deg)}
+
+
+@cache
+def behaviours_to_json() -> list[dict[str, Any]]:
+    """Tell which behaviours there are, with their parameters."""
+    return [_behaviour(kind) for kind in behaviour_kinds().values()]
+
+
+def picture_settings_to_json() -> list[dict[str, Any]]:
+    """Tell which settings a picture has: defaults, choices, limits and units."""
+    usual, types = PictureSettings(), get_type_hints(PictureSettings)
+    unlimited = (None, None, "")
+    return [
+        {
+            "name": name,
+            "default": getattr(usual, name),
+            "choices": list(get_args(types[name])),
+            "whole": types[name] is int,
+            **dict(zip(("least", "most", "unit"), LIMITS.get(name, unlimited), strict=True)),
+        }
+        for name in NAMES
+    ]
+
+
+def skies_to_json() -> list[str]:
+    """Tell the names of the pictures of skies on this machine; reads folders."""
+    return sorted(sky_files(pack.folder for pack in installed_packs()))
+
+
+def _behaviour(kind: BehaviourKind) -> dict[str, Any]:
+    parameters = [
+        {
+            "name": name,
+            "about": field.description or "",
+            "needed": field.is_required(),
+            "default": None if field.is_required() else _plain(field.default),
+        }
+        for name, field in kind.parameters.model_fields.items()
+    ]
+    return {"type": kind.type, "summary": kind.summary, "parameters": parameters}
+
+
+def _light(light: Light) -> dict[str, Any]:
+    told: dict[str, Any] = {name: getattr(light, name) for name in _LIGHT_NUMBERS}
+    return {
+        **told,
+        "name": light.name,
+        "type": light.type,
+        "colour": list(light.colour),
+        "position_m": list(light.position_m),
+        "direction": list(light.direction),
+    }
+
+
+def _mover(mover: MoverInfo) -> dict[str, Any]:
+    waypoints: Sequence[Pose] = mover.waypoints
+    return {
+        "name": mover.name,
+        "controller": mover.controller,
+        "waypoints": [pose_to_json(pose) for pose in waypoints],
+        "total_time_s": mover.total_time_s,
+        "loop": mover.loop,
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Turn tuples into lists, all the way down."""
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return value

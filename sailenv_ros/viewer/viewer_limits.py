@@ -1,0 +1,35 @@
+"""How much the web viewer's visitors may ask for, and how long they may take; numbers alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["ViewerLimits"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ViewerLimits:
+    """Limits of one window.
+
+    Attributes
+    ----------
+    clients : int
+        Sockets at a time.
+    message_bytes : int
+        Longest message of a client.
+    messages_per_s : int
+        Most messages of a client in one second; a mouse and all keys make about 100.
+    requests : int
+        Requests of one client that may be on their way at a time.
+    send_s : float
+        From the beginning of an answer to its end [s]: who does not read is disconnected.
+    request_s : float
+        Deadline of a request [s]; loading a scene takes many.
+    """
+
+    clients: int = 8
+    message_bytes: int = 64 * 1024
+    messages_per_s: int = 400
+    requests: int = 16
+    send_s: float = 20.0
+    request_s: float = 120.0

@@ -1,0 +1,297 @@
+"""The web viewer's server: the page and its sockets on a TCP port, in a thread of this process.
+
+HTTP in, requests to a `Simulation` out. The simulation's rate is its own: here is only waited.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import secrets
+import socket
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from aiohttp import web
+
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest, SailenvError, address_error
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.loop_thread import LoopThread
+from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
+from sailenv_ros.viewer.client import Client
+from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
+from sailenv_ros.viewer.encoding import views_to_json
+from sailenv_ros.viewer.page_files import page_file
+from sailenv_ros.viewer.scene_json import (
+    behaviours_to_json,
+    picture_settings_to_json,
+    skies_to_json,
+)
+from sailenv_ros.viewer.viewer_limits import ViewerLimits
+
+__all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "ViewerServer"]
+
+_log = logging.getLogger(__name__)
+
+DEFAULT_HOST = "127.0.0.1"
+DEFAULT_PORT = 8090
+
+STATS_S = 0.5
+"""Time between two reports of how fast the simulation runs [s]."""
+
+MAX_NAME = 200
+
+_Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class ViewerServer:
+    """Serves the web viewer on one simulation; a context manager.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Stays its owner's; it may end before this does.
+    host : str
+        Address to listen on; ``127.0.0.1`` for this machine alone. On any other the address that
+        people open must bring a token, see `url`.
+    port : int
+        0 takes any that is free, see `port`.
+    control : bool
+        Whether those who come from elsewhere may change anything; on this machine alone, everybody
+        may.
+    limits : ViewerLimits
+
+    Raises
+    ------
+    AddressInUse, InvalidRequest
+        If another program listens there, or the address is none of this machine's.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        *,
+        host: str = DEFAULT_HOST,
+        port: int = DEFAULT_PORT,
+        control: bool = False,
+        limits: ViewerLimits | None = None,
+    ) -> None:
+        if not 0 <= port <= 65535:
+            raise InvalidRequest("port of the viewer", port, "an integer from 0 to 65535")
+        self._simulation = simulation
+        self._host, self._port = host, port
+        loopback = is_loopback(host)
+        self._access = AccessControl(
+            loopback=loopback, token="" if loopback else secrets.token_urlsafe(16)
+        )
+        self._may_change = loopback or control
+        self._limits = limits or ViewerLimits()
+        self._debug_agent = DebugAgent(simulation)
+        self._clients: set[Client] = set()
+        self._connected = 0
+        self._touched = 0
+        self._thread = LoopThread("viewer", self._serve)
+        try:
+            self._port = self._thread.start()
+        except BaseException:
+            self.close()
+            raise
+        self._end_news = simulation.on_info(self._scene_changed)
+
+    @property
+    def host(self) -> str:
+        """Address that is listened on."""
+        return self._host
+
+    @property
+    def port(self) -> int:
+        """Port that is listened on."""
+        return self._port
+
+    @property
+    def url(self) -> str:
+        """Address of the page, with the token where one is needed."""
+        name = socket.gethostname() if self._host in ("0.0.0.0", "::", "") else self._host
+        name = f"[{name}]" if ":" in name else name
+        token = f"?token={self._access.token}" if self._access.token else ""
+        return f"http://{name}:{self._port}/{token}"
+
+    @property
+    def clients(self) -> int:
+        """How many sockets are open now."""
+        return len(self._clients)
+
+    @property
+    def rendered_views(self) -> frozenset[str]:
+        """Views that are rendered for somebody here now; none for those that stall."""
+        return frozenset(view for client in tuple(self._clients) for view in client.rendered_views)
+
+    def set_intrinsics(self, intrinsics: CameraIntrinsics) -> None:
+        """Change what the debug agent sees: its pictures' size and its angle of view."""
+        self._debug_agent.set_intrinsics(intrinsics)
+
+    def close(self) -> None:
+        """Disconnect everybody and stop to listen; a second call does nothing."""
+        if self._thread.ended:
+            return
+        with contextlib.suppress(AttributeError):
+            self._end_news()
+        self._thread.end()
+
+    def __enter__(self) -> ViewerServer:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    def _scene_changed(self, _: SceneInfo) -> None:
+        """Have everybody told; called by the simulation's thread."""
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._thread.loop.call_soon_threadsafe(self._tell_scene)
+
+    # -- in the thread ---------------------------------------------------------------------
+
+    async def _serve(self, listening: Callable[[int], None]) -> None:
+        app = web.Application(middlewares=[self._checked])
+        app.router.add_get("/", self._page)
+        app.router.add_get("/socket", self._socket)
+        app.router.add_get("/thumbnail/{asset}", self._thumbnail)
+        app.router.add_get("/{name}", self._page_file)
+        runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=1.0)
+        await runner.setup()
+        try:
+            site = web.TCPSite(runner, self._host, self._port)
+            try:
+                await site.start()
+            except OSError as problem:
+                raise address_error("the viewer", self._host, self._port, problem) from problem
+            listening(runner.addresses[0][1])
+            stats = asyncio.create_task(self._tell_stats())
+            await self._thread.stop.wait()
+            stats.cancel()
+            await asyncio.gather(*(client.close() for client in tuple(self._clients)))
+        finally:
+            await runner.cleanup()
+
+    @web.middleware
+    async def _checked(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
+        fault = self._access.fault_of_request(request.headers)
+        if fault:
+            return self._refusal(fault)
+        try:
+            response = await handler(request)
+        except web.HTTPException as refusal:
+            refusal.headers.update(SECURITY_HEADERS)
+            raise
+        if not response.prepared:
+            for name, value in SECURITY_HEADERS.items():
+                response.headers.setdefault(name, value)
+        return response
+
+    async def _page(self, request: web.Request) -> web.StreamResponse:
+        fault = self._access.fault_of_token(request.query.get("token", ""))
+        return self._refusal(fault) if fault else self._file("index.html")
+
+    async def _page_file(self, request: web.Request) -> web.StreamResponse:
+        return self._file(request.match_info["name"])
+
+    async def _thumbnail(self, request: web.Request) -> web.StreamResponse:
+        """Return the picture of a catalogue's object; made now if it was not yet."""
+        fault = self._access.fault_of_token(request.query.get("token", ""))
+        if fault:
+            return self._refusal(fault)
+        try:
+            making = self._simulation.get_thumbnail_png.submit(
+                request.match_info["asset"][:MAX_NAME]
+            )
+            data = await asyncio.wait_for(asyncio.wrap_future(making), self._limits.request_s)
+        except (SailenvError, asyncio.TimeoutError) as problem:
+            return web.Response(status=404, text=f"there is no such picture: {problem}\n")
+        return web.Response(
+            body=data, content_type="image/png", headers={"Cache-Control": "private, max-age=600"}
+        )
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        fault = self._access.fault_of_socket(request.headers, request.query.get("token", ""))
+        if fault:
+            _log.warning("a viewer is refused: %s", fault)
+            return self._refusal(fault)
+        if self._connected >= self._limits.clients:
+            return self._refusal(f"{self._connected} viewers are connected, which is the most")
+        answer = web.WebSocketResponse(
+            max_msg_size=self._limits.message_bytes, heartbeat=20.0, compress=False
+        )
+        self._connected += 1
+        try:
+            await answer.prepare(request)
+            await self._serve_client(answer, request.transport)
+        finally:
+            self._connected -= 1
+        return answer
+
+    async def _serve_client(
+        self, answer: web.WebSocketResponse, transport: asyncio.Transport | None
+    ) -> None:
+        client = Client(
+            answer,
+            drop=lambda: None if transport is None else transport.abort(),
+            simulation=self._simulation,
+            debug_agent=self._debug_agent,
+            may_change=self._may_change,
+            limits=self._limits,
+            greeting={
+                "type": "hello",
+                "debug_agent": NAME,
+                "views": views_to_json(self._simulation.supported_views),
+                "behaviours": behaviours_to_json(),
+                "picture_settings": picture_settings_to_json(),
+                "skies": await asyncio.to_thread(skies_to_json),
+            },
+            touch=self._touch,
+            touched=lambda: self._touched,
+        )
+        self._clients.add(client)
+        try:
+            await client.serve()
+        except (ConnectionError, asyncio.CancelledError):
+            _log.info("a viewer went away")
+        finally:
+            self._clients.discard(client)
+
+    def _touch(self) -> None:
+        self._touched += 1
+
+    def _tell_scene(self) -> None:
+        for client in self._clients:
+            client.scene_changed()
+
+    async def _tell_stats(self) -> None:
+        """Report how fast simulated time runs, again and again."""
+        before = (time.monotonic(), self._simulation.sim_time_ns)
+        while True:
+            await asyncio.sleep(STATS_S)
+            now = (time.monotonic(), self._simulation.sim_time_ns)
+            stats: dict[str, Any] = {
+                "type": "stats",
+                "time_s": now[1] * 1e-9,
+                "real_time_factor": max(0.0, (now[1] - before[1]) * 1e-9 / (now[0] - before[0])),
+                "skipped_frames": self._simulation.skipped_frames,
+                "viewers": len(self._clients),
+            }
+            before = now
+            for client in self._clients:
+                client.tell_stats(stats)
+
+    def _file(self, name: str) -> web.Response:
+        found = page_file(name)
+        if found is None:
+            return web.Response(status=404, text=f"there is no page {name[:80]!r} here\n")
+        kind, data = found
+        return web.Response(body=data, content_type=kind, charset="utf-8")
+
+    def _refusal(self, why: str) -> web.Response:
+        return web.Response(status=403, text=f"Refused: {why}\n", headers=SECURITY_HEADERS)

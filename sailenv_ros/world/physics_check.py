@@ -1,0 +1,130 @@
+"""Whether a scene is put together as was meant: what overlaps, what falls, what is in the way.
+
+A built `World` in, diagnostics out. The world is stepped, so it is one for this alone.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.bullet import STEPS_PER_SECOND
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.world import World
+
+__all__ = ["Obstruction", "Overlap", "Shift", "obstructions", "overlaps", "shifts"]
+
+MOVER_RADIUS_M = 0.15
+"""Room that a camera wants around it."""
+
+TRACK_STEP_S = 0.25
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Overlap:
+    """Two objects that stand in one another, by so much [m]."""
+
+    first: str
+    second: str
+    depth_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shift:
+    """An object that did not stay where it was put [m, deg]."""
+
+    name: str
+    distance_m: float
+    angle_deg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Obstruction:
+    """A mover whose track comes too near to an object, first at this time [s]."""
+
+    mover: str
+    name: str
+    time_s: float
+    clearance_m: float
+
+
+def overlaps(world: World, *, tolerance_m: float = 0.002) -> Iterator[Overlap]:
+    """Yield all pairs of objects that overlap by more than a tolerance, static ones too.
+
+    The parts of a room stand in one another by construction; those pairs are left out.
+    """
+    client = world.client
+    bodies = [(body, client.getAABB(body.bullet_id)) for body in world.bodies if body.collides]
+    for (a, box_a), (b, box_b) in itertools.combinations(bodies, 2):
+        of_room = all("room" in body.placement.asset.tags for body in (a, b))
+        if of_room or not _may_touch(box_a, box_b):
+            continue
+        points = client.getClosestPoints(a.bullet_id, b.bullet_id, 0.0)
+        depth = -min((point[8] for point in points), default=0.0)
+        if depth > tolerance_m:
+            yield Overlap(first=a.placement.name, second=b.placement.name, depth_m=depth)
+
+
+def shifts(
+    world: World, *, seconds: float = 2.0, distance_m: float = 0.02, angle_deg: float = 5.0
+) -> Iterator[Shift]:
+    """Step the world, then yield what has moved or turned by more, though nothing drives it."""
+    resting = [body for body in world.bodies if not body.placement.static and not body.behaviours]
+    before = [body.world_from_body() for body in resting]
+    world.step(round(seconds * STEPS_PER_SECOND))
+    for body, start in zip(resting, before, strict=True):
+        now = body.world_from_body()
+        moved = float(np.linalg.norm(now[:3, 3] - start[:3, 3]))
+        turned = _angle_deg(now[:3, :3] @ start[:3, :3].T)
+        if moved > distance_m or turned > angle_deg:
+            yield Shift(name=body.placement.name, distance_m=moved, angle_deg=turned)
+
+
+def obstructions(world: World, *, radius_m: float = MOVER_RADIUS_M) -> Iterator[Obstruction]:
+    """Yield what each mover's track passes nearer than a radius, once for each object."""
+    client = world.client
+    shape = client.createCollisionShape(client.constants.GEOM_SPHERE, radius=0.001)
+    probe = client.createMultiBody(baseMass=0.0, baseCollisionShapeIndex=shape)
+    try:
+        for mover in world.movers.values():
+            yield from _on_track(world, mover, probe, radius_m)
+    finally:
+        client.removeBody(probe)
+
+
+def _on_track(world: World, mover: Mover, probe: int, radius_m: float) -> Iterator[Obstruction]:
+    if mover.track is None:
+        return
+    seen: set[str] = set()
+    bodies = [body for body in world.bodies if body.collides and not body.behaviours]
+    for time_s in np.arange(0.0, mover.track.total_time_s, TRACK_STEP_S):
+        position = mover.track.pose_at(float(time_s)).position_m
+        world.client.resetBasePositionAndOrientation(probe, position, (0.0, 0.0, 0.0, 1.0))
+        for body in bodies:
+            name = body.placement.name
+            distance = _distance(world, body, probe, radius_m) if name not in seen else radius_m
+            if distance < radius_m:
+                seen.add(name)
+                yield Obstruction(
+                    mover=mover.name, name=name, time_s=float(time_s), clearance_m=distance
+                )
+
+
+def _distance(world: World, body: Body, probe: int, within_m: float) -> float:
+    points = world.client.getClosestPoints(body.bullet_id, probe, within_m)
+    return float(min((point[8] for point in points), default=within_m))
+
+
+def _may_touch(a: tuple[tuple[float, ...], ...], b: tuple[tuple[float, ...], ...]) -> bool:
+    low = np.maximum(a[0], b[0])
+    high = np.minimum(a[1], b[1])
+    return bool((low <= high).all())
+
+
+def _angle_deg(rotation: NDArray[np.float64]) -> float:
+    return float(np.degrees(np.arccos(np.clip((np.trace(rotation) - 1.0) / 2.0, -1.0, 1.0))))

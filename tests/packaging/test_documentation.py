@@ -1,0 +1,174 @@
+"""What the documentation says can be followed: links lead somewhere, programs run."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+import sailenv_ros
+from sailenv_ros.frame import FIVE_VIEWS
+from tests.packaging.project import ROOT
+
+PAGES = sorted(
+    path
+    for pattern in ("*.md", "docs/**/*.md", "benchmarks/**/*.md")
+    for path in ROOT.glob(pattern)
+)
+LINK = re.compile(r"(?<!\\)\]\(([^)\s]+)\)|\b(?:src|href|srcset)=\"([^\"]+)\"")
+FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"`[^`]*`")
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the anchors of a page's headings, as GitHub makes them."""
+    found = set()
+    for heading in re.findall(r"^#+ (.+)$", FENCE.sub("", page.read_text()), re.MULTILINE):
+        words = re.sub(r"[^\w\- ]", "", heading.lower().strip())
+        found.add(words.replace(" ", "-"))
+    return found
+
+
+def links(page: Path) -> list[str]:
+    """Return what a page links to, programs left out."""
+    text = CODE.sub("", FENCE.sub("", page.read_text()))
+    return [target or attribute for target, attribute in LINK.findall(text)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_of_a_page_lead_to_files_and_headings(page: Path) -> None:
+    """Every relative link names a file or folder that is there, and a heading in it."""
+    wrong = []
+    for link in links(page):
+        if re.match(r"[a-z]+:", link):
+            continue
+        path, _, anchor = link.partition("#")
+        target = (page.parent / path).resolve() if path else page
+        if not target.exists() or (
+            anchor and target.suffix == ".md" and anchor not in anchors(target)
+        ):
+            wrong.append(link)
+    assert wrong == []
+
+
+def test_there_are_pages_and_links() -> None:
+    """The test above has something to look at."""
+    assert len(PAGES) > 20
+    assert sum(len(links(page)) for page in PAGES) > 100
+
+
+def test_every_page_is_linked_from_the_readme_or_the_index() -> None:
+    """Readers of the repository find every page below docs/; of the API reference, its index."""
+    named = {
+        (page.parent / link.partition("#")[0]).resolve()
+        for page in (ROOT / "README.md", ROOT / "docs" / "index.md")
+        for link in links(page)
+    }
+    pages = set(ROOT.glob("docs/*.md")) | {ROOT / "docs" / "api" / "index.md"}
+    assert pages - named - {ROOT / "docs" / "index.md"} == set()
+
+
+def test_manifests_name_pages_that_exist() -> None:
+    """`docs/x.md` in package.xml and in comments of the configuration."""
+    files = [
+        ROOT / "package.xml",
+        ROOT / "setup.py",
+        *ROOT.glob("config/*"),
+        *ROOT.glob("scripts/*"),
+    ]
+    named = {name for file in files for name in re.findall(r"docs/\w+\.md", file.read_text())}
+    assert named
+    assert [name for name in named if not (ROOT / name).is_file()] == []
+
+
+def test_the_citation_and_the_changelog_have_the_version() -> None:
+    """Of the package; the changelog names it with the citation's date."""
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert citation["version"] == sailenv_ros.__version__
+    heading = f"## [{citation['version']}] - {citation['date-released']}"
+    assert heading in (ROOT / "CHANGELOG.md").read_text()
+
+
+def programs(page: str) -> list[str]:
+    """Return the Python programs of a page."""
+    return re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.MULTILINE | re.DOTALL)
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder in which programs run, without arguments."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["program"])
+    return tmp_path
+
+
+def run(code: str, capsys: pytest.CaptureFixture[str]) -> str:
+    """Run a program in this process; return what it prints."""
+    capsys.readouterr()
+    exec(compile(code, "program", "exec"), {"__name__": "__main__"})
+    return capsys.readouterr().out
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("number", range(len(programs("docs/simulation.md"))))
+def test_a_program_of_the_page_on_simulation_runs(
+    number: int, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As it stands there."""
+    out = run(programs("docs/simulation.md")[number], capsys)
+    assert out or (here / "frame.png").stat().st_size > 2_000
+
+
+@pytest.mark.gl
+@pytest.mark.usefixtures("here")
+def test_the_readme_s_program_without_ros_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    """A frame of the default size with its simulated time."""
+    (program,) = (code for code in programs("README.md") if "import Simulation" in code)
+    assert run(program, capsys) == "(480, 640, 2) 33333333\n"
+
+
+@pytest.mark.gl
+def test_the_example_of_simulation_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The ball falls faster and faster, and the picture is written."""
+    out = run((ROOT / "examples" / "11_simulation.py").read_text(), capsys)
+    speeds = [int(speed) for speed in re.findall(r"(-?\d+) px/s downwards", out)]
+    assert len(speeds) == 6
+    assert speeds == sorted(speeds)
+    assert speeds[0] < speeds[-1]
+    assert (here / "simulation.png").stat().st_size > 2_000
+
+
+@pytest.mark.gl
+@pytest.mark.slow
+def test_the_notebook_runs_and_shows_frames(tmp_path: Path) -> None:
+    """In a kernel of its own: no cell fails; the simulation and each frame display as HTML."""
+    code = f"""
+import nbformat
+from nbclient import NotebookClient
+notebook = nbformat.read({str(ROOT / "examples" / "notebook.ipynb")!r}, as_version=4)
+NotebookClient(notebook, timeout=100, kernel_name="python3").execute()
+nbformat.write(notebook, "executed.ipynb")
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=115
+    )
+    assert done.returncode == 0, done.stderr
+    cells = json.loads((tmp_path / "executed.ipynb").read_text())["cells"]
+    shown = [
+        "".join(output["data"]["text/html"])
+        for cell in cells
+        for output in cell.get("outputs", ())
+        if "text/html" in output.get("data", {})
+    ]
+    table, frame, *others = shown
+    assert "optical" in table
+    assert re.findall(r"<figcaption>(\w+)", frame) == list(FIVE_VIEWS)
+    assert [re.findall(r"<figcaption>(\w+)", other) for other in others] == [["rgb", "depth"]] * 2

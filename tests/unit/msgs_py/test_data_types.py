@@ -1,0 +1,191 @@
+"""Times, poses, cameras, agents and scenes as messages."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import Point, Quaternion
+from geometry_msgs.msg import Pose as PoseMsg
+from hypothesis import given
+from hypothesis import strategies as st
+from std_msgs.msg import Header
+
+import sailenv_msgs.msg as msgs
+from sailenv_msgs.msg import AgentInfo
+from sailenv_msgs_py.agent_msgs import agent_spec_from_msg
+from sailenv_msgs_py.camera_info import camera_info_from_intrinsics, intrinsics_from_camera_info
+from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.picture_msgs import (
+    picture_from_msg,
+    picture_to_msg,
+)
+from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp, stamp_from_ns
+from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import NAMES, PictureSettings
+
+COORDINATES = st.floats(-1e4, 1e4)
+ANGLES = st.floats(-360.0, 360.0)
+POSES = st.builds(
+    Pose.from_rpy_deg,
+    st.tuples(COORDINATES, COORDINATES, COORDINATES),
+    st.tuples(ANGLES, ANGLES, ANGLES),
+)
+SIZES = st.integers(8, 4096)
+INTRINSICS = st.builds(
+    CameraIntrinsics,
+    width=SIZES,
+    height=SIZES,
+    vertical_fov_deg=st.floats(1.0, 170.0),
+    near_m=st.floats(1e-3, 1.0),
+    far_m=st.floats(2.0, 1e4),
+)
+
+
+@given(st.integers(0, MAX_STAMP_NS))
+def test_times_survive_to_the_nanosecond(time_ns: int) -> None:
+    """A stamp is the simulated time, exactly."""
+    stamp = stamp_from_ns(time_ns)
+    assert 0 <= stamp.nanosec < 10**9
+    assert ns_from_stamp(stamp) == time_ns
+
+
+@pytest.mark.parametrize("time_ns", [-1, MAX_STAMP_NS + 1])
+def test_a_time_that_no_stamp_holds_is_refused(time_ns: int) -> None:
+    """Nothing wraps around silently."""
+    with pytest.raises(InvalidRequest, match="time must be"):
+        stamp_from_ns(time_ns)
+
+
+@given(POSES)
+def test_poses_survive_bit_for_bit(pose: Pose) -> None:
+    """Position and quaternion are copied, not computed."""
+    assert pose_from_msg(pose_to_msg(pose)) == pose
+
+
+@pytest.mark.parametrize(
+    "msg",
+    [
+        PoseMsg(position=Point(x=math.nan)),
+        PoseMsg(position=Point(z=math.inf)),
+        PoseMsg(orientation=Quaternion(w=1.2)),
+        PoseMsg(orientation=Quaternion(x=0.0, w=0.0)),
+        PoseMsg(orientation=Quaternion(w=math.nan)),
+    ],
+)
+def test_a_pose_that_is_none_is_refused(msg: PoseMsg) -> None:
+    """NaN, infinity and quaternions that are not of unit length do not get in."""
+    with pytest.raises(InvalidRequest, match="must be"):
+        pose_from_msg(msg)
+
+
+def test_stamped_poses_name_their_frame() -> None:
+    """The stamp and the coordinate frame are those given."""
+    msg = pose_stamped_to_msg(Pose((1.0, 2.0, 3.0)), stamp_from_ns(5), "world")
+    assert (msg.header.frame_id, msg.header.stamp.nanosec, msg.pose.position.y) == ("world", 5, 2.0)
+
+
+@given(INTRINSICS)
+def test_camera_infos_hold_the_intrinsics(intrinsics: CameraIntrinsics) -> None:
+    """K is ours, P is [K | 0], and the axis meets ((W - 1)/2, (H - 1)/2)."""
+    msg = camera_info_from_intrinsics(intrinsics, Header())
+    assert np.array_equal(np.reshape(msg.k, (3, 3)), intrinsics.K)
+    assert np.array_equal(np.reshape(msg.p, (3, 4))[:, :3], intrinsics.K)
+    assert (msg.k[2], msg.k[5]) == ((intrinsics.width - 1) / 2, (intrinsics.height - 1) / 2)
+    assert list(msg.d) == [0.0] * 5
+    assert np.array_equal(np.reshape(msg.r, (3, 3)), np.eye(3))
+    back = intrinsics_from_camera_info(msg, near_m=intrinsics.near_m, far_m=intrinsics.far_m)
+    assert np.allclose(back.K, intrinsics.K, rtol=1e-9)
+
+
+def test_a_camera_of_another_kind_is_refused() -> None:
+    """Distortion, oblong pixels and an axis off the centre are not dropped silently."""
+    for change in ({"d": [0.1, 0.0, 0.0, 0.0, 0.0]}, {"k": [5.0, 0, 0, 0, 6.0, 0, 0, 0, 1]}):
+        msg = camera_info_from_intrinsics(CameraIntrinsics(), Header())
+        for field, value in change.items():
+            setattr(msg, field, value)
+        with pytest.raises(InvalidRequest):
+            intrinsics_from_camera_info(msg)
+    shifted = camera_info_from_intrinsics(CameraIntrinsics(), Header())
+    shifted.k[2] += 0.5
+    with pytest.raises(InvalidRequest, match="cx, cy"):
+        intrinsics_from_camera_info(shifted)
+
+
+def test_a_message_with_a_name_alone_is_an_agent() -> None:
+    """The message's defaults are the spec's own, so a request need not spell them out."""
+    assert agent_spec_from_msg(AgentInfo(name="cam")) == AgentSpec(name="cam", views=FIVE_VIEWS)
+
+
+@pytest.mark.parametrize(
+    ("change", "error"),
+    [
+        ({"width": 0}, InvalidRequest),
+        ({"height": 100000}, InvalidRequest),
+        ({"name": "Not a name"}, InvalidRequest),
+        ({"views": ["rgb", "heat"]}, UnknownName),
+        ({"rate_hz": math.nan}, InvalidRequest),
+        ({"vertical_fov_deg": math.inf}, InvalidRequest),
+        ({"near_m": -1.0}, InvalidRequest),
+        ({"picture": msgs.PictureSettings(bloom=math.nan)}, InvalidRequest),
+        ({"picture": msgs.PictureSettings(tone_curve="log")}, UnknownName),
+    ],
+)
+def test_an_agent_out_of_range_is_refused(
+    change: dict[str, object], error: type[Exception]
+) -> None:
+    """Every number of a request is looked at."""
+    fields = {"name": "cam", **change}
+    with pytest.raises(error, match="must be"):
+        agent_spec_from_msg(AgentInfo(**fields))
+
+
+def test_a_picture_s_message_has_every_setting() -> None:
+    """Names, order and defaults are those of the data type; numbers keep their precision."""
+    assert tuple(msgs.PictureSettings.get_fields_and_field_types()) == NAMES
+    assert picture_from_msg(msgs.PictureSettings()) == PictureSettings()
+    fine = PictureSettings(exposure=0.1, read_noise=1.0 / 3.0)
+    assert picture_from_msg(picture_to_msg(fine)) == fine
+
+
+def test_frame_infos_tell_what_belongs_to_the_frame() -> None:
+    """Sequence, times, scene and the camera's optical pose are the frame's own."""
+    pose = Pose.from_rpy_deg((1.0, 2.0, 3.0), (0.0, 0.0, 90.0))
+    camera = Camera(intrinsics=CameraIntrinsics(width=8, height=8), pose=pose)
+    frame = Frame(
+        agent="cam",
+        scene="optical",
+        epoch=3,
+        revision=4,
+        sequence=5,
+        stamp_ns=2_000_000_001,
+        dt_ns=33_333_333,
+        camera=camera,
+        views={"rgb": np.zeros((8, 8, 3), np.uint8)},
+        timings_s={"render": 0.25},
+    )
+    header = header_of_frame(frame)
+    msg = frame_info_to_msg(frame, header, views=("rgb",), depth_range_m=12.0)
+    assert (header.stamp.sec, header.stamp.nanosec) == (2, 1)
+    assert header.frame_id == "cam/camera_optical_frame"
+    assert (msg.agent, msg.scene, msg.epoch, msg.revision, msg.sequence) == (
+        "cam",
+        "optical",
+        3,
+        4,
+        5,
+    )
+    assert (msg.dt_ns, msg.views, msg.depth_range_m, msg.render_s) == (
+        33_333_333,
+        ["rgb"],
+        12.0,
+        0.25,
+    )
+    optical = pose_from_msg(msg.camera_pose)
+    assert np.allclose(optical.matrix(), camera.world_from_camera, atol=1e-12)

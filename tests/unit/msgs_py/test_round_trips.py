@@ -1,0 +1,366 @@
+"""Every field of every message, drawn at random: data type → message → data type, and back.
+
+What a conversion forgets comes back as a default, so fields are drawn, never left out; and a last
+test holds that each field of each message really takes more than one value.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import defaultdict
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+import sailenv_msgs.msg as msgs
+from sailenv_msgs.srv import GetObject
+from sailenv_msgs_py.agent_msgs import agent_spec_from_msg, agent_spec_to_msg
+from sailenv_msgs_py.changes import changes_from_msg, changes_to_msg
+from sailenv_msgs_py.frame_info import camera_of_frame_info, frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.object_msgs import (
+    behaviour_from_msg,
+    behaviour_to_msg,
+    object_state_from_response,
+    object_state_to_response,
+)
+from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
+from sailenv_msgs_py.scene_msgs import (
+    light_from_msg,
+    light_to_msg,
+    scene_info_from_msg,
+    scene_info_to_msg,
+)
+from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.geometry import Pose
+from sailenv_ros.labels import Category, CategoryTable, Instance
+from sailenv_ros.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
+from sailenv_ros.objects import ObjectState
+from sailenv_ros.picture_settings import LIMITS, PictureSettings
+from sailenv_ros.scene_info import MoverInfo, SceneInfo
+
+pytestmark = pytest.mark.ros
+
+TEXTS = st.text(max_size=8).filter(lambda text: "\x00" not in text)
+NAMES = st.from_regex(r"[a-z][a-z0-9_]{0,20}", fullmatch=True)
+COORDINATES = st.floats(-1e4, 1e4)
+TRIPLES = st.tuples(COORDINATES, COORDINATES, COORDINATES)
+TIMES_NS = st.integers(0, MAX_STAMP_NS)
+# What travels in single precision is drawn in single precision.
+UNIT = st.floats(0.0, 1.0, width=32)
+COLOURS = st.tuples(UNIT, UNIT, UNIT)
+ANGLES = st.floats(-360.0, 360.0)
+POSES = st.builds(Pose.from_rpy_deg, TRIPLES, st.tuples(ANGLES, ANGLES, ANGLES))
+VIEW_SETS = st.sets(st.sampled_from(sorted(VIEWS)), min_size=1).map(tuple)
+
+CATEGORIES = st.builds(
+    Category,
+    id=st.integers(1, 254),
+    name=NAMES,
+    colour=st.tuples(*[st.integers(0, 255)] * 3),
+)
+INSTANCES = st.builds(
+    Instance,
+    id=st.integers(1, 65535),
+    name=TEXTS,
+    asset=TEXTS,
+    category_id=st.integers(0, 255),
+    category=TEXTS,
+    static=st.booleans(),
+)
+LIGHTS = st.builds(
+    lambda inner, outer, **light: Light(
+        inner_cone_deg=min(inner, outer), outer_cone_deg=max(inner, outer), **light
+    ),
+    inner=st.floats(0.0, 89.0, width=32),
+    outer=st.floats(0.0, 89.0, width=32),
+    name=TEXTS,
+    type=st.sampled_from(["directional", "point", "spot", "area"]),
+    colour=COLOURS,
+    position_m=TRIPLES,
+    direction=TRIPLES.filter(lambda xyz: np.linalg.norm(xyz) > 1e-3),
+    **{
+        name: st.floats(low, high, width=32)
+        for name, (low, high, _) in LIGHT_LIMITS.items()
+        if not name.endswith("_cone_deg")
+    },
+)
+# The colours of the sky do not travel; they are those of the scene.
+ENVIRONMENTS = st.builds(
+    Environment,
+    ambient=COLOURS,
+    background=st.sampled_from(["sky", "colour"]),
+    background_colour=COLOURS,
+    exposure=st.floats(-16.0, 16.0, width=32),
+)
+MOVERS = st.builds(
+    MoverInfo,
+    name=TEXTS,
+    controller=st.sampled_from(["waypoint", "rigidbody"]),
+    waypoints=st.lists(POSES, max_size=3).map(tuple),
+    total_time_s=st.floats(0.1, 1e6),
+    loop=st.booleans(),
+)
+PICTURES = st.builds(
+    PictureSettings,
+    tone_curve=st.sampled_from(["filmic", "linear"]),
+    smooth_edges=st.booleans(),
+    supersampling=st.integers(1, 4),
+    **{
+        name: st.floats(low, high)
+        for name, (low, high, _) in LIMITS.items()
+        if name != "supersampling"
+    },
+)
+INTRINSICS = st.builds(
+    CameraIntrinsics,
+    # At four samples across and down, no side has more than 4096.
+    width=st.integers(8, 1024),
+    height=st.integers(8, 1024),
+    vertical_fov_deg=st.floats(1.0, 170.0),
+    near_m=st.floats(1e-3, 1.0),
+    far_m=st.floats(2.0, 1e4),
+)
+AGENTS = st.builds(
+    AgentSpec,
+    name=NAMES,
+    intrinsics=INTRINSICS,
+    depth_range_m=st.floats(1.5, 1e3),
+    rate_hz=st.floats(0.0, 240.0),
+    views=VIEW_SETS,
+    following=st.booleans(),
+    mover=TEXTS,
+    picture=PICTURES,
+)
+JSON_VALUES = st.recursive(
+    st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False) | TEXTS,
+    lambda values: st.lists(values, max_size=3),
+    max_leaves=4,
+)
+BEHAVIOURS = st.builds(
+    lambda kind, parameters: {"type": kind, **parameters},
+    NAMES,
+    st.dictionaries(NAMES.filter(lambda name: name != "type"), JSON_VALUES, max_size=3),
+)
+OBJECTS = st.builds(
+    ObjectState,
+    id=st.integers(1, 65535),
+    name=TEXTS,
+    asset=TEXTS,
+    category_id=st.integers(0, 255),
+    category=TEXTS,
+    pose=POSES,
+    scale=TRIPLES,
+    size_m=TRIPLES,
+    static=st.booleans(),
+    mass_kg=st.floats(0.0, 1e6),
+    bottom_m=st.floats(-1e3, 1e3),
+    linear_velocity=TRIPLES,
+    angular_velocity=TRIPLES,
+    behaviours=st.lists(BEHAVIOURS, max_size=2).map(tuple),
+    sim_time_ns=TIMES_NS,
+)
+
+
+@st.composite
+def scene_infos(draw: st.DrawFn) -> SceneInfo:
+    """Return scenes with up to three of everything, each id and each name once."""
+    instances = draw(st.lists(INSTANCES, max_size=3, unique_by=lambda instance: instance.id))
+    of_name: Callable[[Any], Any] = lambda thing: thing.name  # noqa: E731  # two uses of one key
+    categories = draw(
+        st.lists(CATEGORIES, max_size=3, unique_by=(of_name, lambda category: category.id))
+    )
+    return SceneInfo(
+        scene=draw(TEXTS),
+        scenes=tuple(draw(st.lists(TEXTS, max_size=3))),
+        epoch=draw(st.integers(0, 2**32 - 1)),
+        revision=draw(st.integers(0, 2**32 - 1)),
+        sim_time_ns=draw(TIMES_NS),
+        mode=draw(st.sampled_from(["realtime", "lockstep"])),
+        paused=draw(st.booleans()),
+        real_time_factor=draw(st.floats(0.1, 10.0)),
+        seed=draw(st.integers(0, 2**63 - 1)),
+        categories=CategoryTable(categories),
+        instances=tuple(instances),
+        moving=frozenset(i.id for i in instances if draw(st.booleans())),
+        spawnables=tuple(draw(st.lists(TEXTS, max_size=3))),
+        lights=tuple(draw(st.lists(LIGHTS, max_size=2))),
+        environment=draw(ENVIRONMENTS),
+        agents=tuple(draw(st.lists(AGENTS, max_size=2))),
+        movers=tuple(draw(st.lists(MOVERS, max_size=2))),
+        renderer=draw(TEXTS),
+    )
+
+
+@st.composite
+def frames(draw: st.DrawFn) -> Frame:
+    """Return frames of a few pixels."""
+    camera = Camera(intrinsics=draw(INTRINSICS), pose=draw(POSES))
+    return Frame(
+        agent=draw(NAMES),
+        scene=draw(TEXTS),
+        epoch=draw(st.integers(0, 2**32 - 1)),
+        revision=draw(st.integers(0, 2**32 - 1)),
+        sequence=draw(st.integers(0, 2**64 - 1)),
+        stamp_ns=draw(TIMES_NS),
+        dt_ns=draw(st.integers(0, 2**63 - 1)),
+        camera=camera,
+        views={},
+        timings_s={"render": draw(st.floats(0.0, 1e3))},
+    )
+
+
+def same_light(one: Light, other: Light) -> None:
+    """A direction is brought to unit length anew; everything else is copied."""
+    np.testing.assert_allclose(one.direction, other.direction, rtol=0.0, atol=1e-15)
+    for name in ("name", *LIGHT_ATTRIBUTES):
+        assert name == "direction" or getattr(one, name) == getattr(other, name), name
+
+
+@given(LIGHTS)
+def test_lights(light: Light) -> None:
+    msg = light_to_msg(light)
+    same_light(light_from_msg(msg), light)
+    changes = {name: getattr(light, name) for name in LIGHT_ATTRIBUTES}
+    same_light(Light(name=light.name, **changes_from_msg(changes_to_msg(changes))), light)
+
+
+VALUES = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-(2**63), 2**63 - 1),
+    st.floats(allow_nan=False),
+    st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"])),
+    st.lists(st.floats(allow_nan=False), max_size=4),
+    st.lists(st.booleans(), min_size=1, max_size=4),
+    st.lists(st.sampled_from(["a", "b"]), min_size=1, max_size=4),
+)
+
+
+@given(st.dictionaries(TEXTS, VALUES, max_size=4))
+def test_changes_of_anything(changes: dict[str, Any]) -> None:
+    assert changes_from_msg(changes_to_msg(changes)) == changes
+
+
+def test_changes_have_the_types_of_numpy_and_refuse_what_no_message_holds() -> None:
+    """Arrays are lists, scalars numbers; a mapping, a mixed list, a name twice are errors."""
+    given_ = {"a": np.float32(0.5), "b": np.arange(2), "c": (1, np.float64(2.0)), "d": 2**70}
+    read = changes_from_msg(changes_to_msg(given_))
+    assert read == {"a": 0.5, "b": [0.0, 1.0], "c": [1.0, 2.0], "d": float(2**70)}
+    for value in ({}, [1, "a"], object(), [None]):
+        with pytest.raises(InvalidRequest, match="a number, a text"):
+            changes_to_msg({"x": value})
+    with pytest.raises(InvalidRequest, match="each name once"):
+        changes_from_msg(changes_to_msg({"x": 1}) * 2)
+
+
+@given(PICTURES)
+def test_settings_of_pictures(settings_: PictureSettings) -> None:
+    msg = picture_to_msg(settings_)
+    assert picture_from_msg(msg) == settings_
+
+
+@given(AGENTS, st.none() | POSES)
+def test_agents(spec: AgentSpec, pose: Pose | None) -> None:
+    """The start pose stands beside the message."""
+    msg = agent_spec_to_msg(spec)
+    assert agent_spec_from_msg(msg, pose=pose) == dataclasses.replace(spec, pose=pose)
+
+
+@given(BEHAVIOURS)
+def test_behaviours(behaviour: Mapping[str, Any]) -> None:
+    msg = behaviour_to_msg(behaviour)
+    assert behaviour_from_msg(msg) == behaviour
+
+
+@given(OBJECTS)
+def test_states_of_objects(state: ObjectState) -> None:
+    response = GetObject.Response()
+    object_state_to_response(state, response)
+    assert object_state_from_response(response) == state
+
+
+# Drawing a scene of everything is slow in itself.
+@settings(max_examples=30, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@given(scene_infos())
+def test_scenes(info: SceneInfo) -> None:
+    msg = scene_info_to_msg(info)
+    back = scene_info_from_msg(msg)
+    for field in dataclasses.fields(SceneInfo):
+        one, other = getattr(back, field.name), getattr(info, field.name)
+        if field.name == "lights":
+            for read, written in zip(one, other, strict=True):
+                same_light(read, written)
+        elif field.name == "categories":
+            assert dict(one) == dict(other)
+        else:
+            assert one == other, field.name
+
+
+def frame_info_of(frame: Frame) -> msgs.FrameInfo:
+    views = tuple(VIEWS)[: 1 + frame.sequence % len(VIEWS)]
+    return frame_info_to_msg(
+        frame, header_of_frame(frame), views=views, depth_range_m=1.0 + frame.epoch
+    )
+
+
+@given(frames(), VIEW_SETS, st.floats(0.1, 1e4))
+def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float) -> None:
+    """Every field but the pose is the frame's own value; the pose is its camera's, to rounding."""
+    header = header_of_frame(frame)
+    msg = frame_info_to_msg(frame, header, views=views, depth_range_m=depth_range_m)
+    told = {name: getattr(msg, name) for name in msg.get_fields_and_field_types()}
+    told.pop("camera_pose")
+    assert ns_from_stamp(told.pop("header").stamp) == frame.stamp_ns
+    assert told == {
+        "agent": frame.agent,
+        "scene": frame.scene,
+        "epoch": frame.epoch,
+        "revision": frame.revision,
+        "sequence": frame.sequence,
+        "dt_ns": frame.dt_ns,
+        "views": list(views),
+        "near_m": frame.camera.intrinsics.near_m,
+        "far_m": frame.camera.intrinsics.far_m,
+        "depth_range_m": depth_range_m,
+        "render_s": frame.timings_s["render"],
+    }
+    read = camera_of_frame_info(msg, frame.camera.intrinsics)
+    np.testing.assert_allclose(
+        read.world_from_camera, frame.camera.world_from_camera, rtol=0.0, atol=1e-9
+    )
+
+
+def test_every_field_of_every_message_is_drawn_above() -> None:
+    """No message of the package lacks a strategy, and no field of one is always the same."""
+    taken: dict[tuple[str, str], set[str]] = defaultdict(set)
+
+    def note(msg: Any) -> None:
+        """Remember the values of a message's fields, and of the messages of ours within it."""
+        for field in msg.get_fields_and_field_types():
+            value = getattr(msg, field)
+            taken[type(msg).__name__, field].add(repr(value))
+            for part in value if isinstance(value, list) else [value]:
+                if type(part).__module__.startswith("sailenv_msgs."):
+                    note(part)
+
+    quick = settings(
+        max_examples=30, database=None, derandomize=True, deadline=None, phases=[Phase.generate]
+    )
+    quick(given(BEHAVIOURS.map(behaviour_to_msg))(note))()
+    quick(given(scene_infos().map(scene_info_to_msg))(note))()
+    quick(given(frames().map(frame_info_of))(note))()
+    every = {
+        (kind, field)
+        for kind in dir(msgs)
+        if isinstance(getattr(msgs, kind), type)
+        for field in getattr(msgs, kind).get_fields_and_field_types()
+    }
+    assert {at for at in every if len(taken[at]) < 2} == set()

@@ -1,0 +1,199 @@
+"""Drives every kernel with input that nobody should give; run by test_sanitizers.py.
+
+    python -m tests.unit.native.hostile_input INSTRUCTION_SET...
+
+A sanitizer ends the process where a kernel reads or writes beyond its arrays or does what C++
+does not define. What kernels compute is tested elsewhere. Add a function for each new kernel to
+`DRIVERS`; sizes go from 8x8 (and less) to 4096x4096.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.geometry import Pose
+from sailenv_ros.native.ambient_visibility import find_ambient_visibility
+from sailenv_ros.native.annotation import annotate_pixels
+from sailenv_ros.native.client_views import convert_views
+from sailenv_ros.native.library import using_instruction_set
+from sailenv_ros.native.light_maps import blur_directions, sum_texels
+from sailenv_ros.native.picture_kernels import make_picture
+from sailenv_ros.native.resolve import resolve_samples
+from sailenv_ros.native.self_test import run_self_test
+from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.render.ambient_occlusion import PATTERN
+from tests.support.hostile_scenes import hostile_scenes
+from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
+
+__all__ = ["DRIVERS", "THREADS"]
+
+THREADS = (1, 3)
+
+
+def drive_self_test() -> None:
+    """No rows, one row, more threads than rows."""
+    for threads in THREADS:
+        for rows in (0, 1, 2, 1000):
+            run_self_test(rows, tile_rows=16, threads=threads)
+
+
+SIZES = ((1, 1), (1, 2), (2, 1), (3, 3), (8, 8), (7, 33), (65, 19))
+"""Of pictures; cameras have at least 8 pixels a side, kernels take what comes."""
+
+LARGEST = (4096, 4096)
+"""Of pictures that a camera may have: tried once a kernel, since sanitizers are slow."""
+
+NUMBERS = (np.nan, np.inf, -np.inf, -1.0, 0.0, 1e-45, 1e-9, 0.3, 1e30, 65535.0, 65536.0, 3e9)
+"""What surfaces, motions and lenses are made of."""
+
+
+def surfaces(*sizes: tuple[int, int]) -> Iterator[NDArray[np.float32]]:
+    """Make surfaces of hostile numbers, in patches and one by one."""
+    rng = np.random.default_rng(0)
+    for height, width in sizes:
+        numbers = rng.choice(np.array(NUMBERS, np.float32), (height, width, 2))
+        numbers[:, width // 2 :] = numbers[:, width // 2 : width // 2 + 1]
+        yield numbers
+
+
+def drive_annotate() -> None:
+    """Ids that are none, motions and lenses that are no numbers, a past of another size."""
+    rng = np.random.default_rng(1)
+    rows = rng.integers(0, 65536, 65536).astype(np.uint16)
+    rows[:1000] %= 5
+    categories = np.zeros(65536, np.uint8)
+    motions = rng.choice(np.array(NUMBERS), (4, 3, 4))
+    motions[1] = 0.0
+    for surface in surfaces(*SIZES, LARGEST):
+        height, width = surface.shape[:2]
+        views = {
+            "depth": np.empty((height, width), np.float32),
+            "category": np.empty((height, width), np.uint8),
+            "instance": np.empty((height, width), np.uint16),
+            "flow": np.empty((height, width, 2), np.float32),
+            "flow_valid": np.empty((height, width), np.bool_),
+            "occlusion": np.empty((height, width), np.bool_),
+        }
+        pasts = (None, np.ones((3, 2), np.float32), surface[..., 0].copy())
+        lenses = ((500.0, 0.5, 0.5, 0.05, 60.0), (np.nan, 1e30, -np.inf, np.nan, np.nan))
+        large = surface.shape[:2] == LARGEST
+        for lens in lenses[:1] if large else lenses:
+            for past in pasts[2:] if large else pasts:
+                annotate_pixels(
+                    *(surface, categories, rows, motions, np.array(lens), 1e-30, np.nan, past),
+                    views,
+                    threads=THREADS[1],
+                )
+
+
+def drive_ambient_visibility() -> None:
+    """Radii that are endless or none, depths that are no depths."""
+    baked = np.zeros(65536, np.bool_)
+    baked[0] = True
+    plain = (300.0, 2.0, 2.0, 0.3, 1.5, 48.0, 0.08, 1.3, 0.03)
+    wild = (np.nan, np.inf, -1.0, np.inf, 1.5, 48.0, np.nan, 1e30, np.nan)
+    for surface in surfaces(*SIZES, LARGEST):
+        for numbers in (plain,) if surface.shape[:2] == LARGEST else (plain, wild):
+            find_ambient_visibility(
+                surface, baked, np.array(numbers, np.float32), PATTERN, threads=THREADS[1]
+            )
+
+
+def drive_pictures() -> None:
+    """Every half-precision number there is, also where radiance cannot be negative."""
+    table = np.arange(65536).astype(np.uint8)
+    for surface in surfaces(*SIZES, LARGEST):
+        height, width = surface.shape[:2]
+        large = surface.shape[:2] == LARGEST
+        bits = np.resize(np.arange(65521, dtype=np.uint16), (height, width, 4))
+        radiance = np.ascontiguousarray(bits).view(np.float16)
+        half = (height + 1) // 2, (width + 1) // 2
+        visibility, inverse = np.zeros(half, np.uint8), np.full(half, np.nan, np.float32)
+        edges = ((12, 12),) if large else ((0, 1), (1, 1), (12, 12), (255, 15))
+        for shade in ((visibility, inverse),) if large else ((None, None), (visibility, inverse)):
+            for least_contrast, reach_px in edges:
+                make_picture(
+                    *(radiance, table, *shade, surface),
+                    same_surface=0.04,
+                    least_contrast=least_contrast,
+                    reach_px=reach_px,
+                    threads=THREADS[1],
+                )
+            resolve_samples(radiance, 1, *shade, surface, same_surface=0.04, threads=THREADS[1])
+
+
+def drive_client_views() -> None:
+    """Ids beyond the colours, depths that are no depths, a range of no length."""
+    for surface in surfaces(*SIZES):
+        height, width = surface.shape[:2]
+        views = {
+            "depth": surface[..., 0].copy(),
+            "instance": np.resize(np.arange(65536, dtype=np.uint16), (height, width)),
+            "flow": surface.copy(),
+        }
+        for colours in (np.zeros(1, np.uint32), np.zeros(65536, np.uint32)):
+            for range_m in (10.0, 0.1 + 1e-12, 1e30):
+                convert_views(
+                    views, near_m=0.1, range_m=range_m, colours=colours, threads=THREADS[1]
+                )
+
+
+def drive_drawing() -> None:
+    """Poses that are no numbers, triangles without extent, huge and far ones, the eye inside."""
+    for threads in THREADS:
+        renderer = NativeRenderer(threads=threads)
+        for make in hostile_scenes().values():
+            snapshot = make()
+            for width, height in ((8, 8), (97, 61)):
+                for times in (1, 2):
+                    camera = camera_at(width=width, height=height)
+                    camera = replace(camera, picture=PictureSettings(supersampling=times))
+                    with np.errstate(all="ignore"):
+                        renderer.render(snapshot, None, camera, ("rgb", "depth", "normals"))
+        renderer.close()
+    renderer = NativeRenderer(threads=2)
+    scene = snapshot_of([Thing(model_of(box_mesh(1.0), alpha="blend"), Pose((0.0, 0.0, 0.0)))])
+    renderer.render(scene, None, camera_at(width=4096, height=4096), ("instance",))
+    renderer.close()
+
+
+def drive_light_maps() -> None:
+    """Layers of any numbers and sizes; lobes that weigh nothing."""
+    rng = np.random.default_rng(3)
+    for shape in ((1, 1), (3, 5), (64, 65)):
+        halves = rng.choice(np.array([0.0, 1e-7, 6e4, np.inf, np.nan], np.float16), (*shape, 3))
+        shown = rng.integers(0, 256, shape).astype(np.uint8)
+        factor = np.array([0.0, np.nan, 1e38], np.float32)
+        sum_texels([(halves, factor)] * 3, factor, shown, threads=2)
+    for numbers in (np.nan, 0.0, 1e38):
+        light = np.full((8, 8, 3), numbers, np.float32)
+        blur_directions(light, light, np.full((5, 4), numbers, np.float32), light, threads=2)
+
+
+DRIVERS: tuple[Callable[[], None], ...] = (
+    drive_self_test,
+    drive_annotate,
+    drive_ambient_visibility,
+    drive_pictures,
+    drive_client_views,
+    drive_drawing,
+    drive_light_maps,
+)
+
+
+def main(instruction_sets: list[str]) -> None:
+    """Run all drivers on each of the instruction sets."""
+    for name in instruction_sets:
+        with using_instruction_set(name):
+            for driver in DRIVERS:
+                driver()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,215 @@
+"""The kernels in C++ compute the bytes of their definition in plain NumPy.
+
+On every instruction set that this machine has, and on any number of threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.native import ambient_visibility, annotation, picture_kernels, resolve
+from sailenv_ros.native.library import load_library, using_instruction_set
+from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.pictures import frame_dict
+from sailenv_ros.render import reference_kernels as reference
+from sailenv_ros.render.ambient_occlusion import PATTERN, kernel_numbers
+from sailenv_ros.render.tone import code_table
+
+SIZES = [(8, 8), (9, 13), (61, 97), (48, 160), (130, 200)]
+THREADS = (1, 2, 5)
+
+Arrays = dict[str, np.ndarray]
+
+
+@pytest.fixture(params=load_library().instruction_sets)
+def instruction_set(request: pytest.FixtureRequest) -> Iterator[str]:
+    """Let kernels run on one of the instruction sets."""
+    with using_instruction_set(request.param):
+        yield request.param
+
+
+def blocky_surface(rng: np.random.Generator, height: int, width: int) -> np.ndarray:
+    """Patches of some ids at slanted depths, with sky, single pixels and what is too near."""
+    down, along = -(-height // 7), -(-width // 11)
+    ids = np.repeat(np.repeat(rng.integers(0, 40, (down, along)), 7, 0), 11, 1)[:height, :width]
+    single = rng.random((height, width)) < 0.05
+    ids[single] = rng.integers(0, 60000, int(single.sum()))
+    depth = 0.5 + 0.15 * ids % 4 + 0.01 * np.arange(width) + rng.random((height, 1))
+    depth[rng.random((height, width)) < 0.02] = 0.01
+    depth[rng.random((height, width)) < 0.02] = 70.0
+    sky = ids == 0
+    depth[sky] = np.inf
+    return np.stack([depth, ids], axis=-1).astype(np.float32)
+
+
+def annotation_input(rng: np.random.Generator, height: int, width: int) -> tuple:
+    surface = blocky_surface(rng, height, width)
+    rows = np.zeros(65536, np.uint16)
+    rows[:40] = np.arange(1, 41)
+    rows[7] = 0
+    rows[9] = 60000  # beyond the motions
+    motions = rng.normal(0.0, 0.02, (41, 3, 4))
+    motions[::3] = 0.0
+    motions[0] = np.nan  # of what has no past: must not be looked at
+    intrinsics = CameraIntrinsics(width=max(width, 8), height=max(height, 8))
+    lens = np.array([intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.05, 60.0])
+    factor = np.where(rng.random((height, width)) < 0.5, 1.0, 0.9)
+    past = (surface[..., 0] * factor).astype(np.float32)
+    categories = rng.integers(0, 256, 65536).astype(np.uint8)
+    return surface, categories, rows, motions, lens, 1.0 / 30.0, 0.01, past
+
+
+def empty_views(height: int, width: int) -> Arrays:
+    return {
+        "depth": np.empty((height, width), np.float32),
+        "category": np.empty((height, width), np.uint8),
+        "instance": np.empty((height, width), np.uint16),
+        "flow": np.empty((height, width, 2), np.float32),
+        "flow_valid": np.empty((height, width), np.bool_),
+        "occlusion": np.empty((height, width), np.bool_),
+    }
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.usefixtures("instruction_set")
+def test_annotations_are_those_of_the_definition(size: tuple[int, int]) -> None:
+    """All views, bit by bit; and each of them alone."""
+    given = annotation_input(np.random.default_rng(size), *size)
+    expected = empty_views(*size)
+    reference.annotate_pixels(*given, expected, threads=1)
+    # Everything happens in this picture.
+    assert expected["flow_valid"].any()
+    assert not expected["flow_valid"].all()
+    if size[0] > 60:
+        assert expected["occlusion"][expected["flow_valid"]].any()
+        assert not expected["occlusion"][expected["flow_valid"]].all()
+    for threads in THREADS:
+        got = empty_views(*size)
+        annotation.annotate_pixels(*given, got, threads=threads)
+        for name, array in got.items():
+            assert array.tobytes() == expected[name].tobytes(), name
+    for name in expected:
+        some = {key: array for key, array in empty_views(*size).items() if key in ("depth", name)}
+        annotation.annotate_pixels(*given, some, threads=2)
+        assert some[name].tobytes() == expected[name].tobytes(), name
+
+
+@pytest.mark.usefixtures("instruction_set")
+def test_without_a_past_picture_everything_counts_as_hidden() -> None:
+    """And flow is what it is."""
+    given = annotation_input(np.random.default_rng(3), 40, 60)
+    for kernels in (annotation, reference):
+        views = empty_views(40, 60)
+        kernels.annotate_pixels(*given[:-1], None, views, threads=2)
+        assert views["occlusion"].all()
+        assert views["flow_valid"].any()
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("share_baked", [0.0, 0.7, 1.0])
+@pytest.mark.usefixtures("instruction_set")
+def test_ambient_visibility_is_that_of_the_definition(
+    size: tuple[int, int], share_baked: float
+) -> None:
+    """With some of the surfaces baked, with all and with none."""
+    rng = np.random.default_rng(size)
+    surface = blocky_surface(rng, *size)
+    baked = rng.random(65536) < share_baked
+    numbers = kernel_numbers(CameraIntrinsics(width=size[1], height=size[0]), 0.8, 0.6)
+    visibility, inverse = reference.find_ambient_visibility(
+        surface, baked, numbers, PATTERN, threads=1
+    )
+    if share_baked == 0.0 and size[0] > 40:
+        assert visibility.min() < 200
+    for threads in THREADS:
+        got = ambient_visibility.find_ambient_visibility(
+            surface, baked, numbers, PATTERN, threads=threads
+        )
+        np.testing.assert_array_equal(got[0], visibility)
+        np.testing.assert_array_equal(got[1], inverse)
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("least_contrast", [0, 12])
+@pytest.mark.parametrize("shaded", [False, True])
+@pytest.mark.usefixtures("instruction_set")
+def test_pictures_are_those_of_the_definition(
+    size: tuple[int, int], least_contrast: int, shaded: bool
+) -> None:
+    """Tone curve, ambient visibility and smooth edges, alone and together."""
+    rng = np.random.default_rng(size)
+    surface = blocky_surface(rng, *size)
+    radiance = picture_radiance(rng, surface)
+    table = code_table(PictureSettings())
+    numbers = kernel_numbers(CameraIntrinsics(width=size[1], height=size[0]), 1.0, 0.6)
+    shade = reference.find_ambient_visibility(
+        surface, np.zeros(65536, np.bool_), numbers, PATTERN, threads=1
+    )
+    given = (radiance, table, *(shade if shaded else (None, None)), surface)
+    sizes = {"same_surface": 0.04, "least_contrast": least_contrast, "reach_px": 12}
+    expected = reference.make_picture(*given, **sizes, threads=1)
+    if least_contrast and size[0] > 60:
+        plain = reference.make_picture(*given, **{**sizes, "least_contrast": 0}, threads=1)
+        assert (plain != expected).any()
+    for threads in THREADS:
+        got = picture_kernels.make_picture(*given, **sizes, threads=threads)
+        np.testing.assert_array_equal(got, expected)
+
+
+@pytest.mark.parametrize("times", [1, 2, 3, 4])
+@pytest.mark.parametrize("shaded", [False, True])
+@pytest.mark.usefixtures("instruction_set")
+def test_samples_are_resolved_as_the_definition_does(times: int, shaded: bool) -> None:
+    """Sizes that are odd, too."""
+    rng = np.random.default_rng(times)
+    height, width = 31, 45
+    surface = blocky_surface(rng, times * height, times * width)
+    samples = picture_radiance(rng, surface)
+    shade = (
+        rng.integers(0, 256, (16, 23)).astype(np.uint8),
+        (1.0 / surface[:: 2 * times, :: 2 * times, 0]).astype(np.float32),
+    )
+    given = (samples, times, *(shade if shaded else (None, None)), surface)
+    for keep in (False, True) if times == 1 else (False,):
+        words = {"same_surface": 0.04, "keep_ambient_share": keep}
+        expected = reference.resolve_samples(*given, **words, threads=1)
+        for threads in THREADS:
+            got = resolve.resolve_samples(*given, **words, threads=threads)
+            assert got.tobytes() == expected.tobytes()
+
+
+@pytest.mark.usefixtures("instruction_set")
+def test_the_clients_arrays_are_those_that_numpy_makes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Grey depth, colours of instances, and flow that is 0 where there is none."""
+    rng = np.random.default_rng(5)
+    surface = blocky_surface(rng, 130, 211)
+    depth = surface[..., 0].copy()
+    depth.flat[:9] = [np.nan, np.inf, -np.inf, -1.0, 0.0, 0.05, 10.0, 9.999, 11.0]
+    flow = rng.normal(size=(130, 211, 2)).astype(np.float32)
+    flow[rng.random((130, 211)) < 0.3] = np.nan
+    views = {"depth": depth, "instance": surface[..., 1].astype(np.uint16), "flow": flow}
+    made = []
+    for usable in (True, False):
+        monkeypatch.setattr(frame_dict, "native_is_usable", lambda usable=usable: usable)
+        given = {name: array.copy() for name, array in views.items()}
+        made.append(frame_dict._converted(given, 0.05, 10.0))
+        np.testing.assert_array_equal(made[-1]["flow"], np.nan_to_num(flow))
+        assert made[-1]["flow"] is given["flow"]
+    assert made[0].keys() == made[1].keys()
+    for name, array in made[0].items():
+        assert array.dtype == made[1][name].dtype
+        np.testing.assert_array_equal(array, made[1][name])
+
+
+def picture_radiance(rng: np.random.Generator, surface: np.ndarray) -> np.ndarray:
+    """Light with edges where the surfaces have them, of all magnitudes."""
+    ids = surface[..., 1].astype(np.intp)
+    light = 10.0 ** rng.uniform(-2.0, 0.7, (60000, 4))
+    radiance = light[ids % 60000]
+    radiance[..., 3] = rng.random(ids.shape) * 1.2
+    radiance[0, :4, :3] = [[0.0, 6e-8, 3e-5], [65504.0, 0.0, 1.0], [1e-7, 1e-6, 1e-5], [9, 9, 9]]
+    return radiance.astype(np.float16)
