@@ -23,7 +23,6 @@ import numpy as np
 from sailenv_ros import Agent, Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.pictures.frame_dict import frame_dict
 
 NAMESPACE = f"/delivery_{os.getpid()}"
 STEPS = 8
@@ -72,15 +71,7 @@ def on_request(size: tuple[int, int], frames: int, scene: str) -> dict[str, dict
 def in_process(simulation: Simulation) -> float:
     """Make the same dict as an Agent's without any transport; return the time of rendering [s]."""
     frame = simulation.capture(agent="bench")
-    frame_dict(
-        {view: values.copy() for view, values in frame.views.items()},
-        camera=frame.camera,
-        depth_range_m=10.0,
-        scene=frame.scene,
-        sequence=frame.sequence,
-        stamp_ns=frame.stamp_ns,
-        dt_ns=frame.dt_ns,
-    )
+    frame.to_dict()
     return frame.timings_s["render"]
 
 

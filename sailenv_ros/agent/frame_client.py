@@ -64,15 +64,22 @@ class FrameClient:
         deadline = time.monotonic() + timeout_s
         while (left_s := deadline - time.monotonic()) > 0.0:
             bundle = self._captured(wanted, left_s)
-            if bundle is not None:
-                return self._frame_of(bundle, max(0.0, deadline - time.monotonic()))
+            frame = None if bundle is None else self._frame_of(bundle, deadline)
+            if frame is not None:
+                return frame
             self.recaptured += 1
         raise DeadlineExceeded(f"the images of a frame of agent {self._spec.name!r}", timeout_s)
 
     def newer(self, sequence: int, timeout_s: float) -> Frame:
         """Wait for the newest streamed frame with a number above the given one."""
-        bundle = self._topics.take_newer(sequence, self._spec.views, timeout_s)
-        return self._frame_of(bundle, timeout_s)
+        deadline = time.monotonic() + timeout_s
+        left_s = timeout_s
+        while True:
+            bundle = self._topics.take_newer(sequence, self._spec.views, left_s)
+            frame = self._frame_of(bundle, deadline)
+            if frame is not None:
+                return frame
+            left_s = max(0.0, deadline - time.monotonic())
 
     def close(self) -> None:
         """End the subscriptions."""
@@ -93,9 +100,12 @@ class FrameClient:
         bundle = self._topics.take(response.sequence, left_s, QUIET_S)
         return bundle if bundle is not None and set(bundle.images) == set(views) else None
 
-    def _frame_of(self, bundle: Bundle, timeout_s: float) -> Frame:
-        # The ids of a frame are to be found in `instances` from now on.
-        self._remote.await_revision(bundle.info.revision, timeout_s)
-        specs = {spec.name: spec for spec in self._remote.info.agents}
+    def _frame_of(self, bundle: Bundle, deadline: float) -> Frame | None:
+        """Make a frame with the scene of its own instant; None if that was lost on the way."""
+        left_s = max(0.0, deadline - time.monotonic())
+        info = self._remote.connection.await_revision(bundle.info.revision, left_s)
+        if info is None:
+            return None
+        specs = {spec.name: spec for spec in info.agents}
         spec = specs.get(self._spec.name, self._spec)
-        return frame_of_bundle(bundle, spec.intrinsics)
+        return frame_of_bundle(bundle, spec.intrinsics, info)

@@ -10,12 +10,15 @@ from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.system.memory import keep_freed_memory
 
 __all__ = ["frame_of_bundle"]
 
 
-def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> Frame:
+def frame_of_bundle(
+    bundle: Bundle, intrinsics: CameraIntrinsics, scene_info: SceneInfo | None
+) -> Frame:
     """Make one frame; its arrays lie on the messages' bytes, which nobody else has.
 
     Parameters
@@ -24,6 +27,8 @@ def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> Frame:
         Of `sailenv_msgs/FrameInfo` and `sensor_msgs/Image`.
     intrinsics : CameraIntrinsics
         Of the agent that the frame is of.
+    scene_info : SceneInfo or None
+        The one of the frame's revision, if it is known.
     """
     _keep_freed_memory_once()
     info, images = bundle.info, bundle.images
@@ -39,6 +44,7 @@ def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> Frame:
         depth_range_m=info.depth_range_m,
         views={view: view_from_image(view, images[view]) for view in VIEWS if view in images},
         timings_s={"render": info.render_s},
+        info=scene_info,
     )
 
 
