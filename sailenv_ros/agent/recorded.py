@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.agent.frame_sync import Bundle
-from sailenv_ros.agent.received import frame_of_bundle
+from sailenv_ros.agent.received import frame_of_info, views_of_bundle
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.operations.frame_pictures import frame_pictures
@@ -107,9 +107,9 @@ class RecordedAgent(Sequence[dict[str, Any]]):
             return [self[number] for number in range(*index.indices(len(self)))]
         self._current = self._frames.position(index)
         info, images = self._frames.messages(self._current)
-        bundle = Bundle(sequence=info.sequence, info=info, images=images)
+        views = views_of_bundle(Bundle(sequence=info.sequence, info=info, images=images))
         intrinsics = self._frames.intrinsics(self._current)
-        return frame_of_bundle(bundle, intrinsics, self._info).to_dict(copy=False)
+        return frame_of_info(info, views, intrinsics, self._info).to_dict(copy=False)
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return (self[number] for number in range(len(self)))
