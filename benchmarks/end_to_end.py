@@ -188,6 +188,7 @@ def compare(size: tuple[int, int], frames: int, scene: str) -> dict[str, Any]:
         agents: dict[str, Agent] = {}
         for number, (name, (backend, direct)) in enumerate(WAYS.items()):
             settings = {"scene": scene, "mode": "lockstep", "agent.name": "", "backend": backend}
+            os.environ["SAILENV_DIRECT_FRAMES"] = "1"  # read by the simulator at its start
             agents[name] = agent = opened.enter_context(
                 Agent(
                     width=width,
@@ -196,7 +197,7 @@ def compare(size: tuple[int, int], frames: int, scene: str) -> dict[str, Any]:
                     simulator=settings,
                 )
             )
-            os.environ["SAILENV_DIRECT_FRAMES"] = direct  # read at the second frame
+            os.environ["SAILENV_DIRECT_FRAMES"] = direct  # and by an Agent at its second frame
             for _ in range(2):
                 agent.get_frame()
             agent.step(REST_STEPS)

@@ -6,11 +6,11 @@ again only when none of them is held any more.
 
 from __future__ import annotations
 
+import math
 import select
 import socket
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
 
@@ -79,7 +79,7 @@ class DirectFrames:
         subscribed : tuple of str
             Topics of the agent that this Agent itself reads, and on which it needs no frame now.
         intrinsics : CameraIntrinsics
-            What the agent's camera should have.
+            That the agent's camera had last, as far as is known.
         timeout_s : float
             Deadline [s].
 
@@ -100,11 +100,14 @@ class DirectFrames:
         """
         height, width = intrinsics.height, intrinsics.width
         sizes = (
-            int(np.prod(VIEWS[view].shape(height, width))) * VIEWS[view].dtype.itemsize
+            math.prod(VIEWS[view].shape(height, width)) * VIEWS[view].dtype.itemsize
             for view in views
             if view in VIEWS
         )
-        segment = self._pool.take(max(1, sum(map(padded, sizes))))
+        try:
+            segment = self._pool.take(max(1, sum(map(padded, sizes))))
+        except OSError as problem:
+            raise LineBroken(str(problem)) from None
         if segment is None:
             raise LineBroken("too many frames are held")
         try:
@@ -125,6 +128,8 @@ class DirectFrames:
                 return None
             raise error_from_response(response)
         info = deserialize_message(parts[1], FrameInfo)
+        # Of the frame itself: another client may have changed the camera a moment ago.
+        height, width = header["height"], header["width"]
         whole = self._pool.lend(segment)
         arrays = {
             view: view_of(whole, begin, VIEWS[view].dtype, VIEWS[view].shape(height, width))

@@ -25,7 +25,6 @@ from sailenv_msgs_py.error_codes import error_to_response
 from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
 from sailenv_msgs_py.services import SERVICES
 from sailenv_ros.errors import InternalFault, InvalidRequest, SailenvError
-from sailenv_ros.frame import Frame
 from sailenv_ros.nodes.publishers import AgentPublisher
 from sailenv_ros.operations import Operations
 from sailenv_ros.simulation import Simulation
@@ -151,9 +150,9 @@ class DirectFrames:
         info = frame_info_to_msg(
             frame, header_of_frame(frame), views=frame.views, depth_range_m=frame.depth_range_m
         )
-        places = _written(frame.views, memory)
+        places, lens = _written(frame.views, memory), frame.camera.intrinsics
         return (
-            {"places": places, "size": _needed(frame)},
+            {"places": places, "height": lens.height, "width": lens.width},
             [serialize_message(response), serialize_message(info)],
         )
 
@@ -161,11 +160,7 @@ class DirectFrames:
 def _refused(error: SailenvError) -> tuple[dict[str, Any], list[bytes]]:
     response = Capture.Response()
     error_to_response(error, response)
-    return {"places": None, "size": 0}, [serialize_message(response)]
-
-
-def _needed(frame: Frame) -> int:
-    return sum(padded(values.nbytes) for values in frame.views.values())
+    return {"places": None}, [serialize_message(response)]
 
 
 def _written(views: Mapping[str, NDArray[Any]], memory: mmap.mmap) -> dict[str, int] | None:

@@ -7,6 +7,7 @@ no array on it is held any more, so that a held frame is never overwritten. Know
 from __future__ import annotations
 
 import fcntl
+import math
 import mmap
 import os
 import threading
@@ -181,7 +182,7 @@ def view_of(whole: Any, offset: int, dtype: Any, shape: tuple[int, ...]) -> NDAr
     InvalidRequest
         If it does not lie within them.
     """
-    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    size = math.prod(shape) * np.dtype(dtype).itemsize
     if offset < 0 or offset % ALIGNMENT or offset + size > len(whole):
         raise InvalidRequest("place in a segment", (offset, size), f"within {len(whole)} bytes")
     return np.asarray(whole[offset : offset + size].view(dtype).reshape(shape))

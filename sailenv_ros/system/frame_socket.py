@@ -19,9 +19,17 @@ from typing import Any
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.system.presence import open_private_folder
 
-__all__ = ["connect", "is_wanted", "listen", "peer_is_same_user", "receive", "send"]
+__all__ = [
+    "DIRECT_FRAMES",
+    "connect",
+    "is_wanted",
+    "listen",
+    "peer_is_same_user",
+    "receive",
+    "send",
+]
 
-VARIABLE = "SAILENV_DIRECT_FRAMES"
+DIRECT_FRAMES = "SAILENV_DIRECT_FRAMES"
 """The variable that closes this door with the value 0: frames then come by topics alone."""
 
 _MAX_PACKET = 160 * 1024
@@ -34,7 +42,7 @@ def is_wanted() -> bool:
     Not where SROS 2 is set up: whom its keys keep out shall not come in here.
     """
     secured = os.environ.get("ROS_SECURITY_ENABLE", "").lower() == "true"
-    return not secured and os.environ.get(VARIABLE, "1") != "0"
+    return not secured and os.environ.get(DIRECT_FRAMES, "1") != "0"
 
 
 def listen(domain_id: int, namespace: str) -> tuple[socket.socket, Path]:

@@ -13,6 +13,7 @@ from sensor_msgs.msg import Image
 
 from sailenv_msgs.msg import FrameInfo
 from sailenv_ros import Agent
+from sailenv_ros.agent.frame_client import FrameClient
 from sailenv_ros.agent.frame_topics import AgentTopics
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import UnknownName
@@ -136,6 +137,20 @@ def test_another_size_comes_too(agent: Agent, keeper: Agent) -> None:
     assert agent.get_frame()["main"].shape == (240, 320, 3)
     keeper.set_intrinsics(CameraIntrinsics(width=64, height=48), agent=agent.id)
     assert agent.get_frame()["main"].shape == (48, 64, 3)
+
+
+@pytest.mark.parametrize(("width", "repeated"), [(320, 0), (16, 1)])
+def test_a_camera_that_another_client_changed_is_noticed(
+    agent: Agent, monkeypatch: pytest.MonkeyPatch, width: int, repeated: int
+) -> None:
+    """Where its scene_info has not arrived yet: the frame is right, or it is asked for anew."""
+    intrinsics = FrameClient._intrinsics
+    outdated = iter([CameraIntrinsics(width=width, height=width // 2)])
+    monkeypatch.setattr(
+        FrameClient, "_intrinsics", lambda *args: next(outdated, None) or intrinsics(*args)
+    )
+    assert agent.get_frame()["main"].shape == (120, 160, 3)
+    assert agent.recaptured == repeated
 
 
 def test_refusals_are_the_operations_own(agent: Agent, keeper: Agent) -> None:
