@@ -121,13 +121,12 @@ class DirectFrames:
             # An answer may come yet, and be written into the segment: neither is used again.
             self.close()
             raise
-        response = deserialize_message(parts[0], Capture.Response)
-        if not response.success or header["places"] is None:
+        if "refused" in header or header["places"] is None:
             self._pool.give_back(segment)
-            if response.success:
-                return None
-            raise error_from_response(response)
-        info = deserialize_message(parts[1], FrameInfo)
+            if "refused" in header:
+                raise error_from_response(deserialize_message(parts[0], Capture.Response))
+            return None
+        info = deserialize_message(parts[0], FrameInfo)
         # Of the frame itself: another client may have changed the camera a moment ago.
         height, width = header["height"], header["width"]
         whole = self._pool.lend(segment)

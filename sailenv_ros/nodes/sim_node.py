@@ -34,8 +34,8 @@ from sailenv_ros.errors import (
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.announcements import Announcements
+from sailenv_ros.nodes.capture_server import CaptureServer
 from sailenv_ros.nodes.diagnostics import Diagnostics
-from sailenv_ros.nodes.direct_frames import DirectFrames
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
 from sailenv_ros.nodes.live_parameters import LiveParameters
@@ -100,7 +100,7 @@ class SimNode:
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
-        self._direct_frames = DirectFrames(
+        self._capture_server = CaptureServer(
             simulation,
             node.context.get_domain_id(),
             node.get_namespace(),
@@ -132,7 +132,7 @@ class SimNode:
             self._gateway.close()
         if self._viewer is not None:
             self._viewer.close()
-        self._direct_frames.close()
+        self._capture_server.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._endpoints.close()

@@ -1,7 +1,7 @@
 """Captured frames for Agents of this machine, through shared memory instead of topics.
 
-An Agent hands over a segment of memory and asks for views; it gets the same messages as by the
-service and the topic, and finds the arrays in its memory. Whoever else subscribes to the agent's
+An Agent hands over a segment of memory and asks for views; it gets the frame_info, or the refusal
+that the service gives, and finds the arrays in its memory. Whoever else subscribes to the agent's
 topics gets the frame there, as from the service. One thread for each Agent.
 """
 
@@ -23,22 +23,18 @@ from rclpy.serialization import serialize_message
 from sailenv_msgs.srv import Capture
 from sailenv_msgs_py.error_codes import error_to_response
 from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
-from sailenv_msgs_py.services import SERVICES
 from sailenv_ros.errors import InternalFault, InvalidRequest, SailenvError
 from sailenv_ros.nodes.publishers import AgentPublisher
-from sailenv_ros.operations import Operations
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.frame_memory import SEGMENTS, map_segment, padded, view_of
 from sailenv_ros.system.frame_socket import is_wanted, listen, peer_is_same_user, receive, send
 
-__all__ = ["DirectFrames"]
+__all__ = ["CaptureServer"]
 
 _log = logging.getLogger(__name__)
 
-_CAPTURE = SERVICES[Operations.capture.name]
 
-
-class DirectFrames:
+class CaptureServer:
     """Serves the Agents of this machine and user.
 
     Parameters
@@ -133,14 +129,12 @@ class DirectFrames:
         self, request: Mapping[str, Any], memory: mmap.mmap
     ) -> tuple[dict[str, Any], list[bytes]]:
         """Have a frame rendered, written and published; return what is answered."""
-        response = Capture.Response()
         try:
             agent = str(request["agent"])
             frame = self._simulation.capture([*map(str, request["views"])], agent=agent)
             publisher = self._publisher_of(agent)
             if publisher is not None:
                 publisher.publish(frame, beside=frozenset(map(str, request["subscribed"])))
-            _CAPTURE.respond(response, frame, self._simulation.info)
         except SailenvError as error:
             return _refused(error)
         except Exception as error:
@@ -153,14 +147,14 @@ class DirectFrames:
         places, lens = _written(frame.views, memory), frame.camera.intrinsics
         return (
             {"places": places, "height": lens.height, "width": lens.width},
-            [serialize_message(response), serialize_message(info)],
+            [serialize_message(info)],
         )
 
 
 def _refused(error: SailenvError) -> tuple[dict[str, Any], list[bytes]]:
     response = Capture.Response()
     error_to_response(error, response)
-    return {"places": None}, [serialize_message(response)]
+    return {"refused": True}, [serialize_message(response)]
 
 
 def _written(views: Mapping[str, NDArray[Any]], memory: mmap.mmap) -> dict[str, int] | None:
