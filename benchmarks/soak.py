@@ -22,7 +22,6 @@ import numpy as np
 from sailenv_ros import Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.geometry import Pose
 
 MOST_MIB_PER_HOUR = 20.0
 KINDS = ("memory [MiB]", "descriptors", "threads", "segments")
@@ -59,8 +58,7 @@ def _round(simulation: Simulation, scene: str, number: int) -> None:
         spec = AgentSpec(name=name, intrinsics=CameraIntrinsics(width=160, height=120), rate_hz=0.0)
         simulation.register_agent(spec)
     things = [
-        simulation.spawn_object("cube", pose=Pose((0.3 * k, 0.0, 1.0)), static=True)
-        for k in range(4)
+        simulation.spawn_object("cube", (0.3 * k, 0.0, 1.0), remove_dynamics=True) for k in range(4)
     ]
     simulation.step(8)
     for name in names:
