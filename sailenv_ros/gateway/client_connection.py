@@ -88,7 +88,7 @@ class ClientConnection:
         except SailenvError as error:
             _log.warning("%s is disconnected: %s", self.peer, one_line(error))
         except Exception:
-            _log.exception("%s is disconnected because of a fault", self.peer)
+            _log.exception("%s is disconnected because of an internal error", self.peer)
         finally:
             self._remove_agent()
             if in_order:

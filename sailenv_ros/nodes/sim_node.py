@@ -1,7 +1,7 @@
 """The simulator as a ROS 2 node: `ros2 run sailenv_ros sim_node`.
 
 Parameters in; hosts a `Simulation` and joins it to topics and services, which are other modules.
-Exit status: 0 after SIGINT or SIGTERM, 1 after a fault, 2 where an argument, a parameter or the
+Exit status: 0 after SIGINT or SIGTERM, 1 after an error, 2 where an argument, a parameter or the
 scene is wrong, 3 where another simulator has the namespace already.
 """
 
@@ -153,7 +153,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         logger.fatal(str(error))
         return 2
     except Exception:
-        _log.exception("the node ends because of a fault")
+        _log.exception("the node ends because of an internal error")
         return 1
     finally:
         stop.disarm()
@@ -203,7 +203,7 @@ def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -
             node.get_logger().info(who_may_command(domain_id))
             while not stop.wait(0.25):
                 if simulation.closed:
-                    raise SimulationClosed("of a fault, which the log shows")
+                    raise SimulationClosed("of an internal error, which the log shows")
             status = 0
         finally:
             ended = sim_node.close(1.0)

@@ -312,7 +312,7 @@ class Simulation(Operations):
                 self._rest(core)
         except Exception as error:
             why = f"{type(error).__name__}: {error}"
-            _log.exception("the simulation ends because of a fault")
+            _log.exception("the simulation ends because of an internal error")
         finally:
             self._end(core, why)
 

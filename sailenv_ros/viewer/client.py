@@ -223,7 +223,7 @@ class Client:
         except ConnectionError:
             return
         except Exception:
-            _log.exception("a viewer's request ends because of a fault")
+            _log.exception("a viewer's request ends because of an internal error")
             await self._refuse(number, InvalidRequest("request", "it", "without a fault; see log"))
         else:
             if isinstance(result, _File):

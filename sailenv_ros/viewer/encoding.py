@@ -54,8 +54,8 @@ class _SharedPictures:
             return known.result()
         try:
             mine.set_result(make())
-        except BaseException as fault:
-            mine.set_exception(fault)
+        except BaseException as error:
+            mine.set_exception(error)
         return mine.result()
 
 

@@ -167,8 +167,8 @@ class ViewSubscription:
             if not self._closed:
                 self._ended(str(error))
         except Exception:
-            _log.exception("a viewer's frames end because of a fault")
-            self._ended("of a fault, which the simulator's log shows")
+            _log.exception("a viewer's frames end because of an internal error")
+            self._ended("of an internal error, which the simulator's log shows")
 
     def _pump(self, stream: FrameStream) -> None:
         while self._may_send(stream):

@@ -179,9 +179,9 @@ class ViewerServer:
 
     @web.middleware
     async def _checked(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
-        fault = self._access.fault_of_request(request.headers)
-        if fault:
-            return self._refusal(fault)
+        reason = self._access.refusal_of_request(request.headers)
+        if reason:
+            return self._refusal(reason)
         try:
             response = await handler(request)
         except web.HTTPException as refusal:
@@ -193,17 +193,17 @@ class ViewerServer:
         return response
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
-        fault = self._access.fault_of_token(request.query.get("token", ""))
-        return self._refusal(fault) if fault else self._file("index.html")
+        reason = self._access.refusal_of_token(request.query.get("token", ""))
+        return self._refusal(reason) if reason else self._file("index.html")
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
         return self._file(request.match_info["name"])
 
     async def _thumbnail(self, request: web.Request) -> web.StreamResponse:
         """Return the picture of a catalogue's object; made now if it was not yet."""
-        fault = self._access.fault_of_token(request.query.get("token", ""))
-        if fault:
-            return self._refusal(fault)
+        reason = self._access.refusal_of_token(request.query.get("token", ""))
+        if reason:
+            return self._refusal(reason)
         try:
             making = self._simulation.get_thumbnail_png.submit(
                 request.match_info["asset"][:MAX_NAME]
@@ -216,10 +216,10 @@ class ViewerServer:
         )
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        fault = self._access.fault_of_socket(request.headers, request.query.get("token", ""))
-        if fault:
-            _log.warning("a viewer is refused: %s", fault)
-            return self._refusal(fault)
+        reason = self._access.refusal_of_socket(request.headers, request.query.get("token", ""))
+        if reason:
+            _log.warning("a viewer is refused: %s", reason)
+            return self._refusal(reason)
         if self._connected >= self._limits.clients:
             return self._refusal(f"{self._connected} viewers are connected, which is the most")
         answer = web.WebSocketResponse(
