@@ -87,6 +87,8 @@ class PackContent(_PackModel):
     ----------
     files : mapping of str to str
         SHA-256 of the pack's other files (skies, licence texts), by their paths in the folder.
+    missing : tuple of str
+        Names of assets that belong to it and have not been made yet.
     """
 
     version: Literal[1]
@@ -95,6 +97,7 @@ class PackContent(_PackModel):
     categories: tuple[CategorySpec, ...] = ()
     assets: tuple[PackEntry, ...] = ()
     files: dict[FilePath, Checksum] = Field(default_factory=dict)
+    missing: tuple[AssetName, ...] = ()
 
 
 class AssetPack:

@@ -1,12 +1,13 @@
 """`sailenv scene bake`: work out the light of rooms beforehand, with a progress bar.
 
-`sailenv run` uses it too, so that a room is never shown without its light.
+`sailenv setup` uses it too.
 """
 
 from __future__ import annotations
 
 import argparse
 import itertools
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -17,11 +18,11 @@ from sailenv_ros.bake.light_files import baked_file, is_baked, load_baked, remem
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli.arguments import add_allow_modules
-from sailenv_ros.errors import InvalidRequest, MissingPackage
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
 
-__all__ = ["add_arguments", "bake_before_running", "bake_scenes"]
+__all__ = ["add_arguments", "bake_scenes", "ensure_baked", "rooms"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +42,7 @@ def bake_scenes(args: argparse.Namespace) -> int:
         If neither scenes nor `--all` are given.
     """
     library = SceneLibrary(allow_modules=args.allow_modules)
-    scenes = [*args.scenes, *(_rooms(library) if args.all else ())]
+    scenes = [*args.scenes, *(rooms(library) if args.all else ())]
     if not scenes:
         raise InvalidRequest("what to bake", "nothing", "names or files of scenes, or --all")
     for scene in scenes:
@@ -49,22 +50,17 @@ def bake_scenes(args: argparse.Namespace) -> int:
     return 0
 
 
-def bake_before_running(scene: str, scene_paths: list[Path], *, allow_modules: bool) -> None:
-    """Bake a scene that is about to be shown; quick where nothing is to be done.
-
-    Where the packages that bake are not installed it says so, and the scene is lit without.
-    """
+def ensure_baked(scene: str, scene_paths: Sequence[Path] = (), *, allow_modules: bool) -> bool:
+    """Bake a scene's light unless it is baked or has no room; return whether it was baked now."""
     library = SceneLibrary(scene_paths, allow_modules=allow_modules)
-    if is_baked(library.stamp(scene)):
-        return
-    if library.load(scene).room is not None:
-        try:
-            _bake_one(library, scene, force=False)
-        except MissingPackage as missing:
-            print(f"{scene}: its light is computed frame by frame: {missing}", flush=True)
+    if is_baked(library.stamp(scene)) or library.load(scene).room is None:
+        return False
+    _bake_one(library, scene, force=False)
+    return True
 
 
-def _rooms(library: SceneLibrary) -> list[str]:
+def rooms(library: SceneLibrary) -> list[str]:
+    """Return the names of the scenes that have a room, whose light can be baked."""
     return [name for name in library.scene_names if library.load(name).room is not None]
 
 

@@ -45,6 +45,7 @@ from sailenv_ros.nodes.services import SimulatorServices
 from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.background_build import BackgroundBuild
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.presence import ClockLock, SimulatorLock, clock_publisher
 from sailenv_ros.system.transport import use_shared_memory_profile, who_may_command
@@ -101,6 +102,7 @@ class SimNode:
         self._spinning = ExecutorThread(executor)
         self._gateway = _gateway(simulation, parameters)
         self._viewer = _viewer(simulation, parameters)
+        self._build = _background_build(simulation, parameters)
 
     @property
     def simulation(self) -> Simulation:
@@ -121,6 +123,8 @@ class SimNode:
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
+        if self._build is not None:
+            self._build.close()
         if self._gateway is not None:
             self._gateway.close()
         if self._viewer is not None:
@@ -296,6 +300,18 @@ def _viewer(simulation: Simulation, parameters: SimParameters) -> ViewerServer |
             control=parameters.viewer_control,
         ),
         "there is no window in the browser here",
+    )
+
+
+def _background_build(simulation: Simulation, parameters: SimParameters) -> BackgroundBuild | None:
+    if parameters.build_missing == "nothing":
+        return None
+    return BackgroundBuild(
+        simulation,
+        str(parameters.scene or simulation.info.scene),
+        everything=parameters.build_missing == "all",
+        scene_paths=parameters.scene_paths,
+        allow_modules=parameters.allow_modules,
     )
 
 

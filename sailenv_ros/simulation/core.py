@@ -185,6 +185,12 @@ class SimulationCore(WorldOperations):
         self.announce()
         self.on_step(world.sim_time_ns)
 
+    def refresh(self) -> None:
+        """Take up furniture and light that were built meanwhile, in the present world too."""
+        self.library.refresh()
+        self.library.load_light(self.world)
+        self.announce()
+
     def discard_frames(self) -> None:
         """Drop waiting frames whose ids the next scene_info will not know."""
         for record in self.agents:

@@ -268,6 +268,10 @@ class Simulation(Operations):
         self._step_listeners.append(listener)
         return lambda: _discard(self._step_listeners, listener)
 
+    def refresh(self) -> Future[None]:
+        """Begin to take up furniture and baked light that were built since the start."""
+        return self._submit(lambda core: core.refresh())
+
     def close(self) -> None:
         """End the simulation: break off what runs, free everything; a second call does nothing."""
         self._closing = True
