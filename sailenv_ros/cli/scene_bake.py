@@ -91,8 +91,14 @@ def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
     with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
         task = bar.add_task(f"light of {scene}", total=1.0)
 
+        quarters = 0
+
         def report_stage(stage: str, share: float) -> None:
+            nonlocal quarters
             bar.update(task, description=f"light of {scene}: {stage}", completed=share)
+            if not console.is_terminal and int(4 * share) > quarters:
+                quarters = int(4 * share)
+                console.print(f"light of {scene}: {25 * quarters} %", highlight=False)
 
         baked = bake(snapshot, report=report_stage)
         bar.update(task, description=f"light of {scene}", completed=1.0)
