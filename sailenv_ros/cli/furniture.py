@@ -32,7 +32,9 @@ def build_furniture(
                 not console.is_terminal
                 and (done * REPORTS) // total > (done - 1) * REPORTS // total
             ):
-                console.print(f"furniture: {done} of {total} objects", highlight=False)
+                console.print(
+                    f"furniture: {done} of {total} objects", highlight=False, soft_wrap=True
+                )
 
         def said(text: str) -> None:
             bar.update(task, description=text)

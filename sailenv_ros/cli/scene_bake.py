@@ -98,7 +98,9 @@ def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
             bar.update(task, description=f"light of {scene}: {stage}", completed=share)
             if not console.is_terminal and int(4 * share) > quarters:
                 quarters = int(4 * share)
-                console.print(f"light of {scene}: {25 * quarters} %", highlight=False)
+                console.print(
+                    f"light of {scene}: {25 * quarters} %", highlight=False, soft_wrap=True
+                )
 
         baked = bake(snapshot, report=report_stage)
         bar.update(task, description=f"light of {scene}", completed=1.0)

@@ -105,6 +105,7 @@ class BackgroundBuild:
         with process, process.stdout as lines:
             for line in lines:
                 self._report(line.rstrip())
+        self._simulation.background_task = ""
         if process.returncode and not self._closing:
             _log.warning(
                 "building in the background ended with status %d; to do it by hand: sailenv setup",
@@ -114,6 +115,7 @@ class BackgroundBuild:
     def _report(self, line: str) -> None:
         if line:
             _log.info("in the background: %s", line)
+            self._simulation.background_task = line
         if line.startswith(READY):
             try:
                 self._simulation.refresh()

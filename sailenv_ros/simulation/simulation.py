@@ -82,6 +82,11 @@ class Simulation(Operations):
     ------
     SceneError, UnknownName, InvalidRequest, ContextError
         If it cannot start; nothing is left running then.
+
+    Attributes
+    ----------
+    background_task : str
+        What is built beside it now and how far that is, in words; empty for nothing.
     """
 
     def __init__(
@@ -111,6 +116,7 @@ class Simulation(Operations):
         self._sim_time_ns = 0
         self._info_listeners: list[Callable[[SceneInfo], None]] = []
         self._step_listeners: list[Callable[[int], None]] = []
+        self.background_task = ""
         self._pacer = Pacer(real_time_factor)
         self._workers = ModelWorkers(
             uploads=UploadQueue(

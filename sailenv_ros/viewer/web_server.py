@@ -281,6 +281,7 @@ class ViewerServer:
                 "real_time_factor": max(0.0, (now[1] - before[1]) * 1e-9 / (now[0] - before[0])),
                 "skipped_frames": self._simulation.skipped_frames,
                 "viewers": len(self._clients),
+                "building": self._simulation.background_task,
             }
             before = now
             for client in self._clients:

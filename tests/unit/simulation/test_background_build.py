@@ -46,7 +46,10 @@ def test_light_that_is_baked_meanwhile_is_shown(cell: Path) -> None:
     with Simulation(cell, mode="lockstep", agent=EYE) as simulation:
         before, revision = simulation.capture(["rgb"]), simulation.info.revision
         with BackgroundBuild(simulation, str(cell), everything=False) as build:
+            until(lambda: simulation.background_task, "a report of progress", timeout_s=100.0)
+            assert simulation.background_task.startswith("light of "), simulation.background_task
             until(lambda: not build.running, "the light to be baked", timeout_s=100.0)
+        assert simulation.background_task == ""
         until(lambda: simulation.info.revision > revision, "the light to be taken up")
         after = simulation.capture(["rgb"])
     with Simulation(cell, mode="lockstep", agent=EYE) as fresh:
