@@ -201,7 +201,7 @@ def address_error(what: str, host: str, port: int, problem: OSError) -> SailenvE
 
 
 class InternalFault(SailenvError):
-    """A fault of the simulator's own; its log says more."""
+    """An internal error of the simulator; its log says more."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection
 
 from rich.console import Console
@@ -32,9 +33,7 @@ def build_furniture(
                 not console.is_terminal
                 and (done * REPORTS) // total > (done - 1) * REPORTS // total
             ):
-                console.print(
-                    f"furniture: {done} of {total} objects", highlight=False, soft_wrap=True
-                )
+                print(f"furniture: {done} of {total} objects", file=sys.stderr, flush=True)
 
         def said(text: str) -> None:
             bar.update(task, description=text)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -98,9 +99,7 @@ def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
             bar.update(task, description=f"light of {scene}: {stage}", completed=share)
             if not console.is_terminal and int(4 * share) > quarters:
                 quarters = int(4 * share)
-                console.print(
-                    f"light of {scene}: {25 * quarters} %", highlight=False, soft_wrap=True
-                )
+                print(f"light of {scene}: {25 * quarters} %", file=sys.stderr, flush=True)
 
         baked = bake(snapshot, report=report_stage)
         bar.update(task, description=f"light of {scene}", completed=1.0)

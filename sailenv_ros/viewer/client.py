@@ -16,6 +16,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from sailenv_ros.errors import (
     DeadlineExceeded,
+    InternalFault,
     InvalidRequest,
     InvalidState,
     SailenvError,
@@ -224,7 +225,9 @@ class Client:
             return
         except Exception:
             _log.exception("a viewer's request ends because of an internal error")
-            await self._refuse(number, InvalidRequest("request", "it", "without a fault; see log"))
+            await self._refuse(
+                number, InternalFault("an internal error of the simulator, see its log")
+            )
         else:
             if isinstance(result, _File):
                 head = {"type": "file", "id": number, "name": result.name, "mime": result.mime}
