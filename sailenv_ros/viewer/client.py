@@ -91,6 +91,7 @@ class Client:
         self._loop = asyncio.get_running_loop()
         self._subscription: ViewSubscription | None = None
         self._selected = 0
+        self._drop = drop
         self._outbox = Outbox(socket, drop=drop, send_s=limits.send_s)
         self._news = asyncio.Event()
         self._sent_revision = (-1, -1)
@@ -167,6 +168,8 @@ class Client:
     async def _listen(self) -> None:
         async for message in self._socket:
             if message.type == WSMsgType.ERROR:
+                _log.warning("a viewer is disconnected: %s", _why(self._socket.exception()))
+                self._drop()
                 return
             if not self._admits():
                 words = f"more than {self._limits.messages_per_s} messages in a second"
@@ -334,6 +337,12 @@ class Client:
     async def _refuse(self, number: object, error: SailenvError) -> None:
         words = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
         await self._outbox.send_json({"type": "refused", "id": number, "error": words[:MAX_WORDS]})
+
+
+def _why(problem: BaseException | None) -> str:
+    if isinstance(problem, asyncio.TimeoutError):
+        return "it does not answer"
+    return str(problem) or type(problem).__name__
 
 
 class _File:

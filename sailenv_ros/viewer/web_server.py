@@ -223,7 +223,9 @@ class ViewerServer:
         if self._connected >= self._limits.clients:
             return self._refusal(f"{self._connected} viewers are connected, which is the most")
         answer = web.WebSocketResponse(
-            max_msg_size=self._limits.message_bytes, heartbeat=20.0, compress=False
+            max_msg_size=self._limits.message_bytes,
+            heartbeat=self._limits.silent_s / 1.5,  # aiohttp waits half as long for the answer
+            compress=False,
         )
         self._connected += 1
         try:
