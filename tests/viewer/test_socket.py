@@ -66,7 +66,9 @@ def test_who_shows_nothing_holds_nobody_up(server: ViewerServer, simulation: Sim
             await stalled.ask("select", object=0)
             assert len(stalled.heads) == IN_FLIGHT
             await stalled.socket.send_json({"do": "shown", "number": 1})
-            assert (await stalled.frame())["number"] == IN_FLIGHT + 1
+            head = await stalled.frame()
+            assert head["number"] == IN_FLIGHT + 1
+            assert head["dropped"] > 0
 
     asyncio.run(look())
 
