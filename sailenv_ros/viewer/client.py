@@ -163,9 +163,7 @@ class Client:
     async def _listen(self) -> None:
         async for message in self._socket:
             if message.type == WSMsgType.ERROR:
-                _log.warning("a viewer is disconnected: %s", _why(self._socket.exception()))
-                self._drop()
-                return
+                break
             if not self._admits():
                 words = f"more than {self._limits.messages_per_s} messages in a second"
                 await self._socket.close(
@@ -184,6 +182,11 @@ class Client:
                 await self._shown(given)
             else:
                 await self._begin(given)
+        problem = self._socket.exception()
+        if problem is not None:
+            if not isinstance(problem, ConnectionError):
+                _log.warning("a viewer is disconnected: %s", _why(problem))
+            self._drop()
 
     def _admits(self) -> bool:
         now = self._loop.time()
@@ -327,7 +330,7 @@ class Client:
         await self._outbox.send_json({"type": "refused", "id": number, "error": words[:MAX_WORDS]})
 
 
-def _why(problem: BaseException | None) -> str:
+def _why(problem: BaseException) -> str:
     if isinstance(problem, asyncio.TimeoutError):
         return "it does not answer"
     return str(problem) or type(problem).__name__
