@@ -336,6 +336,7 @@ def test_who_does_not_answer_is_gone(
             ) as socket,
         ):
             await socket.send_json({"do": "watch", "agent": "debug_agent", "views": ["rgb"]})
+            await asyncio.to_thread(until, lambda: server.clients, "it to be greeted")
             await asyncio.to_thread(until, lambda: "debug_agent" in agents_of(simulation), "it")
             await asyncio.to_thread(until, lambda: not server.clients, "its end", 10.0)
 
