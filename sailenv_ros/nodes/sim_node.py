@@ -33,6 +33,7 @@ from sailenv_ros.errors import (
 )
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
+from sailenv_ros.nodes.agent_leases import AgentLeases
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
@@ -95,7 +96,10 @@ class SimNode:
         self._announcements = Announcements(
             node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
         )
-        self._services = SimulatorServices(node, runner, self._reconcile)
+        self._leases = AgentLeases(node, runner)
+        self._services = SimulatorServices(
+            node, runner, self._reconcile, before_registration=self._forget_ended_clients
+        )
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
@@ -135,7 +139,14 @@ class SimNode:
         return finished_within(self._simulation.close, timeout_s)
 
     def _reconcile(self) -> None:
-        self._endpoints.reconcile(self._simulation.info)
+        info = self._simulation.info
+        self._endpoints.reconcile(info)
+        self._leases.take_note(info)
+
+    async def _forget_ended_clients(self) -> None:
+        # Their topics and services go before others of the same name come.
+        if await self._leases.settle():
+            self._reconcile()
 
     def _scene_changed(self, info: SceneInfo) -> None:
         self._executor.create_task(self._reconcile)

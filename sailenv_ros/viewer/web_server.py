@@ -22,6 +22,7 @@ from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.loop_thread import LoopThread
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
+from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.encoding import views_to_json
@@ -94,6 +95,7 @@ class ViewerServer:
         self._clients: set[Client] = set()
         self._connected = 0
         self._touched = 0
+        self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
         self._thread = LoopThread("viewer", self._serve)
         try:
             self._port = self._thread.start()
@@ -128,7 +130,7 @@ class ViewerServer:
     @property
     def rendered_views(self) -> frozenset[str]:
         """Views that are rendered for somebody here now; none for those that stall."""
-        return frozenset(view for client in tuple(self._clients) for view in client.rendered_views)
+        return self._feeds.rendered_views
 
     def set_intrinsics(self, intrinsics: CameraIntrinsics) -> None:
         """Change what the debug agent sees: its pictures' size and its angle of view."""
@@ -223,7 +225,9 @@ class ViewerServer:
         if self._connected >= self._limits.clients:
             return self._refusal(f"{self._connected} viewers are connected, which is the most")
         answer = web.WebSocketResponse(
-            max_msg_size=self._limits.message_bytes, heartbeat=20.0, compress=False
+            max_msg_size=self._limits.message_bytes,
+            heartbeat=self._limits.silent_s / 1.5,  # aiohttp waits half as long for the answer
+            compress=False,
         )
         self._connected += 1
         try:
@@ -241,6 +245,7 @@ class ViewerServer:
             drop=lambda: None if transport is None else transport.abort(),
             simulation=self._simulation,
             debug_agent=self._debug_agent,
+            feeds=self._feeds,
             may_change=self._may_change,
             limits=self._limits,
             greeting={
@@ -252,7 +257,6 @@ class ViewerServer:
                 "skies": await asyncio.to_thread(skies_to_json),
             },
             touch=self._touch,
-            touched=lambda: self._touched,
         )
         self._clients.add(client)
         try:

@@ -110,7 +110,7 @@ def _work(simulation: Simulation, model: _Model, number: int, operations: int, s
 def _spawn(simulation: Simulation, model: _Model, name: str, rng: random.Random) -> None:
     pose = _pose(rng, int(name.split("_")[1]))
     asset = rng.choice(("cube", "sphere", "cylinder"))
-    id_ = simulation.spawn_object(asset, pose=pose, object_name=name, remove_dynamics=True)
+    id_ = simulation.spawn_object(asset, object_name=name, pose=pose, remove_dynamics=True)
     assert id_ not in model.poses
     model.poses[id_], model.names[id_], model.scales[id_] = pose, name, 1.0
 
@@ -121,7 +121,7 @@ def _refused(simulation: Simulation, model: _Model, rng: random.Random) -> None:
         if rng.random() < 0.5:
             simulation.despawn_object("nothing of that name")
         else:
-            simulation.spawn_object("cube", scale=(0, 1, 1))
+            simulation.spawn_object("cube", object_name="a", scale=(0, 1, 1))
     except SailenvError:
         model.refused += 1
     else:
