@@ -4,6 +4,7 @@
 // each quantity, and each stage goes over them eight at a time.
 #include "shade.h"
 
+#include "layer_sum.h"
 #include "texture.h"
 
 namespace sailenv {
@@ -447,13 +448,24 @@ void baked_light(const Shading& s, Chunk& c) {
         store(down + i, y - as_float(iy));
         store(at + i, iy * width + ix);
     }
+    const LayerSum& map = *light.light_map;
+    // Neighbours mostly lie in one run: ask once for as long as they do.
+    for (int64_t below = 0; below <= width; below += width) {
+        int64_t known = -1;
+        for (int32_t i = 0; i < c.padded; i++) {
+            const int64_t first = at[i] + below, last = first + 1;
+            if (first / LAYER_RUN != known) need_texel(map, first);
+            known = last / LAYER_RUN;
+            if (first / LAYER_RUN != known) need_texel(map, last);
+        }
+    }
     const float* main = light.main_towards;
     const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
     const int64_t row = 4 * static_cast<int64_t>(width);
     alignas(32) float texels[4 * 8];
     for (int32_t i = 0; i < c.padded; i += 8) {
         for (int k = 0; k < 8; k++) {
-            const uint16_t* p = light.light_map + 4 * static_cast<int64_t>(at[i + k]);
+            const uint16_t* p = map.texels + 4 * static_cast<int64_t>(at[i + k]);
             *reinterpret_cast<f4_any*>(texels + 4 * k) =
                 sample_halves(p, p + row, across[i + k], down[i + k]);
         }
