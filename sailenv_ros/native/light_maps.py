@@ -71,7 +71,7 @@ class LayeredMap:
         if spare:
             self._shown = np.concatenate([self._shown, np.zeros(spare, np.uint8)])
         if before is not None and len(before._texels) == size + spare:
-            self._texels = before._texels
+            self._texels: NDArray[np.float16] = before._texels
         else:
             self._texels = np.empty((size + spare, 4), np.float16)
         self._states = np.zeros(-(-len(self._texels) // RUN_TEXELS), np.uint8)
@@ -92,7 +92,8 @@ class LayeredMap:
         """Return (H, W, 4) float16: the whole map."""
         _SUM(threads, self.record)
         size = self.height * self.width
-        return self._texels[:size].reshape(self.height, self.width, 4)
+        whole: NDArray[np.float16] = self._texels[:size].reshape(self.height, self.width, 4)
+        return whole
 
 
 def sum_texels(

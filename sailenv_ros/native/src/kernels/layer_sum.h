@@ -8,7 +8,9 @@
 
 namespace sailenv {
 
-constexpr int64_t LAYER_RUN = 8;  // texels that are added up together when one of them is needed
+constexpr int32_t LAYER_RUN = 8;  // texels that are added up together when one of them is needed
+
+enum RunState : uint8_t { STATE_MISSING = 0, STATE_BEGUN = 1, STATE_MADE = 2 };
 
 // Adds up the texels from `first` to `last`, both multiples of eight.
 static inline void add_layers(const LayerSum& s, int64_t first, int64_t last) {
@@ -51,22 +53,28 @@ static inline void add_layers(const LayerSum& s, int64_t first, int64_t last) {
 // Makes the run of texels number `run`, or waits for the thread that makes it.
 static inline void make_run(const LayerSum& s, int64_t run) {
     uint8_t* state = s.states + run;
-    uint8_t expected = 0;
-    if (__atomic_compare_exchange_n(state, &expected, 1, false, __ATOMIC_ACQUIRE,
+    uint8_t expected = STATE_MISSING;
+    if (__atomic_compare_exchange_n(state, &expected, STATE_BEGUN, false, __ATOMIC_ACQUIRE,
                                     __ATOMIC_ACQUIRE)) {
-        const int64_t first = run * LAYER_RUN, last = first + LAYER_RUN;
-        add_layers(s, first, last < s.count ? last : s.count);
-        __atomic_store_n(state, 2, __ATOMIC_RELEASE);
+        add_layers(s, run * LAYER_RUN, (run + 1) * LAYER_RUN);
+        __atomic_store_n(state, STATE_MADE, __ATOMIC_RELEASE);
         return;
     }
-    while (__atomic_load_n(state, __ATOMIC_ACQUIRE) != 2) sched_yield();
+    while (__atomic_load_n(state, __ATOMIC_ACQUIRE) != STATE_MADE) sched_yield();
 }
 
-// Sees to it that a texel has been made.
-LANES_INLINE void need_texel(const LayerSum& s, int64_t at) {
-    const int64_t run = at / LAYER_RUN;
-    if (__builtin_expect(__atomic_load_n(s.states + run, __ATOMIC_ACQUIRE) != 2, 0)) {
-        make_run(s, run);
+// Sees to it that eight texels and their neighbours to the right and below have been made.
+LANES_INLINE void need_texels(const LayerSum& s, const int32_t* at, int32_t width) {
+    const int32_t ways[4] = {0, 1, width, width + 1};
+    uint8_t made = STATE_MADE;
+    for (int k = 0; k < 8; k++) {
+        for (const int32_t way : ways) {
+            made &= __atomic_load_n(s.states + (at[k] + way) / LAYER_RUN, __ATOMIC_ACQUIRE);
+        }
+    }
+    if (__builtin_expect(made == STATE_MADE, 1)) return;
+    for (int k = 0; k < 8; k++) {
+        for (const int32_t way : ways) make_run(s, (at[k] + way) / LAYER_RUN);
     }
 }
 

@@ -91,7 +91,7 @@ struct LayerSum {
     const float* more;              // (24,)
     const uint8_t* shown;           // (count,)
     uint16_t* texels;               // halves (count, 4): takes the sum
-    uint8_t* states;                // of each run: 0 to be made, 1 being made, 2 made
+    uint8_t* states;                // RunState of each run; zeros at first
 };
 
 // Everything that lights a picture; all vectors in the world frame.

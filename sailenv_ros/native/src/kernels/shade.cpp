@@ -449,16 +449,7 @@ void baked_light(const Shading& s, Chunk& c) {
         store(at + i, iy * width + ix);
     }
     const LayerSum& map = *light.light_map;
-    // Neighbours mostly lie in one run: ask once for as long as they do.
-    for (int64_t below = 0; below <= width; below += width) {
-        int64_t known = -1;
-        for (int32_t i = 0; i < c.padded; i++) {
-            const int64_t first = at[i] + below, last = first + 1;
-            if (first / LAYER_RUN != known) need_texel(map, first);
-            known = last / LAYER_RUN;
-            if (first / LAYER_RUN != known) need_texel(map, last);
-        }
-    }
+    for (int32_t i = 0; i < c.padded; i += 8) need_texels(map, at + i, width);
     const float* main = light.main_towards;
     const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
     const int64_t row = 4 * static_cast<int64_t>(width);
