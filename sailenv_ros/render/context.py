@@ -25,7 +25,7 @@ REQUIRED_GL = 430
 MAX_DEVICES = 16
 
 _LLVMPIPE_OPTIONS = {"GALLIVM_PERF": "no_aos_sampling"}
-"""Set before Mesa's software rasteriser starts, where the user has not: without it bytes of textures
+"""Set before Mesa's software rasteriser starts, where the user has not: without it byte textures
 are interpolated in whole numbers, and rounded down each time. Pictures are up to 2 of 255 darker
 then, and not those of graphics hardware; exact interpolation costs nothing that can be measured."""
 
