@@ -60,8 +60,7 @@ def _round(simulation: Simulation, scene: str, number: int) -> None:
         spec = AgentSpec(name=name, intrinsics=CameraIntrinsics(width=160, height=120), rate_hz=0.0)
         simulation.register_agent(spec)
     things = [
-        simulation.spawn_object("cube", pose=Pose((0.3 * k, 0.0, 1.0)), remove_dynamics=True)
-        for k in range(4)
+        simulation.spawn_object("cube", (0.3 * k, 0.0, 1.0), remove_dynamics=True) for k in range(4)
     ]
     simulation.step(8)
     for name in names:

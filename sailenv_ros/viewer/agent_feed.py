@@ -164,8 +164,8 @@ class _AgentFeed:
         except SailenvError as error:
             why = str(error)
         except Exception:
-            _log.exception("a viewer's frames end because of a fault")
-            why = "of a fault, which the simulator's log shows"
+            _log.exception("a viewer's frames end because of an internal error")
+            why = "of an internal error, which the simulator's log shows"
         with self.changed:
             self._ended = True
             left, self._watchers = self._watchers, []
