@@ -1,10 +1,15 @@
 """Time a frame's whole way: render, fill messages, publish, and `Agent.get_frame()` end to end.
 
     python benchmarks/end_to_end.py [--frames N] [--scene NAME] [--json FILE]
+    python benchmarks/end_to_end.py --compare [--scene NAME]...
 
-Two simulators of one scene stand side by side in lockstep: one in this process, one as a node that
-an Agent asks. Each round times both, so that what disturbs the machine disturbs both alike. The
-overhead is what an Agent's frame costs beyond the rendering that its own frame_info tells of.
+With `--compare`, `Agent.get_frame()` of five views by OpenGL and by the native renderer in turn, at
+rest, each in a simulator of its own; OpenGL's once through shared memory and once by topics.
+
+Without, two simulators of one scene stand side by side in lockstep: one in this process, one as a
+node that an Agent asks. Each round times both, so that what disturbs the machine disturbs both
+alike. The overhead is what an Agent's frame costs beyond the rendering that its own frame_info
+tells of.
 """
 
 from __future__ import annotations
@@ -19,7 +24,7 @@ import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +45,9 @@ from sailenv_ros.system.transport import use_shared_memory_profile
 SIZES = ((240, 180), (320, 240), (640, 480), (800, 600), (1024, 768), (1280, 960))
 STEPS = 8
 """Physics steps between two frames: 30 frames per simulated second."""
+
+REST_STEPS = 960
+"""After so many, objects that fell into place lie still."""
 
 WARM_UP = 5
 QOS = QoSProfile(depth=3)
@@ -80,12 +88,12 @@ class Stopwatch:
         self.times[stage].append((time.perf_counter() - began) * 1e3)
 
     def summary(self) -> dict[str, dict[str, float]]:
-        """Return median and 90th percentile of each stage, without the warm-up."""
+        """Return median, 90th percentile and least of each stage, without the warm-up."""
         result = {}
         for stage, times in self.times.items():
             kept = sorted(times[WARM_UP:])
             p90 = kept[min(len(kept) - 1, int(0.9 * len(kept)))]
-            result[stage] = {"median": statistics.median(kept), "p90": p90}
+            result[stage] = {"median": statistics.median(kept), "p90": p90, "least": kept[0]}
         return result
 
 
@@ -164,6 +172,62 @@ def measure(size: tuple[int, int], frames: int, scene: str, topics: Topics) -> d
         }
 
 
+WAYS = {
+    "OpenGL, by topics": ("gl", "0"),
+    "OpenGL": ("gl", "1"),
+    "native": ("native", "1"),
+}
+"""Back end, and whether frames come through shared memory (`SAILENV_DIRECT_FRAMES`)."""
+
+
+def compare(size: tuple[int, int], frames: int, scene: str) -> dict[str, Any]:
+    """Time `get_frame` of each way in turn; return medians [ms] and their ratios to OpenGL's."""
+    watch = Stopwatch()
+    width, height = size
+    with ExitStack() as opened:
+        agents: dict[str, Agent] = {}
+        for number, (name, (backend, direct)) in enumerate(WAYS.items()):
+            settings = {"scene": scene, "mode": "lockstep", "agent.name": "", "backend": backend}
+            os.environ["SAILENV_DIRECT_FRAMES"] = "1"  # read by the simulator at its start
+            agents[name] = agent = opened.enter_context(
+                Agent(
+                    width=width,
+                    height=height,
+                    namespace=f"{NAMESPACE}_{number}",
+                    simulator=settings,
+                )
+            )
+            os.environ["SAILENV_DIRECT_FRAMES"] = direct  # and by an Agent at its second frame
+            for _ in range(2):
+                agent.get_frame()
+            agent.step(REST_STEPS)
+        for _ in range(WARM_UP + frames):
+            for name, agent in agents.items():
+                agent.step(STEPS)
+                with watch(name):
+                    received = agent.get_frame()
+                beyond_ms = watch.times[name][-1] - 1e3 * received["render_s"]
+                watch.times[f"{name}, beyond rendering"].append(beyond_ms)
+    times = watch.summary()
+    ratios = {
+        f"native / {name}": times["native"]["median"] / times[name]["median"]
+        for name in ("OpenGL", "OpenGL, by topics")
+    }
+    return {"scene": scene, "width": width, "height": height, "ms": times, "ratios": ratios}
+
+
+def show_comparison(result: dict[str, Any]) -> None:
+    """Print one scene and size."""
+    print(f"\n{result['scene']}, {result['width']}x{result['height']}  [ms]")
+    for name, times in result["ms"].items():
+        print(
+            f"  {name:<36} median {times['median']:8.2f}  p90 {times['p90']:8.2f}"
+            f"  least {times['least']:8.2f}"
+        )
+    for name, ratio in result["ratios"].items():
+        print(f"  {name:<36} {ratio:.2f}")
+
+
 def dilated(frame: Frame) -> dict[str, Image]:
     """Make the image messages of a frame."""
     header = header_of_frame(frame)
@@ -194,17 +258,27 @@ def main() -> None:
     """Run the benchmark and print its tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--frames", type=int, default=40, help="timed frames of each size")
-    parser.add_argument("--scene", default="optical")
+    parser.add_argument("--scene", action="append", help="may be given repeatedly")
+    parser.add_argument("--compare", action="store_true", help="OpenGL and native in turn")
     parser.add_argument("--size", action="append", help="WIDTHxHEIGHT; may be given repeatedly")
     parser.add_argument("--json", type=Path, help="write the results here too")
     options = parser.parse_args()
     sizes = [tuple(map(int, size.split("x"))) for size in options.size or ()] or SIZES
+    scenes = options.scene or ["optical"]
     use_shared_memory_profile()
-    topics = Topics()
     results = []
+    if options.compare:
+        for scene in scenes:
+            for size in sizes:
+                results.append(compare(size, options.frames, scene))
+                show_comparison(results[-1])
+        if options.json:
+            options.json.write_text(json.dumps(results, indent=1))
+        return
+    topics = Topics()
     try:
         for size in sizes:
-            results.append(measure(size, options.frames, options.scene, topics))
+            results.append(measure(size, options.frames, scenes[0], topics))
             show(results[-1])
     finally:
         topics.close()

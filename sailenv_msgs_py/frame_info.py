@@ -11,7 +11,7 @@ from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import optical_pose_to_msg, pose_from_msg
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose, invert
+from sailenv_ros.geometry import QUAT_BODY_FROM_OPTICAL
 
 __all__ = [
     "WORLD_FRAME_ID",
@@ -65,6 +65,6 @@ def camera_of_frame_info(msg: FrameInfo, intrinsics: CameraIntrinsics) -> Camera
     InvalidRequest
         If a number of the pose is not finite or its quaternion not of unit length.
     """
-    world_from_optical = pose_from_msg(msg.camera_pose).matrix()
-    pose = Pose.from_matrix(world_from_optical @ invert(BODY_FROM_OPTICAL))
+    x, y, z, w = QUAT_BODY_FROM_OPTICAL
+    pose = pose_from_msg(msg.camera_pose).turned((-x, -y, -z, w))
     return Camera(intrinsics=intrinsics, pose=pose)

@@ -10,7 +10,7 @@ import geometry_msgs.msg as geometry
 from builtin_interfaces.msg import Time
 
 from sailenv_ros.camera import Camera
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import QUAT_BODY_FROM_OPTICAL, Pose
 
 __all__ = [
     "optical_pose_to_msg",
@@ -56,7 +56,7 @@ def pose_stamped_to_msg(pose: Pose, stamp: Time, frame_id: str) -> geometry.Pose
 
 def optical_pose_to_msg(camera: Camera) -> geometry.Pose:
     """Make a message of the camera's optical frame (x right, y down, z forward) in the world."""
-    return pose_to_msg(Pose.from_matrix(camera.world_from_camera))
+    return pose_to_msg(camera.pose.turned(QUAT_BODY_FROM_OPTICAL))
 
 
 def point_to_msg(xyz: Triple) -> geometry.Point:

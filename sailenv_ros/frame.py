@@ -10,13 +10,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidRequest, UnknownName
+
+if TYPE_CHECKING:
+    from sailenv_ros.scene_info import SceneInfo, SceneObject  # which knows what agents see
 
 __all__ = [
     "ALWAYS_MADE",
@@ -287,7 +290,7 @@ class Frame:
         Whose camera.
     scene : str
     epoch, revision : int
-        Of the scene's contents that were drawn (see `snapshot.SceneContents`).
+        Of the scene_info that was true when it was made.
     sequence : int
         Counts this agent's frames from 1.
     stamp_ns : int
@@ -301,6 +304,8 @@ class Frame:
         Arrays as `VIEWS` says, read-only, never written again.
     timings_s : mapping of str to float
         Wall time of each stage of making it [s]; ``render`` is the whole.
+    info : SceneInfo or None
+        The scene at the frame's own instant; None if that is not known (it was not recorded).
     """
 
     agent: str
@@ -314,6 +319,7 @@ class Frame:
     depth_range_m: float = 10.0
     views: Mapping[str, NDArray[Any]]
     timings_s: Mapping[str, float] = field(default_factory=dict)
+    info: SceneInfo | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width
@@ -336,6 +342,14 @@ class Frame:
     def dt_s(self) -> float:
         """Simulated time since the frame that flow refers to [s]; 0 if there is none."""
         return self.dt_ns * 1e-9
+
+    @property
+    def instances(self) -> dict[int, SceneObject]:
+        """The objects that there were at the frame's instant, by their ids in its instance view.
+
+        Empty if the scene of that instant is not known.
+        """
+        return {} if self.info is None else dict(self.info.objects)
 
     def to_dict(self, *, copy: bool = True) -> dict[str, Any]:
         """Return the frame as the dict of the SAILenv client, with more in it.

@@ -22,6 +22,7 @@ __all__ = [
     "BODY_FROM_OPTICAL",
     "IDENTITY",
     "POSITION_LIMIT_M",
+    "QUAT_BODY_FROM_OPTICAL",
     "Pose",
     "interpolate",
     "invert",
@@ -43,6 +44,9 @@ BODY_FROM_OPTICAL: Matrix = np.array(
 )
 """(4, 4) a camera's body axes from its optical axes."""
 BODY_FROM_OPTICAL.flags.writeable = False
+
+QUAT_BODY_FROM_OPTICAL = (-0.5, 0.5, -0.5, 0.5)
+"""The same turn as a quaternion, x, y, z, w."""
 
 IDENTITY: Matrix = np.eye(4)
 IDENTITY.flags.writeable = False
@@ -88,6 +92,18 @@ class Pose:
         x, y, z = (float(v) for v in matrix[:3, 3])
         qx, qy, qz, qw = (float(v) for v in Rotation.from_matrix(matrix[:3, :3]).as_quat())
         return cls((x, y, z), (qx, qy, qz, qw))
+
+    def turned(self, quat_xyzw: tuple[float, float, float, float]) -> Pose:
+        """Return the pose in the same place whose axes are turned by a quaternion in its frame."""
+        ax, ay, az, aw = self.orientation_xyzw
+        bx, by, bz, bw = quat_xyzw
+        orientation = (
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz,
+        )
+        return Pose(self.position_m, orientation)
 
     @property
     def rpy_deg(self) -> tuple[float, float, float]:

@@ -5,7 +5,9 @@ Made by `simulation.py` from the world's `SceneContents`; goes to messages, sock
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 from sailenv_ros.agents import AgentSpec
@@ -13,7 +15,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 
-__all__ = ["MoverInfo", "SceneInfo", "TimeMode"]
+__all__ = ["MoverInfo", "SceneInfo", "SceneObject", "TimeMode"]
 
 TimeMode = Literal["realtime", "lockstep"]
 
@@ -42,6 +44,29 @@ class MoverInfo:
     loop: bool = True
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SceneObject:
+    """One object of the scene.
+
+    Attributes
+    ----------
+    name : str
+        Its name in the scene, unique there.
+    category_id : int
+    category : str
+    static : bool
+        True if physics never moves it.
+    moving : bool
+        True if a behaviour moves it.
+    """
+
+    name: str
+    category_id: int
+    category: str
+    static: bool
+    moving: bool
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SceneInfo:
     """The scene as clients see it.
@@ -55,7 +80,7 @@ class SceneInfo:
     epoch : int
         Grows at each change of scene and each reset.
     revision : int
-        Grows at each change of the contents; a frame's ``revision`` is never above the latest.
+        Grows at each change; a frame carries that of the scene_info that was true when it was made.
     sim_time_ns : int
         When this was made [ns].
     mode : {'realtime', 'lockstep'}
@@ -95,3 +120,17 @@ class SceneInfo:
     agents: tuple[AgentSpec, ...] = ()
     movers: tuple[MoverInfo, ...] = ()
     renderer: str = ""
+
+    @cached_property
+    def objects(self) -> Mapping[int, SceneObject]:
+        """The objects by their ids, the values of the instance view; not to be written to."""
+        return {
+            instance.id: SceneObject(
+                name=instance.name,
+                category_id=instance.category_id,
+                category=instance.category,
+                static=instance.static,
+                moving=instance.id in self.moving,
+            )
+            for instance in self.instances
+        }

@@ -24,6 +24,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
 from sailenv_msgs.srv import RegisterAgent
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
+from sailenv_ros.agent.scene_history import DEPTH, SceneHistory
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidRequest,
@@ -48,7 +49,7 @@ STOPPED_S = 1.0
 POLL_INTERVAL_S = 0.005
 """How often a condition of the ROS graph is looked at, which tells of no change by itself [s]."""
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Connection:
@@ -65,7 +66,7 @@ class Connection:
         self.domain_id = domain_id
         self.namespace = namespace
         self._process_id = os.getpid()
-        self._info: SceneInfo | None = None
+        self._scenes = SceneHistory()
         self._changed = threading.Condition()
         self._closed = False
         self._clients: dict[str, Any] = {}
@@ -191,9 +192,9 @@ class Connection:
     @property
     def info(self) -> SceneInfo:
         """The scene as it was announced last."""
-        if self._info is None:
+        if self._scenes.latest is None:
             raise SimulationClosed("no simulator has announced its scene yet")
-        return self._info
+        return self._scenes.latest
 
     def await_info(
         self, condition: Callable[[SceneInfo], bool], what: str, timeout_s: float
@@ -203,14 +204,34 @@ class Connection:
 
         def met(interval_s: float) -> bool:
             with self._changed:
-                if self._info is None or not condition(self._info):
+                info = self._scenes.latest
+                if info is None or not condition(info):
                     self._changed.wait(interval_s)
-                if self._info is not None and condition(self._info):
-                    found.append(self._info)
+                info = self._scenes.latest
+                if info is not None and condition(info):
+                    found.append(info)
             return bool(found)
 
         self._wait(met, what, time.monotonic() + timeout_s, timeout_s)
         return found[0]
+
+    def await_revision(self, revision: int, timeout_s: float) -> SceneInfo | None:
+        """Wait until the scene_info of a revision, or a later one, has arrived.
+
+        Returns
+        -------
+        info : SceneInfo or None
+            The one of exactly that revision; None if it was lost, or is too old to be kept.
+
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If the simulator ended meanwhile, or it did not come in time.
+        """
+        what = f"scene_info of revision {revision}"
+        self.await_info(lambda info: info.revision >= revision, what, timeout_s)
+        with self._changed:
+            return self._scenes.of_revision(revision)
 
     def wait_until(self, condition: Callable[[], bool], what: str, timeout_s: float) -> None:
         """Wait for a condition of the ROS graph.
@@ -262,7 +283,7 @@ class Connection:
     def _take_info(self, msg: SceneInfoMsg) -> None:
         info = scene_info_from_msg(msg)
         with self._changed:
-            self._info = info
+            self._scenes.add(info)
             self._changed.notify_all()
 
     def _spin(self) -> None:

@@ -1,20 +1,35 @@
-"""How a client gets an agent's frames: one captured now, or the newest of those at a rate."""
+"""How a client gets an agent's frames: one captured now, or the newest of those at a rate.
+
+Captured ones come through shared memory where the simulator is on this machine and of this user;
+else, and at a rate, by topics.
+"""
 
 from __future__ import annotations
 
+import logging
 import time
+from collections.abc import Mapping
+from typing import Any
 
+from numpy.typing import NDArray
+
+from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs.srv import Capture
 from sailenv_msgs_py.error_codes import error_from_response
+from sailenv_ros.agent.direct_frames import DirectFrames, LineBroken
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.agent.frame_topics import AgentTopics
-from sailenv_ros.agent.received import frame_of_bundle
+from sailenv_ros.agent.received import frame_of_info, views_of_bundle
 from sailenv_ros.agent.remote import RemoteSimulator
 from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.frame import Frame
+from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["FrameClient"]
+
+_log = logging.getLogger(__name__)
 
 QUIET_S = 1.0
 """A sent frame of which nothing more arrives for so long is given up and asked for anew [s].
@@ -43,6 +58,10 @@ class FrameClient:
         self._spec = spec
         # Readers first: the agent's publishers then know them from their first message on.
         self._topics = AgentTopics(remote.connection, spec.name, spec.views)
+        self._direct: DirectFrames | None = None
+        self._matched = False
+        self._by_topics_alone = False
+        self._last_captured = 0
         self.recaptured = 0
 
     def begin(self, spec: AgentSpec, timeout_s: float) -> None:
@@ -62,40 +81,104 @@ class FrameClient:
         """
         wanted = self._spec.views if views is None else views
         deadline = time.monotonic() + timeout_s
-        while (left_s := deadline - time.monotonic()) > 0.0:
-            bundle = self._captured(wanted, left_s)
-            if bundle is not None:
-                return self._frame_of(bundle, max(0.0, deadline - time.monotonic()))
+        while time.monotonic() < deadline:
+            more = self._topics.add_views(wanted)
+            # Of each topic the first comes by it: then the simulator knows who reads it.
+            if more or not self._matched or self._by_topics_alone:
+                frame = self._captured_by_topics(wanted, deadline)
+                self._matched = self._matched or frame is not None
+            else:
+                frame = self._captured_directly(wanted, deadline)
+            if frame is not None:
+                return frame
             self.recaptured += 1
         raise DeadlineExceeded(f"the images of a frame of agent {self._spec.name!r}", timeout_s)
 
     def newer(self, sequence: int, timeout_s: float) -> Frame:
         """Wait for the newest streamed frame with a number above the given one."""
-        bundle = self._topics.take_newer(sequence, self._spec.views, timeout_s)
-        return self._frame_of(bundle, timeout_s)
+        deadline = time.monotonic() + timeout_s
+        left_s = timeout_s
+        # Captured frames come by the topics too where others subscribe to them.
+        after = max(sequence, self._last_captured)
+        while True:
+            bundle = self._topics.take_newer(after, self._spec.views, left_s)
+            frame = self._frame_of_bundle(bundle, deadline)
+            if frame is not None:
+                return frame
+            left_s = max(0.0, deadline - time.monotonic())
 
     def close(self) -> None:
-        """End the subscriptions."""
+        """End the subscriptions, and the direct line."""
+        self._hang_up()
         self._topics.close()
 
-    def _captured(self, views: tuple[str, ...], timeout_s: float) -> Bundle | None:
-        """Have a frame rendered and sent; return None if images of it were lost."""
-        deadline = time.monotonic() + timeout_s
-        if self._topics.add_views(views):
-            self._topics.await_publishers(timeout_s)
+    # -- through shared memory ---------------------------------------------------------------
+
+    def _captured_directly(self, views: tuple[str, ...], deadline: float) -> Frame | None:
+        """Have a frame rendered and handed over; return None if a part of it was lost."""
+        if self._direct is None:
+            self._direct = DirectFrames.open(self._remote.connection)
+        if self._direct is None:
+            self._by_topics_alone = True
+            return self._captured_by_topics(views, deadline)
+        intrinsics = self._intrinsics(self._remote.info)
+        try:
+            captured = self._direct.capture(
+                self._spec.name, views, self._topics.subscribed, intrinsics, _left_s(deadline)
+            )
+        except LineBroken as problem:
+            _log.info("frames come by topics from now on: %s", problem)
+            self._hang_up()
+            self._by_topics_alone = True
+            return self._captured_by_topics(views, deadline)
+        except DeadlineExceeded:
+            self._hang_up()  # its late answer must not be taken for that of the next request
+            raise
+        if captured is None:
+            return None
+        info, arrays = captured
+        self._last_captured = info.sequence
+        return self._frame_of(info, arrays, deadline)
+
+    def _hang_up(self) -> None:
+        if self._direct is not None:
+            self._direct.close()
+            self._direct = None
+
+    # -- by topics ---------------------------------------------------------------------------
+
+    def _captured_by_topics(self, views: tuple[str, ...], deadline: float) -> Frame | None:
+        """Have a frame rendered and sent; return None if a part of it was lost."""
+        self._topics.await_publishers(_left_s(deadline))
         self._topics.clear()
         request = Capture.Request(views=list(views))
         service = f"{self._spec.name}/capture"
-        response = self._remote.connection.call(Capture, service, request, timeout_s)
+        response = self._remote.connection.call(Capture, service, request, _left_s(deadline))
         if not response.success:
             raise error_from_response(response)
-        left_s = max(0.0, deadline - time.monotonic())
-        bundle = self._topics.take(response.sequence, left_s, QUIET_S)
-        return bundle if bundle is not None and set(bundle.images) == set(views) else None
+        bundle = self._topics.take(response.sequence, _left_s(deadline), QUIET_S)
+        if bundle is None or set(bundle.images) != set(views):
+            return None
+        return self._frame_of_bundle(bundle, deadline)
 
-    def _frame_of(self, bundle: Bundle, timeout_s: float) -> Frame:
-        # The ids of a frame are to be found in `instances` from now on.
-        self._remote.await_revision(bundle.info.revision, timeout_s)
-        specs = {spec.name: spec for spec in self._remote.info.agents}
-        spec = specs.get(self._spec.name, self._spec)
-        return frame_of_bundle(bundle, spec.intrinsics)
+    def _frame_of_bundle(self, bundle: Bundle, deadline: float) -> Frame | None:
+        return self._frame_of(bundle.info, views_of_bundle(bundle), deadline)
+
+    # -- both --------------------------------------------------------------------------------
+
+    def _frame_of(
+        self, info: FrameInfo, views: Mapping[str, NDArray[Any]], deadline: float
+    ) -> Frame | None:
+        """Make a frame with the scene of its own instant; None if that was lost on the way."""
+        scene = self._remote.connection.await_revision(info.revision, _left_s(deadline))
+        if scene is None:
+            return None
+        return frame_of_info(info, views, self._intrinsics(scene), scene)
+
+    def _intrinsics(self, scene: SceneInfo) -> CameraIntrinsics:
+        specs = {spec.name: spec for spec in scene.agents}
+        return specs.get(self._spec.name, self._spec).intrinsics
+
+
+def _left_s(deadline: float) -> float:
+    return max(0.0, deadline - time.monotonic())

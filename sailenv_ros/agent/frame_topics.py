@@ -52,6 +52,11 @@ class AgentTopics:
         """How many frames were given up because an image of theirs never came."""
         return self._sync.incomplete
 
+    @property
+    def subscribed(self) -> tuple[str, ...]:
+        """Names of the topics that are read."""
+        return tuple(self._subscriptions)
+
     def add_views(self, views: tuple[str, ...]) -> bool:
         """Subscribe to more views; say whether there were any."""
         more = [view for view in views if view not in self._subscriptions]

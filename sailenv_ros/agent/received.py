@@ -1,8 +1,12 @@
-"""What a client received, as its own data: a bundle of messages → a `Frame`."""
+"""What a client received, as its own data: messages and arrays → a `Frame`."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import Any
+
+from numpy.typing import NDArray
 
 from sailenv_msgs_py.frame_info import camera_of_frame_info
 from sailenv_msgs_py.images import view_from_image
@@ -10,35 +14,55 @@ from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.system.memory import keep_freed_memory
 
-__all__ = ["frame_of_bundle"]
+__all__ = ["frame_of_info", "views_of_bundle"]
 
 
-def frame_of_bundle(bundle: Bundle, intrinsics: CameraIntrinsics) -> Frame:
-    """Make one frame; its arrays lie on the messages' bytes, which nobody else has.
+def views_of_bundle(bundle: Bundle) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a bundle, which lie on the messages' bytes; nobody else has them.
 
     Parameters
     ----------
     bundle : Bundle
         Of `sailenv_msgs/FrameInfo` and `sensor_msgs/Image`.
+    """
+    return {view: view_from_image(view, image) for view, image in bundle.images.items()}
+
+
+def frame_of_info(
+    info: Any,
+    views: Mapping[str, NDArray[Any]],
+    intrinsics: CameraIntrinsics,
+    scene_info: SceneInfo | None,
+) -> Frame:
+    """Make one frame of its info and its arrays, which nobody else has.
+
+    Parameters
+    ----------
+    info : sailenv_msgs/FrameInfo
+    views : mapping of str to array
+        In any order.
     intrinsics : CameraIntrinsics
         Of the agent that the frame is of.
+    scene_info : SceneInfo or None
+        The one of the frame's revision, if it is known.
     """
     _keep_freed_memory_once()
-    info, images = bundle.info, bundle.images
     return Frame(
         agent=info.agent,
         scene=info.scene,
         epoch=info.epoch,
         revision=info.revision,
-        sequence=bundle.sequence,
+        sequence=info.sequence,
         stamp_ns=ns_from_stamp(info.header.stamp),
         dt_ns=info.dt_ns,
         camera=camera_of_frame_info(info, intrinsics),
         depth_range_m=info.depth_range_m,
-        views={view: view_from_image(view, images[view]) for view in VIEWS if view in images},
+        views={view: views[view] for view in VIEWS if view in views},
         timings_s={"render": info.render_s},
+        info=scene_info,
     )
 
 

@@ -11,15 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.agent.frame_sync import Bundle
-from sailenv_ros.agent.received import frame_of_bundle
+from sailenv_ros.agent.received import frame_of_info, views_of_bundle
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.operations.frame_pictures import frame_pictures
-from sailenv_ros.operations.scene_tables import SceneObject, scene_objects
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.scene_info import SceneInfo, SceneObject
 
 __all__ = ["RecordedAgent"]
 
@@ -108,8 +107,9 @@ class RecordedAgent(Sequence[dict[str, Any]]):
             return [self[number] for number in range(*index.indices(len(self)))]
         self._current = self._frames.position(index)
         info, images = self._frames.messages(self._current)
-        bundle = Bundle(sequence=info.sequence, info=info, images=images)
-        return frame_of_bundle(bundle, self._frames.intrinsics(self._current)).to_dict(copy=False)
+        views = views_of_bundle(Bundle(sequence=info.sequence, info=info, images=images))
+        intrinsics = self._frames.intrinsics(self._current)
+        return frame_of_info(info, views, intrinsics, self._info).to_dict(copy=False)
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return (self[number] for number in range(len(self)))
@@ -141,8 +141,7 @@ class RecordedAgent(Sequence[dict[str, Any]]):
     @property
     def instances(self) -> dict[int, SceneObject]:
         """The objects of the scene by their ids, the values of the instance view."""
-        info = self._info
-        return {} if info is None else scene_objects(info)
+        return {} if self._info is None else dict(self._info.objects)
 
     def close(self) -> None:
         """Close the files; a second call does nothing."""

@@ -86,13 +86,8 @@ class RemoteSimulator:
         request = service.request(arguments, self.info)
         response = self.connection.call(service.type, name, request, timeout_s)
         result = service.result(response)
-        self.await_revision(response.revision, max(0.0, deadline - time.monotonic()))
+        self.connection.await_revision(response.revision, max(0.0, deadline - time.monotonic()))
         return result
-
-    def await_revision(self, revision: int, timeout_s: float) -> None:
-        """Wait until a scene_info of this revision, or a later one, has arrived."""
-        what = f"scene_info of revision {revision}"
-        self.connection.await_info(lambda info: info.revision >= revision, what, timeout_s)
 
     def reconnect(self) -> None:
         """Connect anew, to a simulator that runs again or is started now."""

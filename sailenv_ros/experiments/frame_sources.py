@@ -1,4 +1,4 @@
-"""Where an experiment's frames come from: an `Agent` over DDS, or a `Simulation` in this process.
+"""Where an experiment's frames come from: an `Agent`, or a `Simulation` in this process.
 
 Both give the frame dict that users get. The Agent is imported only where it is used: without ROS
 the other source works.
@@ -69,7 +69,7 @@ def agent_source(scene: str, width: int, height: int) -> Iterator[FrameSource]:
     with ExitStack() as stack:
         with_flow = stack.enter_context(Agent(**common))
         without = stack.enter_context(Agent(**common, flow_frame_active=False))
-        yield _AgentSource(with_flow, without, "in the simulator node, over DDS")
+        yield _AgentSource(with_flow, without, "in the simulator node, through shared memory")
 
 
 class _InProcessSource:

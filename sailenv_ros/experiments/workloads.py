@@ -24,6 +24,7 @@ from sailenv_ros.errors import ProtocolError
 from sailenv_ros.extras import need
 from sailenv_ros.frame import FIVE_VIEWS
 from sailenv_ros.simulation.simulation import Simulation
+from sailenv_ros.system.frame_socket import DIRECT_FRAMES
 from sailenv_ros.system.memory import keep_freed_memory
 
 __all__ = ["STEPS", "TRANSPORTS", "Setting", "Workload", "environment_of", "make_workload"]
@@ -108,7 +109,7 @@ class _InProcess(_NothingLost):
         self._simulation.close()
 
 
-class _Dds:
+class _ByAgent:
     """An Agent, or several in one process, and the simulator node that it starts."""
 
     def __init__(self, setting: Setting) -> None:
@@ -229,8 +230,9 @@ def _original_client() -> Any:
 TRANSPORTS: Mapping[str, Callable[[Setting], Workload]] = MappingProxyType(
     {
         "in process": _InProcess,
-        "DDS, our profile": _Dds,
-        "DDS, default": _Dds,
+        "shared memory": _ByAgent,
+        "DDS, our profile": _ByAgent,
+        "DDS, default": _ByAgent,
         "gateway, raw": lambda setting: _Gateway(setting, use_gzip=False),
         "gateway, gzip": lambda setting: _Gateway(setting, use_gzip=True),
     }
@@ -240,8 +242,15 @@ TRANSPORTS: Mapping[str, Callable[[Setting], Workload]] = MappingProxyType(
 
 def environment_of(kind: str) -> dict[str, str]:
     """Return what a worker's environment has besides this process's own."""
+    return dict(_ENVIRONMENTS.get(kind, {}))
+
+
+_ENVIRONMENTS: Mapping[str, Mapping[str, str]] = {
+    "shared memory": {DIRECT_FRAMES: "1"},
+    "DDS, our profile": {DIRECT_FRAMES: "0"},
     # Fast DDS as it comes: whoever sets this variable is left alone by our own choice of profile.
-    return {"FASTDDS_BUILTIN_TRANSPORTS": "DEFAULT"} if kind == "DDS, default" else {}
+    "DDS, default": {DIRECT_FRAMES: "0", "FASTDDS_BUILTIN_TRANSPORTS": "DEFAULT"},
+}
 
 
 class _Peer(_NothingLost):

@@ -57,6 +57,11 @@ class AgentEndpoints:
             elif self._endpoints[name].spec.rate_hz != spec.rate_hz:
                 self._set_rate(self._endpoints[name], spec)
 
+    def publisher_of(self, agent: str) -> AgentPublisher | None:
+        """Return the publisher of an agent; None if it has none (yet). From any thread."""
+        endpoint = self._endpoints.get(agent)
+        return None if endpoint is None else endpoint.publisher
+
     def counts(self) -> list[AgentCounts]:
         """Return what each agent's publisher did since this was asked before."""
         return [endpoint.publisher.counts() for endpoint in self._endpoints.values()]

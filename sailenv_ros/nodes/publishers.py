@@ -111,8 +111,14 @@ class AgentPublisher:
             waited_s += interval_s
         return True
 
-    def publish(self, frame: Frame) -> tuple[str, ...]:
+    def publish(self, frame: Frame, *, beside: frozenset[str] = frozenset()) -> tuple[str, ...]:
         """Publish a frame on those topics of it that somebody subscribes to.
+
+        Parameters
+        ----------
+        frame : Frame
+        beside : frozenset of str
+            Topics with one subscriber that needs no message, as it gets the frame otherwise.
 
         Returns
         -------
@@ -128,7 +134,7 @@ class AgentPublisher:
             if self._closing.is_set():
                 raise SimulationClosed(f"agent {self._spec.name!r} was deleted")
             self._last_sequence = max(self._last_sequence, frame.sequence)
-            return self._publish(frame)
+            return self._publish(frame, beside)
 
     def close(self) -> None:
         """End the stream and remove the topics; a second call does nothing."""
@@ -203,19 +209,19 @@ class AgentPublisher:
 
     # -- messages --------------------------------------------------------------------------
 
-    def _publish(self, frame: Frame) -> tuple[str, ...]:
+    def _publish(self, frame: Frame, beside: frozenset[str] = frozenset()) -> tuple[str, ...]:
         began = time.perf_counter()
         header = header_of_frame(frame)
         sent = []
         for view, topic in self._images.items():
-            if view in frame.views and _is_subscribed(topic):
+            if view in frame.views and _is_subscribed(topic, beside=view in beside):
                 topic.publish(image_from_view(view, frame[view], header, copy=False))
                 sent.append(view)
         if _is_subscribed(self._camera_info):
             self._camera_info.publish(
                 camera_info_from_intrinsics(frame.camera.intrinsics, copy(header))
             )
-        if _is_subscribed(self._frame_info):
+        if _is_subscribed(self._frame_info, beside="frame_info" in beside):
             self._frame_info.publish(
                 frame_info_to_msg(frame, header, views=sent, depth_range_m=self._spec.depth_range_m)
             )
@@ -238,5 +244,6 @@ class AgentPublisher:
         )
 
 
-def _is_subscribed(topic: Publisher) -> bool:
-    return bool(topic.get_subscription_count())
+def _is_subscribed(topic: Publisher, *, beside: bool = False) -> bool:
+    """Say whether there is a subscriber; with `beside` whether there is another one."""
+    return bool(topic.get_subscription_count() > beside)

@@ -36,6 +36,7 @@ from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.agent_leases import AgentLeases
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.diagnostics import Diagnostics
+from sailenv_ros.nodes.direct_frames import DirectFrames
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
 from sailenv_ros.nodes.live_parameters import LiveParameters
@@ -104,6 +105,12 @@ class SimNode:
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
+        self._direct_frames = DirectFrames(
+            simulation,
+            node.context.get_domain_id(),
+            node.get_namespace(),
+            self._endpoints.publisher_of,
+        )
         self._gateway = _gateway(simulation, parameters)
         self._viewer = _viewer(simulation, parameters)
         self._build = _background_build(simulation, parameters)
@@ -133,6 +140,7 @@ class SimNode:
             self._gateway.close()
         if self._viewer is not None:
             self._viewer.close()
+        self._direct_frames.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._endpoints.close()

@@ -129,7 +129,6 @@ class ObjectOperations(Caller):
     def despawn_object(core: SimulationCore, obj: int | str) -> None:
         """Remove an object from the scene; its id is not used again."""
         core.world.despawn(core.world.find(obj))
-        core.discard_frames()
         core.announce()
 
     @operation(

@@ -2,49 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from sailenv_ros.operations.operation import Caller
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.scene_info import SceneObject
 
-__all__ = ["SceneObject", "SceneTables", "scene_objects"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SceneObject:
-    """One object of the scene.
-
-    Attributes
-    ----------
-    name : str
-        Its name in the scene, unique there.
-    category_id : int
-    category : str
-    static : bool
-        True if physics never moves it.
-    moving : bool
-        True if a behaviour moves it.
-    """
-
-    name: str
-    category_id: int
-    category: str
-    static: bool
-    moving: bool
-
-
-def scene_objects(info: SceneInfo) -> dict[int, SceneObject]:
-    """Return the objects of a scene by their ids, the values of the instance view."""
-    return {
-        instance.id: SceneObject(
-            name=instance.name,
-            category_id=instance.category_id,
-            category=instance.category,
-            static=instance.static,
-            moving=instance.id in info.moving,
-        )
-        for instance in info.instances
-    }
+__all__ = ["SceneTables"]
 
 
 class SceneTables(Caller):
@@ -73,7 +34,7 @@ class SceneTables(Caller):
     @property
     def instances(self) -> dict[int, SceneObject]:
         """The objects of the scene by their ids, the values of the instance view."""
-        return scene_objects(self.info)
+        return dict(self.info.objects)
 
     def get_categories(self) -> dict[int, str]:
         """Return `categories`, by the name that the SAILenv client has for it."""

@@ -44,7 +44,8 @@ def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
         is lighter, and ``depth_m`` (H, W) float32 [m]; ``category`` (H, W) uint8; ``instance``
         (H, W) uint16 and ``object`` (H, W, 3) uint8 BGR, one colour per instance; ``flow``
         (H, W, 2) float32 [px/s], 0 where ``flow_valid`` (H, W) bool is False; others by their
-        names. Besides ``sizes`` (bytes of each view as received), ``deltaTime`` and ``dt`` [s],
+        names. Besides ``instances`` (the objects of this instant by their ids, `Frame.instances`),
+        ``sizes`` (bytes of each view as received), ``deltaTime`` and ``dt`` [s],
         ``stamp_ns``, ``sequence``, ``scene``, ``render_s`` (wall time that rendering took),
         ``K`` (3, 3), and the optical frame's ``world_from_camera`` (4, 4).
     """
@@ -62,6 +63,7 @@ def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
         sizes[_NAMES.get(view, view)] = values.nbytes
         entries.update(_entries(view, values, converted))
     entries.update(
+        instances=frame.instances,
         sizes=sizes,
         deltaTime=frame.dt_ns * 1e-9,
         dt=frame.dt_ns * 1e-9,

@@ -149,6 +149,7 @@ class RecordedFrames(Sequence[Frame]):
             camera=camera_of_frame_info(info, self._intrinsics(info, scene_info)),
             views={view: view_from_image(view, image) for view, image in images.items()},
             timings_s={"render": info.render_s},
+            info=scene_info,
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -162,6 +163,11 @@ class RecordedFrames(Sequence[Frame]):
     def scene_info(self, index: int) -> SceneInfo | None:
         """Return what was told of the scene when the frame was made; None if not recorded."""
         entry = self._entries[self.position(index)]
+        own = [(log, info) for log, info in self._infos if info.revision == entry.info.revision]
+        if own:
+            # Several only where the bag goes over several runs of a simulator.
+            return ([info for log, info in own if log <= entry.log_ns] or [own[0][1]])[-1]
+        # It was not recorded, or the bag is of a version whose frames had revisions of their own.
         known = [info for log_ns, info in self._infos if log_ns <= entry.log_ns]
         if known and known[-1].revision >= entry.info.revision:
             return known[-1]

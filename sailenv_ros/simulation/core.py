@@ -101,6 +101,7 @@ class SimulationCore(WorldOperations):
         self._renderer = renderer
         self._should_end = should_end
         self._revision = 0
+        self._announced: SceneInfo | None = None
         self.world: World = library.build(scene, seed, self.epoch, self._next_revision)
         self.world.frustum_planes = self._frustum_planes
         for spec in library.agents_of(self.world.scene):
@@ -153,7 +154,8 @@ class SimulationCore(WorldOperations):
     def announce(self) -> None:
         """Tell the scene as it is now, under a new revision."""
         self._next_revision()
-        self.on_info(self.info)
+        self._announced = self.info
+        self.on_info(self._announced)
 
     def begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
         """Leave the present world for a new one at simulated time 0.
@@ -181,7 +183,9 @@ class SimulationCore(WorldOperations):
         self.epoch += 1
         self.agents.begin_epoch(world, as_registered=as_registered)
         self.agents.add_missing(brought, world)
-        self.discard_frames()
+        for record in self.agents:
+            for stream in record.streams:
+                stream.discard()
         self.announce()
         self.on_step(world.sim_time_ns)
 
@@ -190,12 +194,6 @@ class SimulationCore(WorldOperations):
         self.library.refresh()
         self.library.load_light(self.world)
         self.announce()
-
-    def discard_frames(self) -> None:
-        """Drop waiting frames whose ids the next scene_info will not know."""
-        for record in self.agents:
-            for stream in record.streams:
-                stream.discard()
 
     # -- time ------------------------------------------------------------------------------
 
@@ -256,12 +254,12 @@ class SimulationCore(WorldOperations):
         rendered = self._renderer.render(snapshot, past, camera, wanted)
         record.remember(Observation(snapshot=snapshot, camera=camera, depth=rendered.depth))
         record.sequence += 1
-        contents = snapshot.contents
+        info = self._info_of_frames()
         return Frame(
             agent=record.spec.name,
-            scene=contents.scene,
-            epoch=contents.epoch,
-            revision=contents.revision,
+            scene=info.scene,
+            epoch=info.epoch,
+            revision=info.revision,
             sequence=record.sequence,
             stamp_ns=snapshot.sim_time_ns,
             dt_ns=0 if past is None else snapshot.sim_time_ns - past.snapshot.sim_time_ns,
@@ -269,6 +267,7 @@ class SimulationCore(WorldOperations):
             depth_range_m=record.spec.depth_range_m,
             views=rendered.views,
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
+            info=info,
         )
 
     def open_stream(
@@ -313,12 +312,13 @@ class SimulationCore(WorldOperations):
             # Another frame of this walk may have taken so long that this stream was closed.
             if record.due_step() > now or not record.wanted_views:
                 continue
+            # Who changes its mind while this is drawn gets it all the same: it is not drawn again.
+            waiting = [stream for stream in record.streams if stream.views]
             frame = self.render(record, record.wanted_views)
             # One of those that are passed over is the frame just made.
             self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
-            for stream in record.streams:
-                if stream.views:
-                    stream.put(frame)
+            for stream in waiting:
+                stream.put(frame)
 
     def _frustum_planes(self, agent: str, distance_m: float) -> NDArray[np.float64]:
         """Return the planes of an agent's view; none while there is no such agent."""
@@ -326,6 +326,14 @@ class SimulationCore(WorldOperations):
             if record.spec.name == agent:
                 return view_planes(self.agents.camera(record, self.world), distance_m)
         return np.zeros((0, 4))
+
+    def _info_of_frames(self) -> SceneInfo:
+        """Return what was announced last, which is what clients find a frame's ids in."""
+        if self._announced is None or self._announced.revision < self.world.contents.revision:
+            self._announced = (
+                self.info
+            )  # of the beginning; no operation leaves a change unannounced
+        return self._announced
 
     def _next_revision(self) -> int:
         self._revision += 1

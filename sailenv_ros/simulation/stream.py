@@ -125,7 +125,7 @@ class FrameStream:
             self._ready.notify_all()
 
     def discard(self) -> None:
-        """Drop a frame that was not taken yet: it shows what is no more; called by the loop."""
+        """Drop a frame that was not taken yet: its world is no more; called by the loop."""
         with self._ready:
             if self._frame is not None:
                 self._dropped += 1

@@ -80,11 +80,11 @@ def test_the_plan_varies_one_thing_at_a_time_or_everything() -> None:
     assert [group.vary for group in plan.cases] == [
         "transport", "transport", "views", "agents", "scene"
     ]  # fmt: skip
-    assert [len(group.settings) for group in plan.cases] == [5, 5, 5, 2, 2]
+    assert [len(group.settings) for group in plan.cases] == [6, 6, 5, 2, 2]
     assert len(plan.baselines[0].settings) == 5
     full = plan_of(**common, full=True)
     labels = [label for group in full.cases for label in group.settings]
-    assert len(labels) == 2 * 2 * 5 * 2 * 5
+    assert len(labels) == 2 * 2 * 5 * 2 * 6
     assert len(set(labels)) == len(labels)
     with pytest.raises(UnknownName, match="pigeon"):
         plan_of(**{**common, "transports": ["pigeon"]}, full=False)
@@ -92,8 +92,12 @@ def test_the_plan_varies_one_thing_at_a_time_or_everything() -> None:
 
 def test_the_default_of_dds_is_left_alone_by_our_profile() -> None:
     """A variable says so to whoever would choose one."""
-    assert environment_of("DDS, default") == {"FASTDDS_BUILTIN_TRANSPORTS": "DEFAULT"}
-    assert environment_of("DDS, our profile") == {}
+    default, ours = environment_of("DDS, default"), environment_of("DDS, our profile")
+    assert default["FASTDDS_BUILTIN_TRANSPORTS"] == "DEFAULT"
+    assert "FASTDDS_BUILTIN_TRANSPORTS" not in ours
+    # Shared memory beside DDS is measured by itself.
+    assert default["SAILENV_DIRECT_FRAMES"] == ours["SAILENV_DIRECT_FRAMES"] == "0"
+    assert environment_of("shared memory") == {"SAILENV_DIRECT_FRAMES": "1"}
 
 
 def test_a_command_measures_writes_and_reports(

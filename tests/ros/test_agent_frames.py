@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +67,35 @@ def test_a_slow_reader_gets_the_newest(agent: Agent) -> None:
         latest = next(stream)
     assert latest["stamp_ns"] - first["stamp_ns"] == pytest.approx(40e9 / 240, abs=1)
     stream.close()
+
+
+def test_a_frame_knows_its_ids_while_others_spawn_and_despawn(agent: Agent, keeper: Agent) -> None:
+    """Another client puts a cube before the camera and away again, as fast as it can."""
+    agent.set_follow(False)
+    agent.set_position((0.0, 0.0, 20.0), teleport=True)
+    agent.set_rotation((0.0, 0.0, 0.0), teleport=True)
+    enough = threading.Event()
+
+    def come_and_go() -> None:
+        while not enough.is_set():
+            id_ = keeper.spawn_object("Cube", (2.0, 0.0, 20.0), object_name="visitor")
+            keeper.despawn_object(id_)
+
+    with ThreadPoolExecutor(1) as pool:
+        other = pool.submit(come_and_go)
+        try:
+            frames = [agent.get_frame() for _ in range(50)]
+            frames.append(next(agent.frames(30.0)))
+        finally:
+            enough.set()
+        other.result(20.0)
+    ids = [{*np.unique(frame["instance"]).tolist()} - {0} for frame in frames]
+    unknown = [seen - frame["instances"].keys() for seen, frame in zip(ids, frames, strict=True)]
+    assert not any(unknown)
+    # What is in the middle of the picture is there if, and only if, the frame knows of it.
+    knows = ["visitor" in [o.name for o in f["instances"].values()] for f in frames]
+    assert knows == [bool(frame["instance"][60, 80]) for frame in frames]
+    assert {True, False} == {*knows}
 
 
 def test_a_stream_ends_with_its_iteration(agent: Agent, keeper: Agent) -> None:

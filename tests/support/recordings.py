@@ -49,6 +49,7 @@ def noise_frame(
         ),
         views=arrays,
         timings_s={"render": 0.25},
+        info=noise_info(epoch=epoch),
     )
 
 

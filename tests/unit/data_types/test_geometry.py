@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import (
     BODY_FROM_OPTICAL,
+    QUAT_BODY_FROM_OPTICAL,
     Pose,
     interpolate,
     invert,
@@ -48,6 +49,17 @@ def test_matrices_and_poses_are_the_same(pose: Pose) -> None:
     """Pose to matrix and back gives the same place and turn."""
     again = Pose.from_matrix(pose.matrix())
     np.testing.assert_allclose(again.matrix(), pose.matrix(), atol=1e-12)
+
+
+@given(POSES)
+def test_a_turned_pose_is_the_product_of_matrices(pose: Pose) -> None:
+    """The optical frame by its quaternion is that by its matrix, and the turn back undoes it."""
+    optical = pose.turned(QUAT_BODY_FROM_OPTICAL)
+    np.testing.assert_allclose(optical.matrix(), pose.matrix() @ BODY_FROM_OPTICAL, atol=1e-14)
+    x, y, z, w = QUAT_BODY_FROM_OPTICAL
+    back = optical.turned((-x, -y, -z, w))
+    np.testing.assert_allclose(back.orientation_xyzw, pose.orientation_xyzw, rtol=0, atol=1e-15)
+    assert back.position_m == pose.position_m
 
 
 @given(ANGLE, st.floats(-89.9, 89.9), ANGLE)

@@ -226,9 +226,22 @@ def test_no_frame_is_newer_than_the_scene_info_told() -> None:
     for change in (core.reset, lambda: core.change_scene("solid_benchmark")):
         change()
         frame = core.capture(["instance"], agent="eye")
-        assert frame.revision <= told[-1].revision
-        assert frame.epoch == told[-1].epoch
+        assert frame.info is told[-1]
+        assert (frame.revision, frame.epoch) == (told[-1].revision, told[-1].epoch)
     assert [info.revision for info in told] == sorted({info.revision for info in told})
+
+
+def test_a_frame_keeps_the_instances_of_its_own_instant(core: SimulationCore) -> None:
+    """What is spawned or removed later changes no frame that was taken before."""
+    core.register_agent(spec())
+    before = core.capture(["instance"], agent="eye")
+    id_ = core.spawn_object("cube", object_name="box", pose=Pose((3.0, 0.0, 1.0)))
+    between = core.capture(["instance"], agent="eye")
+    core.despawn_object(id_)
+    after = core.capture(["instance"], agent="eye")
+    assert [id_ in frame.instances for frame in (before, between, after)] == [False, True, False]
+    assert between.to_dict()["instances"][id_].name == "box"
+    assert before.revision < between.revision < after.revision
 
 
 BAD_REQUESTS = [

@@ -20,6 +20,7 @@ from sailenv_ros.errors import (
     SailenvError,
     UnknownName,
 )
+from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
@@ -96,12 +97,15 @@ def test_ids_are_never_used_again(core: SimulationCore) -> None:
         assert id_ not in ids_of(core)
 
 
-def test_a_waiting_frame_does_not_outlive_what_it_shows(core: SimulationCore) -> None:
-    """A frame that nobody has taken is dropped when an object of it goes, or the scene does."""
+def test_a_waiting_frame_does_not_outlive_its_world(core: SimulationCore) -> None:
+    """A frame that nobody has taken is dropped when the scene ends, not when an object goes."""
     core.set_rate(30.0, agent="eye")
     id_ = core.spawn_object("cube", pose=AHEAD, remove_dynamics=False)
     stream = core.open_stream("eye", ("instance",), lambda _: None)
-    for end in (lambda: core.despawn_object(id_), core.reset, lambda: core.change_scene("optical")):
+    core.render_due()
+    core.despawn_object(id_)
+    assert id_ in stream.get(0.0).instances
+    for end in (core.reset, lambda: core.change_scene("optical")):
         core.render_due()
         core.step(8)
         end()
@@ -109,6 +113,23 @@ def test_a_waiting_frame_does_not_outlive_what_it_shows(core: SimulationCore) ->
             stream.get(0.0)
     core.step(8)
     assert stream.get(0.0).epoch == core.info.epoch
+
+
+def test_a_frame_is_delivered_to_whom_it_was_drawn_for(
+    core: SimulationCore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who wants no more views while it is drawn gets it all the same; it is not drawn again."""
+    core.set_rate(30.0, agent="eye")
+    stream = core.open_stream("eye", ("instance",), lambda _: None)
+    render = core.render
+
+    def changing_minds(*asked: Any) -> Frame:
+        stream.set_views(())
+        return render(*asked)
+
+    monkeypatch.setattr(core, "render", changing_minds)
+    core.render_due()
+    assert [*stream.get(0.0).views] == ["instance"]
 
 
 def test_an_object_without_a_name_is_given_one(core: SimulationCore) -> None:
