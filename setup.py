@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import shutil
 import sys
 from glob import glob
 from pathlib import Path
@@ -140,6 +141,13 @@ class BuildNativeLibrary(build_ext):
         native_compile = load_native_compile()
         strict = bool(os.environ.get(native_compile.STRICT_VARIABLE))
         output = Path(self.get_ext_fullpath(extension.name))
+        # scripts/setup has compiled it already.
+        compiled = Path(PACKAGE, "native", native_compile.LIBRARY_NAME)
+        if native_compile.compiled_hash(compiled) == native_compile.source_hash():
+            if output.resolve() != compiled.resolve():
+                output.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(compiled, output)
+            return
         objects = Path(self.build_temp) / "native"
         try:
             native_compile.compile_library(output, objects=objects, strict=strict)

@@ -1,30 +1,56 @@
-"""How much stalled and idle peers cost those who work: frames per second with and without them.
+"""How much stalled, idle and working clients cost those who work: frames per second beside them.
 
     python benchmarks/load.py [--seconds S] [--rounds N] [--agents N] [--peers N] [--pages N]
 
-Agents stream in process all the time. Alone and loaded take turns: loaded means as many peers at
-the gateway as it takes, half of which ask for frames and never read, half of which say nothing; and
-pages at the window that never read. Prints medians and their ratio; the aim is 0.95.
+Agents stream in process all the time. In each round they do so alone, then beside stalled clients,
+then beside clients half of which are stalled. The clients are a process of their own:
+
+- peers at the gateway: all connect, as many as fit register (16 agents are the most). A stalled one
+  asks for frames and never reads, a working one reads `--peer-hz` frames a second.
+- pages at the window that watch the first agent. Stalled ones never say that they have shown a
+  frame; half of them do not read either. Working ones show all that they are sent.
+
+Prints the medians of the frame rate and of the processor time per frame of this process, and their
+ratios to those alone. The second does not depend on what else the machine does. The aim is 0.95 of
+the rate beside stalled clients.
 """
 
 from __future__ import annotations
 
 import argparse
+import asyncio
 import contextlib
+import json
+import logging
+import os
 import socket
 import statistics
 import struct
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
+
+import aiohttp
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
+from sailenv_ros.agents import MAX_AGENTS, AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.viewer import ViewerServer
+from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
 FRAME = b"\0\x3d"
 """The command for a frame with five views."""
+
+SIZE = (160, 120)
+
+SWITCH_INTERVAL_S = 0.0005
+"""As in `sailenv_ros/nodes/sim_node.py`, which this stands for [s]."""
+
+SETTLE_S = 2.0
+"""Until the buffers of those who do not read are full [s]."""
 
 
 def main() -> None:
@@ -35,64 +61,173 @@ def main() -> None:
     parser.add_argument("--agents", type=int, default=8)
     parser.add_argument("--peers", type=int, default=64)
     parser.add_argument("--pages", type=int, default=20)
+    parser.add_argument("--peer-hz", type=float, default=5.0)
+    parser.add_argument("--clients-of", nargs=2, type=int, help=argparse.SUPPRESS)
+    parser.add_argument("--working", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
-    alone, loaded = [], []
+    if options.clients_of:
+        asyncio.run(_Clients(options).live(*options.clients_of))
+    else:
+        _measure(options)
+
+
+# -- the simulator -------------------------------------------------------------------------
+
+
+@dataclass
+class _Rate:
+    frames_per_s: list[float]
+    cpu_ms_per_frame: list[float]
+
+
+def _measure(options: argparse.Namespace) -> None:
+    logging.disable(logging.WARNING)
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    rates = {what: _Rate([], []) for what in ("alone", "stalled", "half stalled")}
     with (
         Simulation("optical", mode="lockstep") as simulation,
         GatewayServer(simulation, port=0) as gateway,
-        ViewerServer(simulation, port=0) as viewer,
+        ViewerServer(simulation, port=0, limits=ViewerLimits(clients=options.pages)) as viewer,
     ):
         names = [f"load_{number}" for number in range(options.agents)]
+        lens = CameraIntrinsics(width=SIZE[0], height=SIZE[1])
         for name in names:
-            spec = AgentSpec(
-                name=name, intrinsics=CameraIntrinsics(width=160, height=120), rate_hz=0.0
-            )
-            simulation.register_agent(spec)
-        _rate(simulation, names, 1.0)
+            simulation.register_agent(AgentSpec(name=name, intrinsics=lens))
+        _run(simulation, names, 1.0)
+        ports = (gateway.port, viewer.port)
         for _ in range(options.rounds):
-            alone.append(_rate(simulation, names, options.seconds))
-            with _peers(gateway.port, options.peers), _pages(viewer.port, options.pages):
-                time.sleep(1.0)
-                loaded.append(_rate(simulation, names, options.seconds))
-    one, other = statistics.median(alone), statistics.median(loaded)
-    print(
-        f"{options.agents} agents: {one:.1f} frames/s alone, {other:.1f} beside {options.peers} "
-        f"peers and {options.pages} pages that do not read: {other / one:.3f}"
-    )
+            _run(simulation, names, options.seconds, rates["alone"])
+            for what in ("stalled", "half stalled"):
+                with _clients(options, ports, working=what != "stalled"):
+                    _run(simulation, names, SETTLE_S)
+                    _run(simulation, names, options.seconds, rates[what])
+    _print(options, rates)
 
 
-def _rate(simulation: Simulation, names: list[str], seconds: float) -> float:
-    began, count = time.monotonic(), 0
+def _run(
+    simulation: Simulation, names: list[str], seconds: float, rate: _Rate | None = None
+) -> None:
+    """Step and capture for so long; take the rate down."""
+    began, cpu, count = time.monotonic(), time.process_time(), 0
     while time.monotonic() - began < seconds:
         simulation.step(8)
         for name in names:
             simulation.capture(agent=name)
             count += 1
-    return count / (time.monotonic() - began)
+    if rate is not None:
+        rate.frames_per_s.append(count / (time.monotonic() - began))
+        rate.cpu_ms_per_frame.append(1e3 * (time.process_time() - cpu) / count)
+
+
+def _print(options: argparse.Namespace, rates: dict[str, _Rate]) -> None:
+    print(f"{options.agents} agents, {options.peers} peers, {options.pages} pages")
+    speed, cost = (
+        statistics.median(rates["alone"].frames_per_s),
+        statistics.median(rates["alone"].cpu_ms_per_frame),
+    )
+    for what, rate in rates.items():
+        now, ms = statistics.median(rate.frames_per_s), statistics.median(rate.cpu_ms_per_frame)
+        print(
+            f"{what:<13} {now:6.1f} frames/s, ratio {now / speed:.3f}; "
+            f"{ms:5.2f} ms of processor time per frame, ratio {ms / cost:.3f}"
+        )
 
 
 @contextlib.contextmanager
-def _peers(port: int, count: int) -> Iterator[None]:
-    with contextlib.ExitStack() as stack:
-        for number in range(count):
-            peer = stack.enter_context(socket.create_connection(("127.0.0.1", port), 5.0))
-            peer.setblocking(False)
-            if number % 2:
-                with contextlib.suppress(OSError):  # it takes no more
-                    peer.sendall(struct.pack("<iiB", 160, 120, 0) + FRAME * 20)
-        yield
+def _clients(
+    options: argparse.Namespace, ports: tuple[int, int], *, working: bool
+) -> Iterator[None]:
+    """Have the clients there, in another process, until the end of the block."""
+    command = [sys.executable, __file__, "--clients-of", *map(str, ports)]
+    for name in ("agents", "peers", "pages", "peer_hz"):
+        command += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
+    command += ["--working"] if working else []
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=os.environ
+    ) as clients:
+        assert clients.stdout is not None
+        assert clients.stdin is not None
+        try:
+            assert clients.stdout.readline() == b"there\n"
+            yield
+        finally:
+            clients.stdin.close()
+            clients.wait(20.0)
 
 
-@contextlib.contextmanager
-def _pages(port: int, count: int) -> Iterator[None]:
-    key = "GET /socket HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nOrigin: http://127.0.0.1:{0}\r\n"
-    key += "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-    key += "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
-    with contextlib.ExitStack() as stack:
-        for _ in range(count):
-            page = stack.enter_context(socket.create_connection(("127.0.0.1", port), 5.0))
-            page.sendall(key.format(port).encode())
-        yield
+# -- the clients ---------------------------------------------------------------------------
+
+
+class _Clients:
+    """All clients, in one event loop."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self._options = options
+        self._tasks: list[asyncio.Task[None]] = []
+
+    async def live(self, gateway: int, viewer: int) -> None:
+        """Connect all, say so, and live until standard input ends."""
+        options = self._options
+        with contextlib.ExitStack() as sockets:
+            async with aiohttp.ClientSession() as session:
+                for number in range(options.peers):
+                    await self._peer(gateway, number, sockets)
+                for number in range(options.pages):
+                    await self._page(viewer, number, session)
+                print("there", flush=True)
+                await asyncio.to_thread(sys.stdin.read)
+                for task in self._tasks:
+                    task.cancel()
+
+    async def _peer(self, port: int, number: int, sockets: contextlib.ExitStack) -> None:
+        peer = sockets.enter_context(socket.create_connection(("127.0.0.1", port), 5.0))
+        if number >= MAX_AGENTS - self._options.agents:
+            return  # it would be refused
+        peer.sendall(struct.pack("<iiB", *SIZE, 0))
+        peer.recv(2**16)
+        if self._options.working and number % 2:
+            self._tasks.append(asyncio.create_task(asyncio.to_thread(self._ask, peer)))
+        else:
+            peer.sendall(FRAME * 20)
+
+    def _ask(self, peer: socket.socket) -> None:
+        """Ask for a frame and read it, again and again."""
+        with contextlib.suppress(OSError):
+            while True:
+                due = time.monotonic() + 1.0 / self._options.peer_hz
+                peer.sendall(FRAME)
+                for _ in range(5):
+                    (left,) = struct.unpack("<i", _received(peer, 4))
+                    _received(peer, left)
+                _received(peer, 4)
+                time.sleep(max(0.0, due - time.monotonic()))
+
+    async def _page(self, port: int, number: int, session: aiohttp.ClientSession) -> None:
+        address = f"http://127.0.0.1:{port}"
+        page = await session.ws_connect(f"{address}/socket", headers={"Origin": address})
+        watch = {"do": "watch", "id": 1, "agent": "load_0", "views": ["rgb", "depth", "flow"]}
+        await page.send_json(watch)
+        works = self._options.working and number % 2 == 1
+        if works or number % 4 == 0:
+            self._tasks.append(asyncio.create_task(_look(page, shows=works)))
+
+
+async def _look(page: aiohttp.ClientWebSocketResponse, *, shows: bool) -> None:
+    async for message in page:
+        if shows and message.type == aiohttp.WSMsgType.BINARY:
+            size = int.from_bytes(message.data[:4], "little")
+            number = json.loads(message.data[4 : 4 + size])["number"]
+            await page.send_json({"do": "shown", "number": number})
+
+
+def _received(peer: socket.socket, size: int) -> bytes:
+    data = bytearray()
+    while len(data) < size:
+        piece = peer.recv(size - len(data))
+        if not piece:
+            raise ConnectionResetError
+        data += piece
+    return bytes(data)
 
 
 if __name__ == "__main__":

@@ -151,7 +151,8 @@ def main() -> None:
     parser.add_argument("--size", action="append", help="WIDTHxHEIGHT; may be given repeatedly")
     parser.add_argument("--json", type=Path, help="write the results here too")
     options = parser.parse_args()
-    sizes = [tuple(map(int, size.split("x"))) for size in options.size or ()] or list(PAPER_MS)
+    sizes = [(int(w), int(h)) for w, _, h in (s.partition("x") for s in options.size or ())]
+    sizes = sizes or list(PAPER_MS)
     results = []
     with (
         Simulation(options.scene) as simulation,

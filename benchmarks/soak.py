@@ -22,7 +22,6 @@ import numpy as np
 from sailenv_ros import Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.geometry import Pose
 
 MOST_MIB_PER_HOUR = 20.0
 KINDS = ("memory [MiB]", "descriptors", "threads", "segments")
@@ -44,11 +43,13 @@ def main() -> int:
             rows.append(((now - began) / 3600.0, *_opened()))
             if now - told > 30.0 or len(rows) == 1:
                 told = now
-                print(f"{(now - began) / 60:6.1f} min  round {rounds:>5}  {_told(rows[-1][1:])}")
+                print(
+                    f"{(now - began) / 60:6.1f} min  round {rounds:>5}  {_formatted(rows[-1][1:])}"
+                )
     late = np.array(rows[len(rows) // 2 :])
     slopes = [float(np.polyfit(late[:, 0], late[:, 1 + k], 1)[0]) for k in range(len(KINDS))]
     growth = late[-1, 2:] - late[0, 2:]
-    print(f"{rounds} rounds; per hour over the second half: {_told(slopes)}")
+    print(f"{rounds} rounds; per hour over the second half: {_formatted(slopes)}")
     return int(slopes[0] > MOST_MIB_PER_HOUR or bool((growth > 0).any()))
 
 
@@ -59,8 +60,7 @@ def _round(simulation: Simulation, scene: str, number: int) -> None:
         spec = AgentSpec(name=name, intrinsics=CameraIntrinsics(width=160, height=120), rate_hz=0.0)
         simulation.register_agent(spec)
     things = [
-        simulation.spawn_object("cube", pose=Pose((0.3 * k, 0.0, 1.0)), static=True)
-        for k in range(4)
+        simulation.spawn_object("cube", (0.3 * k, 0.0, 1.0), remove_dynamics=True) for k in range(4)
     ]
     simulation.step(8)
     for name in names:
@@ -81,7 +81,7 @@ def _opened() -> tuple[float, ...]:
     )
 
 
-def _told(values: tuple[float, ...] | list[float]) -> str:
+def _formatted(values: tuple[float, ...] | list[float]) -> str:
     return ", ".join(f"{kind} {value:.1f}" for kind, value in zip(KINDS, values, strict=True))
 
 

@@ -9,7 +9,7 @@ Every sentence says what was wrong and what is accepted, with the names that the
     │   └── InvalidEntry        something described by several values, some of them wrong
     ├── InvalidState            something that is not possible as things are now
     ├── AddressInUse            a port that another program listens on
-    ├── InternalFault           a fault of the simulator's own
+    ├── InternalFault           an error of the simulator itself
     ├── SceneError              one or more errors in a scene file, each with file:line:column
     ├── AssetError              a model, texture or pack that cannot be used
     ├── PhysicsError            the physics engine refused a call or diverged
@@ -201,7 +201,7 @@ def address_error(what: str, host: str, port: int, problem: OSError) -> SailenvE
 
 
 class InternalFault(SailenvError):
-    """A fault of the simulator's own; its log says more."""
+    """An internal error of the simulator; its log says more."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -48,13 +48,18 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark by folder what needs OpenGL or ROS, so that no test can forget it."""
+    """Mark by folder what needs OpenGL or ROS, so that no test can forget it; longest files first.
+
+    Two workers take a file after the other: a long one at the end would leave one of them idle.
+    """
     for item in items:
         folders = item.path.relative_to(ROOT / "tests").parts
         if folders[0] == "ros":
             item.add_marker(pytest.mark.ros)
         elif folders[0] in ("render", "viewer"):
             item.add_marker(pytest.mark.gl)
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
 
 
 def pytest_collection_finish() -> None:

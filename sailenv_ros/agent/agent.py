@@ -181,12 +181,16 @@ depth_frame_active : bool
     def delete(self) -> None:
         """Remove the agent from the simulator; a second call does nothing."""
         with self._lock:
-            if self._frames is not None:
-                self._recaptured += self._frames.recaptured
-                self._frames.close()
-                self._frames = None
-                self._remote.connection.forget_services(self.id)
+            if self._frames is None:
+                return
+            frames, self._frames = self._frames, None
+            self._recaptured += frames.recaptured
+            try:
+                # Before its subscriptions: an agent whose client is gone is removed as it is.
                 self.delete_agent(self.id)
+            finally:
+                frames.close()
+                self._remote.connection.forget_services(self.id)
 
     def rejoin(self) -> None:
         """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.

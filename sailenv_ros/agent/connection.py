@@ -32,6 +32,7 @@ from sailenv_ros.errors import (
     SimulatorLost,
 )
 from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.system.client_locks import ClientLock
 from sailenv_ros.system.presence import present_simulator
 from sailenv_ros.system.transport import use_shared_memory_profile
 
@@ -71,11 +72,14 @@ class Connection:
         self._clients: dict[str, Any] = {}
         self._is_alive: Callable[[], bool] = lambda: True
         use_shared_memory_profile()
+        # By these the simulator knows whether we live; see `nodes/agent_leases.py`.
+        name = f"client_{os.getpid()}_{uuid.uuid4().hex[:6]}"
+        self._lock = ClientLock(name)
         self._context = Context()
         # No arguments: those on this process's command line are not for us.
         rclpy.init(args=[], context=self._context, domain_id=domain_id)
         self.node = Node(
-            f"client_{os.getpid()}_{uuid.uuid4().hex[:6]}",
+            name,
             context=self._context,
             namespace=namespace,
             use_global_arguments=False,
@@ -306,6 +310,7 @@ class Connection:
         self.node.destroy_node()
         with contextlib.suppress(RuntimeError):  # the interpreter's end may have come before
             self._context.try_shutdown()
+        self._lock.release()
 
 
 def _refuse_nul(service: str, message: Any) -> None:

@@ -141,6 +141,20 @@ class AssetLibrary:
         with self._lock:
             self._add(asset.name, asset.display_name, _Ready(asset))
 
+    def renew(self, sources: Iterable[AssetSource]) -> None:
+        """Take assets that are not loaded yet from these sources, and add those that are new.
+
+        What was added by `add`, or is in use, stays as it is; a name that is taken is left out.
+        """
+        with self._lock:
+            for source in sources:
+                for name, display_name in source.display_names.items():
+                    if name not in self._source_of:
+                        if display_name not in self._name_of:
+                            self._add(name, display_name, source)
+                    elif not isinstance(self._source_of[name], _Ready):
+                        self._source_of[name] = source
+
     def _add(self, name: str, display_name: str, source: AssetSource) -> None:
         aliases = dict.fromkeys((name, display_name))
         for alias in aliases:

@@ -72,6 +72,8 @@ def packed(
 def write_content(folder: Path, content: PackContent) -> None:
     """Write `pack.yaml`, all of it or nothing."""
     plain = content.model_dump(mode="json", exclude_defaults=True)
+    if content.missing:
+        plain["missing"] = list(content.missing)
     for entry in plain.get("assets", ()):
         for key in ("size", "tags"):
             if key in entry:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from sailenv_ros.assets.asset_library import AssetSource
@@ -20,13 +20,23 @@ _log = logging.getLogger(__name__)
 
 
 class UnbuiltPack:
-    """The standard pack where it has not been built: its names are known, its objects are not."""
+    """What has not been built of the standard pack: its names are known, its objects are not.
+
+    Parameters
+    ----------
+    names : iterable of str or None
+        Catalogue names; None means all of the pack.
+    """
+
+    def __init__(self, names: Iterable[str] | None = None) -> None:
+        self._names = names if names is None else tuple(names)
 
     @property
     def display_names(self) -> Mapping[str, str]:
         """Display name of each catalogue name."""
         recipe = standard_recipe()
-        return MappingProxyType({name: recipe.display_name(name) for name in recipe.assets})
+        names = recipe.assets if self._names is None else self._names
+        return MappingProxyType({name: recipe.display_name(name) for name in names})
 
     def load(self, name: str) -> Asset:
         """Say what is to be done.
@@ -37,7 +47,7 @@ class UnbuiltPack:
             Always.
         """
         raise AssetError(
-            name, f"the furniture is not on this machine yet; fetch it with: {BUILD_COMMAND}"
+            name, f"it has not been built on this machine yet; build it with: {BUILD_COMMAND}"
         )
 
 
@@ -74,6 +84,6 @@ def installed_sources(packs: Sequence[AssetPack] | None = None) -> tuple[AssetSo
         What `installed_packs` gave; None opens them.
     """
     packs = installed_packs() if packs is None else packs
-    built = any(pack.folder == standard_pack_folder() for pack in packs)
-    unbuilt: tuple[AssetSource, ...] = () if built else (UnbuiltPack(),)
-    return (Primitives(), *unbuilt, *packs)
+    built = [pack for pack in packs if pack.folder == standard_pack_folder()]
+    unbuilt = UnbuiltPack(built[0].content.missing if built else None)
+    return (Primitives(), unbuilt, *packs)

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.checksums import damaged_by_manifest
@@ -17,10 +16,11 @@ from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.standard.fetch import SOURCES, kept_folder
-from sailenv_ros.assets.standard.pack_build import build_standard_pack, is_current, licence_files
+from sailenv_ros.assets.standard.pack_build import is_current, licence_files
 from sailenv_ros.bake.light_files import damaged_light
 from sailenv_ros.catalogue.import_process import import_file_apart
 from sailenv_ros.catalogue.thumbnails import is_whole_png, thumbnail_folder
+from sailenv_ros.cli.furniture import build_furniture, object_progress
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.simulation.scenes import SceneLibrary
 
@@ -74,36 +74,12 @@ def run(args: argparse.Namespace) -> int:
     }[args.action](args)
 
 
-def _progress(console: Console) -> Progress:
-    return Progress(
-        TextColumn("{task.description:<28}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        console=console,
-        transient=not console.is_terminal,
-    )
-
-
 def _build(args: argparse.Namespace) -> int:
     folder = standard_pack_folder()
     if is_current(folder) and not args.force:
         print(f"{folder}: up to date ({len(AssetPack(folder).entries)} objects)")
         return 0
-    console = Console(stderr=True)
-    with _progress(console) as bar:
-        task = bar.add_task("furniture", total=None)
-
-        def report(name: str, done: int, total: int) -> None:
-            bar.update(task, description=name, completed=done, total=total)
-
-        def said(text: str) -> None:
-            bar.update(task, description=text)
-            if not console.is_terminal:
-                console.print(text)
-
-        build_standard_pack(progress=report, say=said, jobs=args.jobs, force=args.force)
-        bar.update(task, description="furniture")
+    build_furniture(jobs=args.jobs, force=args.force)
     print(f"{folder}: {len(AssetPack(folder).entries)} objects")
     return 0
 
@@ -191,7 +167,7 @@ def _sheet(args: argparse.Namespace) -> int:
     ]
     console = Console(stderr=True)
     pictures = {}
-    with PreviewRenderer() as previews, _progress(console) as bar:
+    with PreviewRenderer() as previews, object_progress(console) as bar:
         for name in bar.track(names, description="pictures"):
             asset = library.get(name)
             pictures[asset.display_name] = previews.thumbnail(

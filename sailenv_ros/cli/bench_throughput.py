@@ -69,7 +69,7 @@ def throughput(args: argparse.Namespace) -> int:
         "renderer": next((row["renderer"] for row in cases if row.get("renderer")), ""),
         "cases": cases,
         "stages": like_base[0]["stages"] if like_base else {},
-        "peers": baselines,
+        "baselines": baselines,
     }
     finish(args, "throughput", origin, data)
     return 0

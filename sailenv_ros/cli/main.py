@@ -30,6 +30,7 @@ COMMANDS = {
     "report": "write one page of all results of bench and eval",
     "run": "start the simulator, with or without ROS",
     "scene": "check, render, bake, list and begin scenes, export the schema of the format",
+    "setup": "build the furniture and bake the light of the rooms, once on each machine",
 }
 """What each subcommand does, by its name, which is its module's too."""
 

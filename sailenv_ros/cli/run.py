@@ -14,12 +14,11 @@ from pathlib import Path
 from typing import Any, get_args
 
 from sailenv_ros.cli.arguments import add_allow_modules
-from sailenv_ros.cli.scene_bake import bake_before_running
-from sailenv_ros.errors import SimulationClosed, StorageError
+from sailenv_ros.errors import SimulationClosed
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.scenes import default_scene
+from sailenv_ros.simulation.background_build import BackgroundBuild
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.transport import stay_local
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
@@ -62,7 +61,9 @@ def add_parser(subparsers: Any) -> None:
     )  # fmt: skip
     parser.add_argument("--seed", type=int, default=0, help="of every random number")
     parser.add_argument(
-        "--no-bake", action="store_true", help="do not work out a room's light beforehand"
+        "--no-build",
+        action="store_true",
+        help="do not build in the background what the scene lacks of furniture and baked light",
     )
     parser.add_argument(
         "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
@@ -72,12 +73,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run until it is ended by Ctrl-C or SIGTERM; 0 then."""
-    if not args.no_bake:
-        scene = args.scene or default_scene()
-        try:
-            bake_before_running(scene, args.scenes, allow_modules=args.allow_modules)
-        except StorageError as problem:
-            print(f"{problem}; the light is worked out from frame to frame", file=sys.stderr)
     return _run_alone(args) if args.no_ros else _become_the_node(args)
 
 
@@ -93,6 +88,7 @@ def _become_the_node(args: argparse.Namespace) -> int:
         "viewer.port": args.viewer_port,
         "allow_modules": str(args.allow_modules).lower(),
         "viewer.control": str(args.viewer_control).lower(),
+        "build_missing": "nothing" if args.no_build else "scene",
     }
     if args.scenes:
         values["scene_paths"] = "[" + ", ".join(f"'{path}'" for path in args.scenes) + "]"
@@ -118,7 +114,7 @@ def _run_alone(args: argparse.Namespace) -> int:
         server = GatewayServer(
             simulation, host=args.host, port=args.port, protocol=args.protocol
         )  # fmt: skip
-        with server, _viewer(simulation, args) as viewer:
+        with server, _viewer(simulation, args) as viewer, _background_build(simulation, args):
             print(f"scene {simulation.info.scene!r}; renderer: {simulation.info.renderer}")
             print(
                 f"listening on {server.host}:{server.port} for SAILenv clients "
@@ -132,6 +128,20 @@ def _run_alone(args: argparse.Namespace) -> int:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
     return 0
+
+
+def _background_build(
+    simulation: Simulation, args: argparse.Namespace
+) -> contextlib.AbstractContextManager[object]:
+    if args.no_build:
+        return contextlib.nullcontext()
+    return BackgroundBuild(
+        simulation,
+        str(args.scene or simulation.info.scene),
+        everything=False,
+        scene_paths=args.scenes,
+        allow_modules=args.allow_modules,
+    )
 
 
 @contextlib.contextmanager

@@ -1,12 +1,14 @@
 """`sailenv scene bake`: work out the light of rooms beforehand, with a progress bar.
 
-`sailenv run` uses it too, so that a room is never shown without its light.
+`sailenv setup` uses it too.
 """
 
 from __future__ import annotations
 
 import argparse
 import itertools
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -17,11 +19,11 @@ from sailenv_ros.bake.light_files import baked_file, is_baked, load_baked, remem
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli.arguments import add_allow_modules
-from sailenv_ros.errors import InvalidRequest, MissingPackage
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
 
-__all__ = ["add_arguments", "bake_before_running", "bake_scenes"]
+__all__ = ["add_arguments", "bake_scenes", "ensure_baked", "rooms"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +43,7 @@ def bake_scenes(args: argparse.Namespace) -> int:
         If neither scenes nor `--all` are given.
     """
     library = SceneLibrary(allow_modules=args.allow_modules)
-    scenes = [*args.scenes, *(_rooms(library) if args.all else ())]
+    scenes = [*args.scenes, *(rooms(library) if args.all else ())]
     if not scenes:
         raise InvalidRequest("what to bake", "nothing", "names or files of scenes, or --all")
     for scene in scenes:
@@ -49,22 +51,17 @@ def bake_scenes(args: argparse.Namespace) -> int:
     return 0
 
 
-def bake_before_running(scene: str, scene_paths: list[Path], *, allow_modules: bool) -> None:
-    """Bake a scene that is about to be shown; quick where nothing is to be done.
-
-    Where the packages that bake are not installed it says so, and the scene is lit without.
-    """
+def ensure_baked(scene: str, scene_paths: Sequence[Path] = (), *, allow_modules: bool) -> bool:
+    """Bake a scene's light unless it is baked or has no room; return whether it was baked now."""
     library = SceneLibrary(scene_paths, allow_modules=allow_modules)
-    if is_baked(library.stamp(scene)):
-        return
-    if library.load(scene).room is not None:
-        try:
-            _bake_one(library, scene, force=False)
-        except MissingPackage as missing:
-            print(f"{scene}: its light is computed frame by frame: {missing}", flush=True)
+    if is_baked(library.stamp(scene)) or library.load(scene).room is None:
+        return False
+    _bake_one(library, scene, force=False)
+    return True
 
 
-def _rooms(library: SceneLibrary) -> list[str]:
+def rooms(library: SceneLibrary) -> list[str]:
+    """Return the names of the scenes that have a room, whose light can be baked."""
     return [name for name in library.scene_names if library.load(name).room is not None]
 
 
@@ -95,8 +92,14 @@ def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
     with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
         task = bar.add_task(f"light of {scene}", total=1.0)
 
+        quarters = 0
+
         def report_stage(stage: str, share: float) -> None:
+            nonlocal quarters
             bar.update(task, description=f"light of {scene}: {stage}", completed=share)
+            if not console.is_terminal and int(4 * share) > quarters:
+                quarters = int(4 * share)
+                print(f"light of {scene}: {25 * quarters} %", file=sys.stderr, flush=True)
 
         baked = bake(snapshot, report=report_stage)
         bar.update(task, description=f"light of {scene}", completed=1.0)

@@ -172,15 +172,20 @@ class NativeRenderer:
         camera: Camera,
         light: NDArray[np.void],
         only: NDArray[np.bool_],
+        glows: bool,
     ) -> NDArray[np.float32]:
         """Draw linear radiance of some instances, without glass, as an array (H, W, 3)."""
+        parts = self._table.opaque
+        if not glows:
+            parts = parts.copy()
+            parts["emission"] = 0.0
         poses = np.ascontiguousarray(snapshot.world_from_body)
         at_baked_pose = self._table.at_baked_pose(snapshot)
         radiance = np.empty((camera.intrinsics.height, camera.intrinsics.width, 4), np.float16)
         self._drawing.picture(
             _view(camera),
             self._table.instances(poses, at_baked_pose, only),
-            self._table.opaque,
+            parts,
             _NO_GLASS,
             light,
             radiance=radiance,

@@ -10,30 +10,39 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.camera import Camera
 from sailenv_ros.cpu_render.part_table import PartTable
+from sailenv_ros.cpu_render.room_reflections import RoomReflections
 from sailenv_ros.lights import Light, SkyMap
 from sailenv_ros.native.drawing import ROW_PADDING, Drawing
-from sailenv_ros.native.light_maps import blur_directions, sum_texels
+from sailenv_ros.native.light_maps import LayeredMap
 from sailenv_ros.native.render_types import LAMP, LIGHT, address, record
 from sailenv_ros.render import reflection_map as reflections
 from sailenv_ros.render.baked_state import BakedState
 from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
-from sailenv_ros.render.lightmap_compositing import CompositedLight, main_light
+from sailenv_ros.render.lightmap_compositing import (
+    CompositedLight,
+    composite_lightmap,
+    light_alone,
+    main_light,
+)
 from sailenv_ros.render.shadow_plan import SIZE_PX, ShadowPlan
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["Radiance", "FrameLight", "with_exposure"]
 
 _log = logging.getLogger(__name__)
 
-Radiance = Callable[[Camera, NDArray[np.void], NDArray[np.bool_]], NDArray[np.float32]]
-"""``radiance(camera, light, only)`` returns (H, W, 3): a picture of some instances."""
+Radiance: TypeAlias = Callable[
+    [Camera, NDArray[np.void], NDArray[np.bool_], bool], NDArray[np.float32]
+]
+"""``radiance(camera, light, only, glows)`` returns (H, W, 3): a picture of some instances; what
+glows does so if it is told to."""
 
 
 class ShadowMap:
@@ -104,15 +113,16 @@ class FrameLight:
 
     def __init__(self, drawing: Drawing, threads: int) -> None:
         self._drawing = drawing
-        self._threads = threads
         self._shadow = ShadowMap(drawing)
         self._static_shadow: ShadowMap | None = None
-        self._baked = BakedState(partial(sum_texels, threads=threads))
+        self._baked = BakedState()
+        self._reflections = RoomReflections(threads)
         self._sky: tuple[SkyMap, NDArray[np.float16]] | None = None
         self._lamps = np.zeros(MAX_LIGHTS, LAMP)
         self._warned_of: Sequence[Light] | None = None
-        self._layers: NDArray[np.float16] | None = None
-        self._room: dict[str, NDArray[np.float64]] = {}
+        self._light = np.zeros(1, LIGHT)
+        self._light_map: LayeredMap | None = None
+        self._of: tuple[SceneContents, CompositedLight | None] | None = None
         self._reflected: CompositedLight | None = None
 
     def at(self, snapshot: WorldSnapshot, table: PartTable, radiance: Radiance) -> NDArray[np.void]:
@@ -125,14 +135,19 @@ class FrameLight:
         """
         contents = snapshot.contents
         main = main_light(contents.lights)
-        light = self._surroundings(snapshot, main)
         composited = self._baked.update(snapshot)
+        same = self._of is not None and self._of[0] is contents and self._of[1] is composited
+        if not same:
+            self._light = self._surroundings(snapshot, main)
+        light = self._light
         if composited is None or contents.baked is None:
             if main is not None:
                 self._shadow.draw(main, snapshot, table)
             self._set_shadows(light, self._shadow, self._shadow)
-            lamps = tuple(lamp for lamp in contents.lights if lamp is not main)
-            self._set_lamps(light, lamps)
+            if not same:
+                lamps = tuple(lamp for lamp in contents.lights if lamp is not main)
+                self._set_lamps(light, lamps)
+            self._of = contents, composited
             return light
         still = table.at_baked_pose(snapshot)
         if self._static_shadow is None:
@@ -141,12 +156,19 @@ class FrameLight:
             self._static_shadow.draw(main, snapshot, table, casting=still, framed=still)
             self._shadow.draw(main, snapshot, table, casting=~still, framed=still)
         self._set_shadows(light, self._shadow, self._static_shadow)
+        light["instance_light_at"] = address(self._baked.instances)
+        if same:
+            return light
         self._set_lamps(light, composited.live)
-        self._set_baked(light, composited)
+        if self._reflected is not composited or self._light_map is None:
+            self._light_map = _layered(composited, self._light_map)
+        _set_baked(light, composited, self._light_map)
         if self._reflected is not composited:
-            self._reflect(light, contents.baked.probes, radiance, still)
+            look = partial(self._look, light, snapshot, main, radiance, still)
+            self._reflections.update(contents, still, main, look)
             self._reflected = composited
         self._set_reflections(light)
+        self._of = contents, composited
         return light
 
     def _surroundings(self, snapshot: WorldSnapshot, main: Light | None) -> NDArray[np.void]:
@@ -188,54 +210,56 @@ class FrameLight:
             _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, shining)
         chosen = strongest_lamps(lamps)
         for row, lamp in zip(self._lamps, chosen, strict=False):
-            row["colour"], row["kind"] = lamp_power(lamp), LAMP_KINDS[lamp.type]
-            row["position"], row["range"] = lamp.position_m, max(lamp.range_m, 1e-3)
-            row["direction"] = lamp.direction
-            row["inner_cosine"] = np.cos(np.radians(lamp.inner_cone_deg))
-            row["outer_cosine"] = np.cos(np.radians(lamp.outer_cone_deg))
+            _describe(row, lamp)
         light["lamp_count"] = len(chosen)
         light["lamps_at"] = address(self._lamps)
 
-    def _set_baked(self, light: NDArray[np.void], composited: CompositedLight) -> None:
-        light["baked"] = 1
-        light["light_map_at"] = address(composited.texels)
-        light["light_map_height"], light["light_map_width"] = composited.texels.shape[:2]
-        light["instance_light_at"] = address(self._baked.instances)
-        light["main_baked"] = float(composited.main_baked)
-        light["main_clear"] = composited.main_transmittance
-
     def _set_reflections(self, light: NDArray[np.void]) -> None:
-        assert self._layers is not None
+        layers = self._reflections.layers
         light["reflecting"] = 1
-        light["reflections_at"] = address(self._layers)
-        light["reflection_layers"], light["reflection_edge"] = self._layers.shape[:2]
-        light["reflection_scale"] = reflections.EDGE / self._layers.shape[1]
+        light["reflections_at"] = address(layers)
+        light["reflection_layers"], light["reflection_edge"] = layers.shape[:2]
+        light["reflection_scale"] = reflections.EDGE / layers.shape[1]
         light["layers_per_roughness"] = reflections.layers_per_roughness()
-        for name, value in self._room.items():
+        for name, value in self._reflections.room.items():
             light[name][0] = value
 
-    def _reflect(
+    def _look(
         self,
-        plain: NDArray[np.void],
-        probes: ProbeGrid,
+        full: NDArray[np.void],
+        snapshot: WorldSnapshot,
+        main: Light | None,
         radiance: Radiance,
         still: NDArray[np.bool_],
-    ) -> None:
-        """Look around from the middle of the room, at what stands still."""
-        middle, (low, high) = reflections.view_point(probes)
-        cameras = reflections.cube_cameras(middle)
-        unexposed = with_exposure(plain, 1.0)
-        pictures = [radiance(camera, unexposed, still) for camera in cameras]
-        flat = reflections.flattened(cameras, pictures, reflections.EDGE)
-        blur = partial(blur_directions, threads=self._threads)
-        self._layers = np.ascontiguousarray(reflections.prefilter(flat, blur=blur))
-        seen = self._layers[0, 1:-1, 1:-1, :3].astype(np.float64)
-        self._room = {
-            "reflection_from": middle,
-            "room_low": low,
-            "room_high": high,
-            "room_light": reflections.light_from_around(seen),
-        }
+        alone: Light | None,
+        cameras: list[Camera],
+    ) -> list[NDArray[np.float32]]:
+        """Look at what stands still under one light alone; see `room_reflections.Look`."""
+        contents = snapshot.contents
+        assert contents.baked is not None
+        light = with_exposure(full, 1.0)
+        light["reflecting"] = light["lamp_count"] = 0
+        light["main_colour"] = 0.0
+        # Nothing that moves casts a shadow into what is mirrored.
+        unshadowed = _empty_map()
+        light["shadow_at"] = address(unshadowed)
+        lamp = np.zeros(1, LAMP)
+        if alone is None:
+            composited = composite_lightmap(contents.baked, (), contents.environment)
+        else:
+            is_main = main is not None and alone.name == main.name
+            composited = light_alone(contents.baked, alone, is_main=is_main)
+            light["background_plain"], light["background"] = 1, 0.0
+            if is_main:
+                light["main_colour"][0] = lamp_power(alone)
+            elif composited.live:
+                _describe(lamp[0], alone)
+                light["lamp_count"], light["lamps_at"] = 1, address(lamp)
+        light_map = _layered(composited)
+        _set_baked(light, composited, light_map)
+        instances = self._baked.around(snapshot, composited.probes)
+        light["instance_light_at"] = address(instances)
+        return [radiance(camera, light, still, alone is None) for camera in cameras]
 
 
 def with_exposure(light: NDArray[np.void], factor: float) -> NDArray[np.void]:
@@ -243,6 +267,27 @@ def with_exposure(light: NDArray[np.void], factor: float) -> NDArray[np.void]:
     result = light.copy()
     result["exposure"] = factor
     return result
+
+
+def _layered(composited: CompositedLight, before: LayeredMap | None = None) -> LayeredMap:
+    layers = composited.layers
+    return LayeredMap(layers.terms, layers.more, layers.shown, before)
+
+
+def _set_baked(light: NDArray[np.void], composited: CompositedLight, light_map: LayeredMap) -> None:
+    light["baked"] = 1
+    light["light_map_at"] = address(light_map.record)
+    light["light_map_height"], light["light_map_width"] = light_map.height, light_map.width
+    light["main_baked"] = float(composited.main_baked)
+    light["main_clear"] = composited.main_transmittance
+
+
+def _describe(row: np.void, lamp: Light) -> None:
+    row["colour"], row["kind"] = lamp_power(lamp), LAMP_KINDS[lamp.type]
+    row["position"], row["range"] = lamp.position_m, max(lamp.range_m, 1e-3)
+    row["direction"] = lamp.direction
+    row["inner_cosine"] = np.cos(np.radians(lamp.inner_cone_deg))
+    row["outer_cosine"] = np.cos(np.radians(lamp.outer_cone_deg))
 
 
 def _sky_texels(sky: SkyMap) -> NDArray[np.float16]:

@@ -68,10 +68,12 @@ class PartTable:
         if contents is self.contents:
             return
         before, self.contents = self.contents, contents
+        same_bake = before is not None and before.baked is contents.baked
+        if before is not None and same_bake and before.instances is contents.instances:
+            return
         keys: list[tuple[object, ...]] = [
             (drawn.instance.id, id(drawn.model), drawn.scale) for drawn in contents.instances
         ]
-        same_bake = before is not None and before.baked is contents.baked
         if same_bake and keys == self._keys:
             return
         self._keys = keys

@@ -246,7 +246,7 @@ def _transports(canvas: _Canvas, data: Data) -> None:
 
 
 def _baselines(canvas: _Canvas, data: Data) -> None:
-    baselines = [entry for entry in data["peers"] if entry.get("frame")]
+    baselines = [entry for entry in data["baselines"] if entry.get("frame")]
     axes = canvas.axes(
         "The same geometry by other renderers, as multiples of our time",
         height=1.2 + 0.38 * len(baselines),

@@ -166,7 +166,7 @@ def _section(name: str, result: Mapping[str, Any] | None, picture_of: Callable[[
 
 
 def _has_plot(result: Mapping[str, Any], plot: str) -> bool:
-    return plot != "renderers" or any(row.get("ratio") for row in result["data"]["peers"])
+    return plot != "renderers" or any(row.get("ratio") for row in result["data"]["baselines"])
 
 
 def _plot(result: Mapping[str, Any], name: str) -> str:

@@ -40,7 +40,7 @@ def throughput_tables(data: Data) -> list[Table]:
         rows = tuple((name, number(value, 2)) for name, value in data["stages"].items())
         title = "Stages of rendering in the base case"
         tables.append(Table(title=title, columns=("stage", "median [ms]"), rows=rows))
-    if data["peers"]:
+    if data["baselines"]:
         tables.append(_baselines(data))
     return tables
 
@@ -72,12 +72,12 @@ def _baselines(data: Data) -> Table:
             number(entry.get("ratio"), 2),
             entry["draws"],
         )
-        for entry in data["peers"]
+        for entry in data["baselines"]
     )
     notes = (
         f"The bodies of {data['base']['scene']} from the same camera, in turn; ratio to "
         "sailenv_ros with picture, depth and instance.",
-        *(f"{e['label']}: {e['problem']}." for e in data["peers"] if e.get("problem")),
+        *(f"{e['label']}: {e['problem']}." for e in data["baselines"] if e.get("problem")),
     )
     columns = ("renderer", "size", "median [ms]", "ratio", "draws")
     return Table(

@@ -20,6 +20,7 @@ from sailenv_ros.gateway.gateway_limits import GatewayLimits
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.gateway.steps import Answer, Ask, Step, one_line
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.silent_peers import end_when_silent
 
 __all__ = ["ClientConnection"]
 
@@ -83,12 +84,12 @@ class ClientConnection:
         try:
             await self._converse()
             in_order = True
-        except (ConnectionError, asyncio.IncompleteReadError):
-            _log.info("%s went away", self.peer)
+        except (OSError, asyncio.IncompleteReadError) as problem:
+            self._say_it_went(problem)
         except SailenvError as error:
             _log.warning("%s is disconnected: %s", self.peer, one_line(error))
         except Exception:
-            _log.exception("%s is disconnected because of a fault", self.peer)
+            _log.exception("%s is disconnected because of an internal error", self.peer)
         finally:
             self._remove_agent()
             if in_order:
@@ -97,7 +98,7 @@ class ClientConnection:
                 self._writer.transport.abort()
 
     async def _converse(self) -> None:
-        _keep_alive(self._writer)
+        self._end_when_silent()
         # To drain is then to send everything: a view's length goes out in one piece, which the
         # original client takes for granted.
         self._writer.transport.set_write_buffer_limits(high=0)
@@ -165,6 +166,24 @@ class ClientConnection:
         what = f"the operation {step.operation.name!r} of {self.peer}"
         return await _within(asyncio.wrap_future(future), what, self._limits.request_s)
 
+    def _end_when_silent(self) -> None:
+        peer: socket.socket | None = self._writer.get_extra_info("socket")
+        if peer is None:
+            raise ProtocolError("the connection was closed before it began")
+        end_when_silent(peer, self._limits.silent_s)
+        # Only so much waits here for a peer that reads no more; what travels is not counted.
+        peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, CHUNK_BYTES)
+
+    def _say_it_went(self, problem: Exception) -> None:
+        # Whoever writes is told of a reset alone, whatever it was.
+        cause = self._reader.exception() or problem
+        if isinstance(cause, ConnectionError | asyncio.IncompleteReadError):
+            _log.info("%s went away", self.peer)
+        else:
+            silent_s = self._limits.silent_s
+            why = f"it neither answered nor took anything for {silent_s:g} s ({cause})"
+            _log.warning("%s is disconnected: %s", self.peer, why)
+
     def _remove_agent(self) -> None:
         """Have the agent removed, after all that was asked for it; nobody waits for it."""
         if self._session.agent:
@@ -180,18 +199,12 @@ def _joined_if_small(pieces: Sequence[bytes]) -> Sequence[bytes]:
 async def _within(awaitable: Awaitable[T], what: str, timeout_s: float) -> T:
     try:
         return await asyncio.wait_for(awaitable, timeout_s)
-    except asyncio.TimeoutError:  # Python 3.10: not the built-in one
+    except asyncio.TimeoutError as problem:  # Python 3.10: not the built-in one
+        if getattr(problem, "errno", None):
+            raise  # of the socket's own
         raise DeadlineExceeded(what, timeout_s) from None
 
 
 def _peer_of(writer: asyncio.StreamWriter) -> str:
     address = writer.get_extra_info("peername")
     return f"client {address[0]}:{address[1]}" if address else "a client that has gone"
-
-
-def _keep_alive(writer: asyncio.StreamWriter) -> None:
-    """Have the system find out when a peer's machine has vanished without a word."""
-    peer: socket.socket | None = writer.get_extra_info("socket")
-    if peer is None:
-        raise ProtocolError("the connection was closed before it began")
-    peer.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

@@ -157,8 +157,8 @@ def _text(what: str, limit: int) -> _Parsing:
         piece = yield length - len(text)
         try:
             text += decoder.decode(piece)
-        except UnicodeDecodeError as fault:
-            raise ProtocolError(f"the {what} is not UTF-8 ({fault.reason})") from None
+        except UnicodeDecodeError as error:
+            raise ProtocolError(f"the {what} is not UTF-8 ({error.reason})") from None
     return text
 
 

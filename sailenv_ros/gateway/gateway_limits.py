@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sailenv_ros.camera import MAX_SIZE_PX
+from sailenv_ros.system.silent_peers import SILENT_S
 
 __all__ = ["GatewayLimits"]
 
@@ -29,6 +30,8 @@ class GatewayLimits:
         From one command to the next [s].
     write_s : float
         For an answer to be taken by its peer [s].
+    silent_s : float
+        A peer that neither answers its system's probes nor takes anything for so long is gone [s].
     request_s : float
         For the simulation to do what a command asks for [s]; loading a scene takes many.
     """
@@ -40,4 +43,5 @@ class GatewayLimits:
     command_s: float = 120.0
     idle_s: float = 3600.0
     write_s: float = 30.0
+    silent_s: float = SILENT_S
     request_s: float = 120.0

@@ -32,8 +32,8 @@ def mapping_of_json(what: str, text: str) -> dict[str, Any]:
     """
     try:
         value = json.loads(text)
-    except (ValueError, RecursionError) as fault:
-        raise InvalidRequest(what, text, f"JSON ({fault})") from None
+    except (ValueError, RecursionError) as error:
+        raise InvalidRequest(what, text, f"JSON ({error})") from None
     if not isinstance(value, dict):
         raise InvalidRequest(what, value, "a JSON object")
     return value

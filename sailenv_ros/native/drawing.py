@@ -13,6 +13,7 @@ from sailenv_ros.native.library import Kernel, checked
 from sailenv_ros.native.render_types import (
     DRAW_LIST,
     INSTANCES,
+    LAYER_SUM,
     LIGHT,
     OUTPUTS,
     PART,
@@ -203,7 +204,14 @@ def mip_chain(texels: NDArray[np.uint8]) -> NDArray[np.uint32]:
 
 def structure_sizes() -> dict[str, tuple[int, int]]:
     """Return the size of each structure [bytes]: the library's and NumPy's."""
-    ours = {"part": PART, "instances": INSTANCES, "light": LIGHT, "view": VIEW, "outputs": OUTPUTS}
+    ours = {
+        "part": PART,
+        "instances": INSTANCES,
+        "light": LIGHT,
+        "view": VIEW,
+        "outputs": OUTPUTS,
+        "layer_sum": LAYER_SUM,
+    }
     sizes = np.zeros(len(ours), np.int64)
     _STRUCTURES(sizes)
     return {

@@ -15,6 +15,7 @@ __all__ = [
     "DRAW_LIST",
     "INSTANCES",
     "LAMP",
+    "LAYER_SUM",
     "LIGHT",
     "OUTPUTS",
     "PART",
@@ -94,6 +95,18 @@ LAMP = _structure(
     ("direction", "<f4", 3),
     ("inner_cosine", "<f4"),
     ("outer_cosine", "<f4"),
+)
+
+LAYER_SUM = _structure(
+    ("count", "<i8"),
+    ("terms", "<i8"),
+    ("layers_at", _ADDRESS),
+    ("channels_at", _ADDRESS),
+    ("factors_at", _ADDRESS),
+    ("more_at", _ADDRESS),
+    ("shown_at", _ADDRESS),
+    ("texels_at", _ADDRESS),
+    ("states_at", _ADDRESS),
 )
 
 LIGHT = _structure(

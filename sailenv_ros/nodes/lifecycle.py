@@ -86,7 +86,7 @@ def finished_within(work: Callable[[], None], timeout_s: float) -> bool:
         try:
             work()
         except Exception:
-            _log.exception("the clean-up met a fault")
+            _log.exception("the clean-up failed")
 
     thread = threading.Thread(target=run, name="clean-up", daemon=True)
     thread.start()

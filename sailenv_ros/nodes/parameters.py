@@ -44,6 +44,7 @@ class SimParameters:
     render_device : int or None
     scene_paths : tuple of Path
     allow_modules : bool
+    build_missing : {'nothing', 'scene', 'all'}
     publish_clock : bool
     gateway_host : str
     gateway_port : int
@@ -66,6 +67,7 @@ class SimParameters:
     render_device: int | None
     scene_paths: tuple[Path, ...]
     allow_modules: bool
+    build_missing: str
     publish_clock: bool
     gateway_host: str
     gateway_port: int
@@ -134,6 +136,11 @@ _PARAMETERS: dict[str, _Parameter] = {
         choices=BACKEND_NAMES,
     ),
     "render_device": _Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
+    "build_missing": _Parameter(
+        "nothing",
+        "What is built in the background: furniture and light that the first scene lacks, or all.",
+        choices=("nothing", "scene", "all"),
+    ),
     "publish_clock": _Parameter(
         True, "True: publish simulated time on /clock, unless another simulator there does."
     ),
@@ -195,6 +202,7 @@ def declare_parameters(node: Node) -> SimParameters:
         render_device=None if values["render_device"] < 0 else values["render_device"],
         scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
         allow_modules=values["allow_modules"],
+        build_missing=values["build_missing"],
         publish_clock=values["publish_clock"],
         gateway_host=values["gateway.host"],
         gateway_port=values["gateway.port"],

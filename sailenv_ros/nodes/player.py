@@ -96,7 +96,7 @@ class Player:
         self._stamped = any(
             stamp_of(t.type, b"\0\1" + bytes(10)) is not None for t in reader.topics
         )
-        self._told_ns: int | None = None
+        self._published_ns: int | None = None
         self.played = 0
         node.create_service(Trigger, "~/pause", self._pause)
         node.create_service(Trigger, "~/resume", self._resume)
@@ -156,8 +156,8 @@ class Player:
 
     def _tell_time(self, topic: RecordedTopic, data: bytes, log_ns: int) -> None:
         time_ns = stamp_of(topic.type, data) if self._stamped else log_ns
-        if time_ns is not None and time_ns != self._told_ns and self._own_clock is not None:
-            self._told_ns = time_ns
+        if time_ns is not None and time_ns != self._published_ns and self._own_clock is not None:
+            self._published_ns = time_ns
             self._own_clock.publish(cast(Any, clock_message(time_ns)))
 
     def _pause(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

@@ -26,7 +26,7 @@ from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.agents import AgentPose, AgentSpec
 from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
 from sailenv_ros.frame import ALWAYS_MADE, Frame
-from sailenv_ros.nodes.companions import Companions
+from sailenv_ros.nodes.derived_topics import DerivedTopics
 from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
 from sailenv_ros.nodes.tf_tree import TfTree
@@ -64,7 +64,7 @@ class AgentPublisher:
         self._camera_info = self._publisher(CameraInfo, "camera_info")
         self._frame_info = self._publisher(FrameInfo, "frame_info")
         self._pose = self._publisher(PoseStamped, "pose")
-        self._companions = Companions(
+        self._derived = DerivedTopics(
             self._publisher,
             views,
             depth_range_m=spec.depth_range_m,
@@ -147,7 +147,7 @@ class AgentPublisher:
             self._thread.join(1.0)
         with self._publishing:
             infos = (self._camera_info, self._frame_info, self._pose)
-            for publisher in (*self._images.values(), *infos, *self._companions.publishers):
+            for publisher in (*self._images.values(), *infos, *self._derived.publishers):
                 self._node.destroy_publisher(publisher)
 
     # -- the thread ------------------------------------------------------------------------
@@ -173,7 +173,7 @@ class AgentPublisher:
                 self._publish_streamed(frame)
 
     def _wanted_views(self) -> tuple[str, ...]:
-        shown = self._companions.wanted_views()
+        shown = self._derived.wanted_views()
         wanted = tuple(
             view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
         )
@@ -230,7 +230,7 @@ class AgentPublisher:
             self._pose.publish(pose_stamped_to_msg(pose, header.stamp, WORLD_FRAME_ID))
         self._tf.publish(self._spec.name, frame.camera.pose, header.stamp)
         # Last, as they take time and nobody waits for them.
-        self._companions.publish(frame, header)
+        self._derived.publish(frame, header)
         self._counter.add(frame, time.perf_counter() - began)
         return tuple(sent)
 

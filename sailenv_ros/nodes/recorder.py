@@ -294,12 +294,15 @@ def _record(node: Node, stop: StopRequest) -> int:
         spinning = ExecutorThread(executor)
         spinning.start()
         node.get_logger().info(f"{how}; Ctrl-C ends it")
-        told_s = began_s = time.monotonic()
+        reported_s = began_s = time.monotonic()
         while not stop.wait(LOOK_INTERVAL_S) and writer.failure is None:
             recorder.look()
-            if values["progress"] and time.monotonic() - told_s >= values["progress_interval_s"]:
-                told_s = time.monotonic()
-                node.get_logger().info(_progress(recorder, writer, told_s - began_s))
+            if (
+                values["progress"]
+                and time.monotonic() - reported_s >= values["progress_interval_s"]
+            ):
+                reported_s = time.monotonic()
+                node.get_logger().info(_progress(recorder, writer, reported_s - began_s))
         ended_s = time.monotonic()
         spinning.stop(2.0)
         recorder.finish()

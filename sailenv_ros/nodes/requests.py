@@ -77,9 +77,9 @@ def answered(
         except SailenvError as error:
             refusal = error
         except Exception as error:
-            _log.exception("a service failed because of a fault in the simulator")
+            _log.exception("a service failed because of an internal error in the simulator")
             what = f"{type(error).__name__}: {error}"
-            refusal = InternalFault(f"a fault in the simulator, see its log: {what}")
+            refusal = InternalFault(f"an internal error of the simulator, see its log: {what}")
         # A fresh response: what the handler filled in before it failed is not told.
         response = type(response)()
         error_to_response(refusal, response)
@@ -95,6 +95,7 @@ def offer_services(
     *,
     group: CallbackGroup,
     agent: str = "",
+    before_request: Callable[[], Awaitable[None]] | None = None,
     before_response: Callable[[], None] = lambda: None,
 ) -> list[RosService]:
     """Serve operations.
@@ -109,6 +110,8 @@ def offer_services(
         would hold up all others.
     agent : str
         The agent whose services they are; empty for those of the simulator.
+    before_request : callable or None
+        Awaited before an operation is queued.
     before_response : callable
         Called in the executor's thread when an operation was done, before it is answered.
     """
@@ -116,6 +119,8 @@ def offer_services(
     def handler(service: Service) -> Callable[[Any, Any], Awaitable[None]]:
         async def handle(request: Any, response: Any) -> None:
             args, kwargs = service.arguments(request)
+            if before_request is not None:
+                await before_request()
             if agent:
                 kwargs["agent"] = agent
             result = await runner.settled(runner.submit(service.operation, *args, **kwargs))

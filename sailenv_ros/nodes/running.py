@@ -1,7 +1,7 @@
 """Runs a node that has no simulation, from its start to its exit status.
 
 The node's own part is a function that returns when it shall end. Exit status: what that function
-gives; 1 after a fault, 2 where an argument or a parameter is wrong or the work cannot be done.
+gives; 1 after an error, 2 where an argument or a parameter is wrong or the work cannot be done.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def run_node(
         logger.fatal(str(error))
         return 2
     except Exception:
-        _log.exception("the node ends because of a fault")
+        _log.exception("the node ends because of an internal error")
         return 1
     finally:
         stop.disarm()

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
 
 from geometry_msgs.msg import Twist
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from sailenv_msgs_py.services import SIMULATOR_SERVICES
+from sailenv_msgs_py.services import SERVICES, SIMULATOR_SERVICES
 from sailenv_msgs_py.transforms import twist_from_msg
 from sailenv_ros.errors import SailenvError, SimulationClosed
 from sailenv_ros.nodes.qos import command_qos
@@ -33,17 +33,32 @@ class SimulatorServices:
     agents_changed : callable
         Called in the executor's thread when an operation was done, before the response: an agent's
         topics and services are there when its registration is answered.
+    before_registration : callable
+        Awaited before an agent is registered.
     """
 
     def __init__(
-        self, node: Node, runner: OperationRunner, agents_changed: Callable[[], None]
+        self,
+        node: Node,
+        runner: OperationRunner,
+        agents_changed: Callable[[], None],
+        *,
+        before_registration: Callable[[], Awaitable[None]],
     ) -> None:
         self._node = node
         self._runner = runner
         self._warned_s = -WARN_INTERVAL_S
         group = ReentrantCallbackGroup()
+        registration = SERVICES[Operations.register_agent.name]
+        others = [service for service in SIMULATOR_SERVICES if service is not registration]
+        offer_services(node, runner, others, group=group, before_response=agents_changed)
         offer_services(
-            node, runner, SIMULATOR_SERVICES, group=group, before_response=agents_changed
+            node,
+            runner,
+            [registration],
+            group=group,
+            before_request=before_registration,
+            before_response=agents_changed,
         )
         node.create_subscription(
             Twist, "mover/cmd_vel", self._drive, command_qos(), callback_group=group

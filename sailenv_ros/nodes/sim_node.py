@@ -1,7 +1,7 @@
 """The simulator as a ROS 2 node: `ros2 run sailenv_ros sim_node`.
 
 Parameters in; hosts a `Simulation` and joins it to topics and services, which are other modules.
-Exit status: 0 after SIGINT or SIGTERM, 1 after a fault, 2 where an argument, a parameter or the
+Exit status: 0 after SIGINT or SIGTERM, 1 after an error, 2 where an argument, a parameter or the
 scene is wrong, 3 where another simulator has the namespace already.
 """
 
@@ -33,6 +33,7 @@ from sailenv_ros.errors import (
 )
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
+from sailenv_ros.nodes.agent_leases import AgentLeases
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.capture_server import CaptureServer
 from sailenv_ros.nodes.diagnostics import Diagnostics
@@ -46,6 +47,7 @@ from sailenv_ros.nodes.services import SimulatorServices
 from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.background_build import BackgroundBuild
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.presence import ClockLock, SimulatorLock, clock_publisher
 from sailenv_ros.system.transport import use_shared_memory_profile, who_may_command
@@ -95,7 +97,10 @@ class SimNode:
         self._announcements = Announcements(
             node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
         )
-        self._services = SimulatorServices(node, runner, self._reconcile)
+        self._leases = AgentLeases(node, runner)
+        self._services = SimulatorServices(
+            node, runner, self._reconcile, before_registration=self._forget_ended_clients
+        )
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if parameters.agent is None else parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
@@ -108,6 +113,7 @@ class SimNode:
         )
         self._gateway = _gateway(simulation, parameters)
         self._viewer = _viewer(simulation, parameters)
+        self._build = _background_build(simulation, parameters)
 
     @property
     def simulation(self) -> Simulation:
@@ -128,6 +134,8 @@ class SimNode:
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
+        if self._build is not None:
+            self._build.close()
         if self._gateway is not None:
             self._gateway.close()
         if self._viewer is not None:
@@ -139,7 +147,14 @@ class SimNode:
         return finished_within(self._simulation.close, timeout_s)
 
     def _reconcile(self) -> None:
-        self._endpoints.reconcile(self._simulation.info)
+        info = self._simulation.info
+        self._endpoints.reconcile(info)
+        self._leases.take_note(info)
+
+    async def _forget_ended_clients(self) -> None:
+        # Their topics and services go before others of the same name come.
+        if await self._leases.settle():
+            self._reconcile()
 
     def _scene_changed(self, info: SceneInfo) -> None:
         self._executor.create_task(self._reconcile)
@@ -161,7 +176,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         logger.fatal(str(error))
         return 2
     except Exception:
-        _log.exception("the node ends because of a fault")
+        _log.exception("the node ends because of an internal error")
         return 1
     finally:
         stop.disarm()
@@ -211,7 +226,7 @@ def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -
             node.get_logger().info(who_may_command(domain_id))
             while not stop.wait(0.25):
                 if simulation.closed:
-                    raise SimulationClosed("of a fault, which the log shows")
+                    raise SimulationClosed("of an internal error, which the log shows")
             status = 0
         finally:
             ended = sim_node.close(1.0)
@@ -304,6 +319,18 @@ def _viewer(simulation: Simulation, parameters: SimParameters) -> ViewerServer |
             control=parameters.viewer_control,
         ),
         "there is no window in the browser here",
+    )
+
+
+def _background_build(simulation: Simulation, parameters: SimParameters) -> BackgroundBuild | None:
+    if parameters.build_missing == "nothing":
+        return None
+    return BackgroundBuild(
+        simulation,
+        str(parameters.scene or simulation.info.scene),
+        everything=parameters.build_missing == "all",
+        scene_paths=parameters.scene_paths,
+        allow_modules=parameters.allow_modules,
     )
 
 

@@ -14,10 +14,8 @@ from numpy.typing import NDArray
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.render.lightmap_compositing import (
     CompositedLight,
-    TexelSum,
     composite_lightmap,
     instance_light,
-    sum_texels,
 )
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
@@ -30,11 +28,6 @@ ROW_IDS = 256
 class BakedState:
     """The baked light of the scene that is shown.
 
-    Parameters
-    ----------
-    texel_sum : TexelSum
-        Adds the layers of the light map up.
-
     Attributes
     ----------
     composited : CompositedLight or None
@@ -44,9 +37,9 @@ class BakedState:
         another array when something has moved.
     """
 
-    def __init__(self, texel_sum: TexelSum = sum_texels) -> None:
-        self._texel_sum = texel_sum
+    def __init__(self) -> None:
         self._of: tuple[object, tuple[Light, ...], Environment] | None = None
+        self._contents: SceneContents | None = None
         self._placed: tuple[CompositedLight, SceneContents] | None = None
         self._poses: NDArray[np.float64] | None = None
         self._middles = np.zeros((0, 4))
@@ -57,13 +50,15 @@ class BakedState:
         """Bring everything up to date; None where the scene has no baked light."""
         contents = snapshot.contents
         if contents.baked is None:
-            self.composited = self._of = None
+            self.composited = self._of = self._contents = None
             return None
-        # Exposure comes after the light: a picture that is made brighter needs no new mixture.
-        of = (contents.baked, contents.lights, replace(contents.environment, exposure=0.0))
-        if self.composited is None or self._of != of:
-            self.composited = composite_lightmap(*of, texel_sum=self._texel_sum)
-            self._of = of
+        if self._contents is not contents or self.composited is None:
+            # Exposure comes after the light: a picture made brighter needs no new mixture.
+            of = (contents.baked, contents.lights, replace(contents.environment, exposure=0.0))
+            if self.composited is None or self._of != of:
+                self.composited = composite_lightmap(*of)
+                self._of = of
+            self._contents = contents
         self._place(snapshot, self.composited)
         return self.composited
 
@@ -73,17 +68,22 @@ class BakedState:
         placed = (composited, contents)
         if self._placed == placed and np.array_equal(self._poses, poses):  # type: ignore[arg-type]
             return
-        if self._placed is None or self._placed[1] is not contents:
+        if self._placed is None or self._placed[1].instances is not contents.instances:
             self._middles = _middles(contents)
-        assert contents.baked is not None
         self._placed, self._poses = placed, poses
-        points = np.einsum("nij,nj->ni", poses, self._middles)[:, :3]
-        light = instance_light(composited.probes, contents.baked.probes, points)
+        self.instances = self.around(snapshot, composited.probes)
+
+    def around(self, snapshot: WorldSnapshot, probes: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Look the light around each instance of the snapshot of `update` up; as `instances`."""
+        contents = snapshot.contents
+        assert contents.baked is not None
+        points = np.einsum("nij,nj->ni", snapshot.world_from_body, self._middles)[:, :3]
+        light = instance_light(probes, contents.baked.probes, points)
         ids = contents.instance_ids.astype(np.intp)
         rows = int(ids.max(initial=0)) // ROW_IDS + 1
         table = np.zeros((rows * ROW_IDS, 3, 4), np.float32)
         table[ids] = light.transpose(0, 2, 1)
-        self.instances = table
+        return table
 
 
 def _middles(contents: SceneContents) -> NDArray[np.float64]:

@@ -63,11 +63,12 @@ class BakedTextures:
                 texture.release()
 
     def _upload(self, composited: CompositedLight) -> None:
-        height, width, _ = composited.texels.shape
+        texels = composited.texels()
+        height, width, _ = texels.shape
         if self._light_map is None or self._light_map.size != (width, height):
             if self._light_map is not None:
                 self._light_map.release()
             self._light_map = self._context.texture((width, height), 4, dtype="f2")
             self._light_map.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._light_map.repeat_x = self._light_map.repeat_y = False
-        self._light_map.write(np.ascontiguousarray(composited.texels))
+        self._light_map.write(np.ascontiguousarray(texels))

@@ -7,6 +7,7 @@ particular vendor's driver is needed.
 from __future__ import annotations
 
 import logging
+import os
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +23,11 @@ REQUIRED_GL = 430
 """OpenGL 4.3: what the shaders are written in."""
 
 MAX_DEVICES = 16
+
+_LLVMPIPE_OPTIONS = {"GALLIVM_PERF": "no_aos_sampling"}
+"""Set before Mesa's software rasteriser starts, where the user has not: without it byte textures
+are interpolated in whole numbers, and rounded down each time. Pictures are up to 2 of 255 darker
+then, and not those of graphics hardware; exact interpolation costs nothing that can be measured."""
 
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader")
 
@@ -118,6 +124,8 @@ def create_context(device: int | None = None) -> tuple[moderngl.Context, DeviceR
 
 
 def _open(index: int) -> moderngl.Context:
+    for name, value in _LLVMPIPE_OPTIONS.items():
+        os.environ.setdefault(name, value)
     try:
         settings: dict[str, Any] = {"backend": "egl", "device_index": index}
         return moderngl.create_context(REQUIRED_GL, True, **settings)

@@ -6,13 +6,14 @@ only where the package was installed from its sources without a C++ compiler.
 
 from __future__ import annotations
 
-from sailenv_ros.native import ambient_visibility, annotation, picture_kernels, resolve
+from sailenv_ros.native import ambient_visibility, annotation, picture_kernels, resolve, sensor
 from sailenv_ros.native.library import native_is_usable
 from sailenv_ros.render import reference_kernels
 
 __all__ = [
     "annotate_pixels",
     "find_ambient_visibility",
+    "gather_light",
     "make_picture",
     "resolve_samples",
 ]
@@ -20,10 +21,12 @@ __all__ = [
 if native_is_usable():
     annotate_pixels = annotation.annotate_pixels
     find_ambient_visibility = ambient_visibility.find_ambient_visibility
+    gather_light = sensor.gather_light
     make_picture = picture_kernels.make_picture
     resolve_samples = resolve.resolve_samples
 else:
     annotate_pixels = reference_kernels.annotate_pixels
     find_ambient_visibility = reference_kernels.find_ambient_visibility
+    gather_light = reference_kernels.gather_light
     make_picture = reference_kernels.make_picture
     resolve_samples = reference_kernels.resolve_samples

@@ -6,7 +6,7 @@ knows nothing of go out. Plain arithmetic on arrays; nothing here knows OpenGL.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -18,14 +18,28 @@ from sailenv_ros.lights import Environment, Light
 
 __all__ = [
     "CompositedLight",
+    "LayerSum",
     "Term",
-    "TexelSum",
     "composite_lightmap",
     "instance_light",
+    "light_alone",
     "main_light",
     "strength",
     "sum_texels",
 ]
+
+
+Term: TypeAlias = tuple[NDArray[np.float16], NDArray[np.float32]]
+"""A layer, (H, W, 3) or (H, W), and what each colour of it is multiplied by, (3,)."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LayerSum:
+    """What a light map is the sum of; see `sum_texels`, which adds it up."""
+
+    terms: Sequence[Term]
+    more: NDArray[np.float32]
+    shown: NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -34,24 +48,28 @@ class CompositedLight:
 
     Attributes
     ----------
-    texels : (H, W, 4) float16
-        Irradiance / pi of everything but the main light's direct part; the share of the main light
-        that is not in shadow.
+    layers : LayerSum
+        Of the light map: irradiance / pi of everything but the main light's direct part; the share
+        of the main light that is not in shadow.
     probes : (Z, Y, X, 4, 3) float32
         As in `LightLayer`, without the main light's direct part.
     live : tuple of Light
         Lights that must be drawn as if there were no bake: they were added or moved.
     main_baked : bool
-        True if the fourth channel of `texels` belongs to the present main light.
+        True if the light map's fourth channel belongs to the present main light.
     main_transmittance : float
         Share of the main light that glass lets through to what has no texels; 1 if not known.
     """
 
-    texels: NDArray[np.float16]
+    layers: LayerSum
     probes: NDArray[np.float32]
     live: tuple[Light, ...]
     main_baked: bool
     main_transmittance: float
+
+    def texels(self) -> NDArray[np.float16]:
+        """Return (H, W, 4) float16: the light map, added up anew at each call."""
+        return sum_texels(self.layers.terms, self.layers.more, self.layers.shown)
 
 
 def strength(light: Light) -> float:
@@ -63,15 +81,6 @@ def main_light(lights: Sequence[Light]) -> Light | None:
     """Return the light that casts the shadow map: the strongest directional one."""
     suns = [light for light in lights if light.type == "directional" and light.intensity > 0.0]
     return max(suns, key=strength, default=None)
-
-
-Term: TypeAlias = tuple[NDArray[np.float16], NDArray[np.float32]]
-"""A layer, (H, W, 3) or (H, W), and what each colour of it is multiplied by, (3,)."""
-
-TexelSum: TypeAlias = Callable[
-    [Sequence[Term], NDArray[np.float32], NDArray[np.uint8]], NDArray[np.float16]
-]
-"""Adds layers up as `sum_texels` does."""
 
 
 def sum_texels(
@@ -103,21 +112,12 @@ def sum_texels(
 
 
 def composite_lightmap(
-    baked: BakedLight,
-    lights: Sequence[Light],
-    environment: Environment,
-    *,
-    texel_sum: TexelSum = sum_texels,
+    baked: BakedLight, lights: Sequence[Light], environment: Environment
 ) -> CompositedLight:
-    """Add the layers up.
+    """Find what the layers count now.
 
     Ambient light stands in for bounced light where there is no bake. With one, it counts only in
     so far as it has changed since, so that setting it still has the effect one expects.
-
-    Parameters
-    ----------
-    texel_sum : TexelSum
-        Does it for the light map.
     """
     surroundings = baked.layers[0]
     before = baked.environment or environment
@@ -143,11 +143,46 @@ def composite_lightmap(
             shown, main_baked, main_transmittance = layer.visibility, True, layer.clear
     live = tuple(light for light in lights if light.name not in known and light is not main)
     return CompositedLight(
-        texels=texel_sum(terms, more, shown),
+        layers=LayerSum(terms, more, shown),
         probes=probes,
         live=live,
         main_baked=main_baked,
         main_transmittance=main_transmittance,
+    )
+
+
+def light_alone(baked: BakedLight, light: Light, *, is_main: bool) -> CompositedLight:
+    """Return what one light adds: the same as `composite_lightmap`, without all others.
+
+    Parameters
+    ----------
+    is_main : bool
+        Whether it casts the shadow map.
+    """
+    probes = np.zeros(baked.layers[0].probe_bounced.shape, np.float32)
+    for layer in baked.layers[1:]:
+        assert layer.light is not None
+        if layer.light.name != light.name or not _stands_alike(light, layer.light):
+            continue
+        shown, main_baked = np.full(layer.direct.shape, 255, np.uint8), False
+        if is_main and layer.visibility is not None:
+            shown, main_baked = layer.visibility, True
+        terms: list[Term] = []
+        _add(terms, probes, layer, light, direct=not main_baked)
+        return CompositedLight(
+            layers=LayerSum(terms, np.zeros(3, np.float32), shown),
+            probes=probes,
+            live=(),
+            main_baked=main_baked,
+            main_transmittance=layer.clear if main_baked else 1.0,
+        )
+    dark: Term = np.zeros((2, 2, 3), np.float16), np.zeros(3, np.float32)
+    return CompositedLight(
+        layers=LayerSum([dark], np.zeros(3, np.float32), np.zeros((2, 2), np.uint8)),
+        probes=probes,
+        live=() if is_main else (light,),
+        main_baked=False,
+        main_transmittance=1.0,
     )
 
 

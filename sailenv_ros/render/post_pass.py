@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.render import ambient_occlusion, supersampling, tone_map
-from sailenv_ros.render.bloom import add_bloom
-from sailenv_ros.render.sensor_noise import add_sensor_noise
+from sailenv_ros.render.sensor import sensor_light
 from sailenv_ros.render.tone import code_table
 from sailenv_ros.snapshot import WorldSnapshot
 
@@ -77,14 +76,16 @@ class PostPass:
                 radiance, times, shade, samples, threads=self._threads
             )
             shade = None
-        if shade is not None and (settings.bloom > 0.0 or settings.full_well > 0.0):
-            # Light is spread and counted as it arrives at the sensor.
-            radiance = tone_map.apply_visibility(radiance, *shade, surface, threads=self._threads)
-            shade = None
-        if settings.bloom > 0.0:
-            radiance = add_bloom(radiance, settings.bloom)
-        if settings.full_well > 0.0:
-            radiance = add_sensor_noise(radiance, settings, camera.name, snapshot.sim_time_ns)
+        if settings.bloom > 0.0 or settings.full_well > 0.0:
+            if shade is not None:
+                # Light is spread and counted as it arrives at the sensor.
+                radiance = tone_map.apply_visibility(
+                    radiance, *shade, surface, threads=self._threads
+                )
+                shade = None
+            radiance = sensor_light(
+                radiance, settings, camera.name, snapshot.sim_time_ns, threads=self._threads
+            )
         return tone_map.tone_map(
             radiance,
             code_table(settings),

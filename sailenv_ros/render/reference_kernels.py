@@ -14,7 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["annotate_pixels", "find_ambient_visibility", "make_picture", "resolve_samples"]
+__all__ = [
+    "annotate_pixels",
+    "find_ambient_visibility",
+    "gather_light",
+    "make_picture",
+    "resolve_samples",
+]
 
 F32 = np.float32
 
@@ -26,6 +32,12 @@ TILE = 16
 
 ROUNDING_PX = 1e-3
 """How far from a pixel's centre that pixel alone decides whether a point was hidden."""
+
+BLOOM_LEVELS = 5
+"""Halvings of the picture: each doubles how far light is spread."""
+
+BLOOM_WEIGHTS = np.array([0.33244, 0.23493, 0.0829, 0.01461, 0.00128, 0.00006], np.float32)
+"""A normal distribution of 1.2 samples, from the middle outwards."""
 
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
@@ -278,6 +290,79 @@ def resolve_samples(
     if keep_ambient_share:
         result[..., 3] = bits[..., 3]
     return result.view(np.float16)
+
+
+def gather_light(
+    radiance: NDArray[np.float16],
+    bloom: float,
+    shot: float,
+    read: float,
+    seed: int,
+    normal: Floats | None,
+    *,
+    threads: int,
+) -> NDArray[np.float16]:
+    """Spread light and add noise; see `native.sensor`."""
+    light = radiance[..., :3].astype(F32)
+    if bloom > 0.0:
+        part = F32(1.0) / F32(BLOOM_LEVELS)
+        light = light + F32(bloom) * (_halo(light) * part - light)
+    if normal is not None:
+        spread = np.sqrt(light * F32(shot) + F32(read))
+        light = light + spread * normal[_random_words(seed, light.shape)]
+    result = radiance.copy()
+    result[..., :3] = np.clip(light, F32(0.0), F32(6e4))
+    return result
+
+
+def _halo(light: Floats) -> Floats:
+    """Return the sum of a picture's blurred levels."""
+    levels, shape = [], light.shape[:2]
+    for _ in range(BLOOM_LEVELS):
+        odd = [(0, size % 2) for size in light.shape[:2]]
+        even = np.pad(light, (*odd, (0, 0)), mode="edge")
+        upper, lower = even[::2], even[1::2]
+        light = (upper[:, ::2] + upper[:, 1::2] + (lower[:, ::2] + lower[:, 1::2])) * F32(0.25)
+        levels.append(light)
+    halo = _blurred(levels[-1])
+    for level in levels[-2::-1]:
+        halo = _blurred(level) + _doubled(halo, level.shape[:2])
+    return _doubled(halo, shape)
+
+
+def _blurred(level: Floats) -> Floats:
+    reach = len(BLOOM_WEIGHTS) - 1
+    for axis in (1, 0):
+        size = level.shape[axis]
+        wide = np.moveaxis(level, axis, 0)
+        wide = np.pad(wide, ((reach, reach), (0, 0), (0, 0)), mode="edge")
+        total = BLOOM_WEIGHTS[0] * wide[reach : reach + size]
+        for k in range(1, reach + 1):
+            beside = wide[reach - k : reach - k + size] + wide[reach + k : reach + k + size]
+            total = total + BLOOM_WEIGHTS[k] * beside
+        level = np.moveaxis(total, 0, axis)
+    return level
+
+
+def _doubled(level: Floats, shape: tuple[int, ...]) -> Floats:
+    """Return a level at twice its size, or one less."""
+    for axis, size in enumerate(shape):
+        at = np.arange(size)
+        other = np.clip(at // 2 + np.where(at % 2, 1, -1), 0, level.shape[axis] - 1)
+        near, far = level.take(at // 2, axis), level.take(other, axis)
+        level = F32(0.75) * near + F32(0.25) * far
+    return level
+
+
+def _random_words(seed: int, shape: tuple[int, ...]) -> NDArray[np.uint64]:
+    """Return numbers of 16 bits (SplitMix64), three of each pixel's."""
+    count = np.arange(1, shape[0] * shape[1] + 1, dtype=np.uint64)
+    z = np.uint64(seed % 2**64) + count * np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    z = z ^ (z >> np.uint64(31))
+    words = z[:, None] >> np.array([0, 16, 32], np.uint64) & np.uint64(0xFFFF)
+    return words.reshape(shape)
 
 
 def _small_numbers(halves: NDArray[np.uint16]) -> Floats:

@@ -135,7 +135,8 @@ class ShadowPlan:
         """Find the instances of before among the rows of other contents."""
         if self._contents is contents:
             return
-        keys = [_key(drawn) for drawn in contents.instances]
+        same = self._contents is not None and self._contents.instances is contents.instances
+        keys = self._keys if same else [_key(drawn) for drawn in contents.instances]
         if keys != self._keys:
             row_of = {key: row for row, key in enumerate(self._keys)}
             rows = np.array([row_of.get(key, -1) for key in keys], np.intp)
@@ -247,7 +248,7 @@ class _Spheres:
     """Spheres around the instances of the contents seen last, in their own frames."""
 
     def __init__(self) -> None:
-        self._contents: SceneContents | None = None
+        self._instances: tuple[DrawnInstance, ...] | None = None
         self._middles = np.zeros((0, 3))
         self._radii = np.zeros(0)
 
@@ -266,9 +267,9 @@ class _Spheres:
         return reaches
 
     def _know(self, contents: SceneContents) -> None:
-        if self._contents is contents:
+        if self._instances is contents.instances:
             return
-        self._contents = contents
+        self._instances = contents.instances
         bounds = np.array(
             [drawn.model.bounds() * np.asarray(drawn.scale) for drawn in contents.instances]
         ).reshape(-1, 2, 3)

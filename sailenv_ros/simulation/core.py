@@ -101,7 +101,7 @@ class SimulationCore(WorldOperations):
         self._renderer = renderer
         self._should_end = should_end
         self._revision = 0
-        self._told: SceneInfo | None = None
+        self._announced: SceneInfo | None = None
         self.world: World = library.build(scene, seed, self.epoch, self._next_revision)
         self.world.frustum_planes = self._frustum_planes
         for spec in library.agents_of(self.world.scene):
@@ -154,8 +154,8 @@ class SimulationCore(WorldOperations):
     def announce(self) -> None:
         """Tell the scene as it is now, under a new revision."""
         self._next_revision()
-        self._told = self.info
-        self.on_info(self._told)
+        self._announced = self.info
+        self.on_info(self._announced)
 
     def begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
         """Leave the present world for a new one at simulated time 0.
@@ -188,6 +188,12 @@ class SimulationCore(WorldOperations):
                 stream.discard()
         self.announce()
         self.on_step(world.sim_time_ns)
+
+    def refresh(self) -> None:
+        """Take up furniture and light that were built meanwhile, in the present world too."""
+        self.library.refresh()
+        self.library.load_light(self.world)
+        self.announce()
 
     # -- time ------------------------------------------------------------------------------
 
@@ -323,9 +329,11 @@ class SimulationCore(WorldOperations):
 
     def _info_of_frames(self) -> SceneInfo:
         """Return what was announced last, which is what clients find a frame's ids in."""
-        if self._told is None or self._told.revision < self.world.contents.revision:
-            self._told = self.info  # of the beginning; no operation leaves a change unannounced
-        return self._told
+        if self._announced is None or self._announced.revision < self.world.contents.revision:
+            self._announced = (
+                self.info
+            )  # of the beginning; no operation leaves a change unannounced
+        return self._announced
 
     def _next_revision(self) -> int:
         self._revision += 1

@@ -114,14 +114,14 @@ def uploaded_models(world: World, is_uploaded: Callable[[str], bool]) -> tuple[s
 def environment_entry(world: World) -> Entry:
     """Return the surroundings; colours of the sky are the file's, a photographed sky keeps its."""
     assert world.described is not None
-    told = world.described.environment
+    described = world.described.environment
     now = world.contents.environment
     changes = {
         key: getattr(now, key)
         for key in EnvironmentSpec.model_fields
-        if key not in _SKY_COLOURS and getattr(now, key) != getattr(told, key)
+        if key not in _SKY_COLOURS and getattr(now, key) != getattr(described, key)
     }
-    entry: Entry = told.model_copy(update=changes).model_dump(mode="json", exclude_unset=True)
+    entry: Entry = described.model_copy(update=changes).model_dump(mode="json", exclude_unset=True)
     return entry
 
 
@@ -139,10 +139,10 @@ def _room(spec: SceneSpec, missing: Collection[str]) -> Entry:
 
 
 def _lights(world: World, spec: SceneSpec) -> list[Entry]:
-    as_told = {light.name: light for light in spec.lights}
+    described = {light.name: light for light in spec.lights}
     return [
-        changed_light_entry(as_told[light.name], light)
-        if light.name in as_told
+        changed_light_entry(described[light.name], light)
+        if light.name in described
         else light_entry(light)
         for light in world.contents.lights
     ]
@@ -154,19 +154,19 @@ def _lights(world: World, spec: SceneSpec) -> list[Entry]:
 def _objects(world: World) -> list[Entry]:
     begun, missing = world.first_bodies, world.missing_parts
     return [
-        _object(body, as_told=_stands_as_told(body, begun, missing))
+        _object(body, unchanged=_placement_unchanged(body, begun, missing))
         for body in world.bodies
         if body.placement.entry is not None
     ]
 
 
-def _object(body: Body, *, as_told: bool) -> Entry:
+def _object(body: Body, *, unchanged: bool) -> Entry:
     placement = body.placement
     assert placement.entry is not None
     entry: Entry = placement.entry.model_dump(
         mode="json", exclude_unset=True, exclude_defaults=True, exclude={"behaviours"}
     )
-    if not as_told:
+    if not unchanged:
         for key in (*PLACE_KEYS, *VELOCITY_KEYS):
             entry.pop(key, None)
         entry.update(pose_entry(body.pose()))
@@ -180,7 +180,7 @@ def _object(body: Body, *, as_told: bool) -> Entry:
     return {**entry, "behaviours": behaviours} if behaviours else entry
 
 
-def _stands_as_told(body: Body, begun: Mapping[str, Body], missing: Collection[str]) -> bool:
+def _placement_unchanged(body: Body, begun: Mapping[str, Body], missing: Collection[str]) -> bool:
     """Say if it stands where its entry puts it, and so does all that carries it."""
     entry = body.placement.entry
     if entry is None or not body.arranged:
@@ -192,7 +192,7 @@ def _stands_as_told(body: Body, begun: Mapping[str, Body], missing: Collection[s
         carrier = begun.get(entry.on)
         if carrier is None or carrier.placement.name != entry.on:
             return False
-        if not _stands_as_told(carrier, begun, missing):
+        if not _placement_unchanged(carrier, begun, missing):
             return False
     return body.placement.static or _only_settled(body)
 
@@ -240,7 +240,7 @@ def _is_fast(velocity: NDArray[np.float64]) -> bool:
 
 
 def _behaviours(body: Body, entry: ObjectSpec) -> list[Entry]:
-    if body.behaves_as_told:
+    if body.behaviours_unchanged:
         return [b.model_dump(mode="json", exclude_unset=True) for b in entry.behaviours]
     return [
         {
@@ -256,31 +256,36 @@ def _behaviours(body: Body, entry: ObjectSpec) -> list[Entry]:
 
 def _movers(world: World, spec: SceneSpec) -> Entry:
     """Return `mover` or `movers`, as the file has it; nothing if none is there or changed."""
-    entries = [_mover(world.movers[told.name], told, world.sim_time_ns) for told in spec.all_movers]
+    entries = [
+        _mover(world.movers[described.name], described, world.sim_time_ns)
+        for described in spec.all_movers
+    ]
     if spec.movers:
         return {"movers": entries}
     return {"mover": entries[0]}
 
 
-def _mover(mover: Mover, told: MoverSpec, time_ns: int) -> Entry:
-    entry: Entry = told.model_dump(mode="json", exclude_unset=True)
+def _mover(mover: Mover, described: MoverSpec, time_ns: int) -> Entry:
+    entry: Entry = described.model_dump(mode="json", exclude_unset=True)
     poses = mover.waypoints
-    if poses != told.waypoint_poses:
+    if poses != described.waypoint_poses:
         entry.pop("waypoints", None)
-        as_told = {w.pose: w.model_dump(mode="json", exclude_unset=True) for w in told.waypoints}
+        entries = {
+            w.pose: w.model_dump(mode="json", exclude_unset=True) for w in described.waypoints
+        }
         if poses:
-            entry["waypoints"] = [as_told.get(pose) or pose_entry(pose) for pose in poses]
+            entry["waypoints"] = [entries.get(pose) or pose_entry(pose) for pose in poses]
     now = {
         "total_time": mover.total_time_s,
         "loop": mover.loop,
         "controller": mover.controller,
     }
     for key, value in now.items():
-        if value != getattr(told, key):
+        if value != getattr(described, key):
             entry[key] = value
     is_led = mover.controller == "waypoint" and bool(poses)
     pose = mover.pose_at(time_ns)
-    if not is_led and (pose != told.pose or poses != told.waypoint_poses):
+    if not is_led and (pose != described.pose or poses != described.waypoint_poses):
         for key in PLACE_KEYS:
             entry.pop(key, None)
         entry.update(pose_entry(pose))
@@ -290,22 +295,22 @@ def _mover(mover: Mover, told: MoverSpec, time_ns: int) -> Entry:
 def _agents(
     world: World, spec: SceneSpec, agents: AgentTable, cameras: Collection[str]
 ) -> list[Entry]:
-    told = {agent.name: agent for agent in spec.agents}
-    missing = [name for name in cameras if name not in told]
+    described = {agent.name: agent for agent in spec.agents}
+    missing = [name for name in cameras if name not in described]
     for name in missing:
         agents[name]  # which must exist
-    wanted = (*told, *missing)
+    wanted = (*described, *missing)
     records = {record.spec.name: record for record in agents}
-    return [_agent(records[name], told.get(name), world) for name in wanted if name in records]
+    return [_agent(records[name], described.get(name), world) for name in wanted if name in records]
 
 
-def _agent(record: AgentRecord, told: AgentSpecModel | None, world: World) -> Entry:
+def _agent(record: AgentRecord, described: AgentSpecModel | None, world: World) -> Entry:
     spec = record.spec
     first = world.mover("").name
-    if told is not None:
-        begun = told.to_agent_spec()
+    if described is not None:
+        begun = described.to_agent_spec()
         same = replace(spec, pose=begun.pose) == replace(begun, mover=begun.mover or first)
         if same and (spec.following or begun.pose == record.pose):
-            return told.model_dump(mode="json", exclude_unset=True)
+            return described.model_dump(mode="json", exclude_unset=True)
     named = replace(spec, mover="" if spec.mover == first else spec.mover)
     return agent_entry(named, None if spec.following else record.pose)

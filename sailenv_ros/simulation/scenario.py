@@ -140,14 +140,14 @@ def _starts(given: object, entries: list[Entry]) -> list[float]:
     if not isinstance(wanted, Mapping) or not set(wanted) <= {key}:
         raise InvalidRequest("timings.description", wanted, f"a mapping with {key}")
     if type_ == "dict":
-        return _told_times(wanted.get("times", {}), len(entries))
+        return _given_times(wanted.get("times", {}), len(entries))
     wait_s = checked_number("timings.description.wait_time", wanted.get("wait_time", 0.0), 0.0, 1e6)
     if type_ == "all_together":
         return [wait_s] * len(entries)
     return _one_after_another(entries, wait_s)
 
 
-def _told_times(times: object, count: int) -> list[float]:
+def _given_times(times: object, count: int) -> list[float]:
     if not isinstance(times, Mapping):
         raise InvalidRequest("timings.description.times", times, "a mapping of index to seconds")
     starts = [0.0] * count

@@ -86,6 +86,7 @@ class SceneLibrary:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
+        self._pack_version = _standard_pack_version()
         self._packs = installed_packs()
         self._skies = sky_files(pack.folder for pack in self._packs)
         self._assets = AssetLibrary(installed_sources(self._packs))
@@ -164,8 +165,11 @@ class SceneLibrary:
     ) -> World:
         """Build the world of a scene, with `more` objects than it has by itself.
 
-        See `load`, `scene.entries.checked_objects` and `world.build.build_world` for errors.
+        Uses the furniture that is built by now. See `load`, `scene.entries.checked_objects` and
+        `world.build.build_world` for errors.
         """
+        if _standard_pack_version() != self._pack_version:
+            self.refresh()
         spec = load_scene(self.path(scene), knowledge=self._knowledge_to_build)
         world = build_world(
             spec.model_copy(update={"objects": (*spec.objects, *self._described(more, spec))}),
@@ -176,12 +180,23 @@ class SceneLibrary:
             next_revision=next_revision,
             skies=self._skies,
         )
-        if spec.room is not None:
-            self._light_cache.hang(world, str(scene))
+        self._load_light(world, str(scene))
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self.path(scene)
         return world
+
+    def refresh(self) -> None:
+        """Take up what was built since this was made: furniture, skies and the user's packs."""
+        self._pack_version = _standard_pack_version()
+        self._packs = installed_packs()
+        self._skies = sky_files(pack.folder for pack in self._packs)
+        self._assets.renew(installed_sources(self._packs))
+
+    def load_light(self, world: World) -> None:
+        """Give a world the light that was baked since it was built, if there is any."""
+        if world.contents.baked is None:
+            self._load_light(world, world.scene)
 
     def stamp(self, scene: str | Path) -> str:
         """Return a text that changes with the scene's file and with the packs it may use.
@@ -335,6 +350,10 @@ class SceneLibrary:
 
     # -- inside ----------------------------------------------------------------------------
 
+    def _load_light(self, world: World, scene: str) -> None:
+        if world.described is not None and world.described.room is not None:
+            self._light_cache.hang(world, scene)
+
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec
     ) -> tuple[ObjectSpec, ...]:
@@ -351,6 +370,15 @@ class SceneLibrary:
         own = tuple(category.name for category in spec.categories)
         known = self._knowledge_of_strangers
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
+
+
+def _standard_pack_version() -> tuple[int, int]:
+    """Return what changes when the standard pack is built; zeros where there is none."""
+    try:
+        status = (standard_pack_folder() / PACK_FILE).stat()
+    except OSError:
+        return 0, 0
+    return status.st_mtime_ns, status.st_ino
 
 
 def _numbered(asset: Asset) -> Iterator[tuple[str, str]]:

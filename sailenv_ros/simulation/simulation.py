@@ -82,6 +82,11 @@ class Simulation(Operations):
     ------
     SceneError, UnknownName, InvalidRequest, ContextError
         If it cannot start; nothing is left running then.
+
+    Attributes
+    ----------
+    background_task : str
+        What is built beside it now and how far that is, in words; empty for nothing.
     """
 
     def __init__(
@@ -111,6 +116,7 @@ class Simulation(Operations):
         self._sim_time_ns = 0
         self._info_listeners: list[Callable[[SceneInfo], None]] = []
         self._step_listeners: list[Callable[[int], None]] = []
+        self.background_task = ""
         self._pacer = Pacer(real_time_factor)
         self._workers = ModelWorkers(
             uploads=UploadQueue(
@@ -268,6 +274,10 @@ class Simulation(Operations):
         self._step_listeners.append(listener)
         return lambda: _discard(self._step_listeners, listener)
 
+    def refresh(self) -> Future[None]:
+        """Begin to take up furniture and baked light that were built since the start."""
+        return self._submit(lambda core: core.refresh())
+
     def close(self) -> None:
         """End the simulation: break off what runs, free everything; a second call does nothing."""
         self._closing = True
@@ -312,7 +322,7 @@ class Simulation(Operations):
                 self._rest(core)
         except Exception as error:
             why = f"{type(error).__name__}: {error}"
-            _log.exception("the simulation ends because of a fault")
+            _log.exception("the simulation ends because of an internal error")
         finally:
             self._end(core, why)
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.system.presence import open_private_folder
+from sailenv_ros.system.process_locks import open_private_folder
 
 __all__ = [
     "DIRECT_FRAMES",

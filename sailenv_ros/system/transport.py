@@ -19,7 +19,7 @@ from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, StorageError
 from sailenv_ros.system.files import write_file
-from sailenv_ros.system.presence import open_private_folder
+from sailenv_ros.system.process_locks import open_private_folder
 from sailenv_ros.system.resources import resource_path
 
 __all__ = [

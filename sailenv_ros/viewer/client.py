@@ -16,6 +16,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from sailenv_ros.errors import (
     DeadlineExceeded,
+    InternalFault,
     InvalidRequest,
     InvalidState,
     SailenvError,
@@ -27,6 +28,7 @@ from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import contact_sheet
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.encoding import packed, picture_png, view_png
@@ -57,6 +59,7 @@ class Client:
         Ends the connection without a goodbye.
     simulation : Simulation
     debug_agent : DebugAgent
+    feeds : AgentFeeds
     may_change : bool
         False for who may only watch.
     limits : ViewerLimits
@@ -64,8 +67,6 @@ class Client:
         Sent first; what never changes.
     touch : callable
         Called after each command that may have changed what is seen.
-    touched : callable
-        Gives how often that was, of all clients.
     """
 
     def __init__(
@@ -75,22 +76,24 @@ class Client:
         drop: Callable[[], None],
         simulation: Simulation,
         debug_agent: DebugAgent,
+        feeds: AgentFeeds,
         may_change: bool,
         limits: ViewerLimits,
         greeting: dict[str, Any],
         touch: Callable[[], None],
-        touched: Callable[[], int],
     ) -> None:
         self.debug_agent = debug_agent
         self._socket = socket
         self._simulation = simulation
+        self._feeds = feeds
         self._may_change = may_change
         self._limits = limits
         self._greeting = greeting
-        self._touch, self._touched = touch, touched
+        self._touch = touch
         self._loop = asyncio.get_running_loop()
         self._subscription: ViewSubscription | None = None
         self._selected = 0
+        self._drop = drop
         self._outbox = Outbox(socket, drop=drop, send_s=limits.send_s)
         self._news = asyncio.Event()
         self._sent_revision = (-1, -1)
@@ -125,12 +128,6 @@ class Client:
         except asyncio.TimeoutError:
             what = f"the operation {operation.name!r}"
             raise DeadlineExceeded(what, self._limits.request_s) from None
-
-    @property
-    def rendered_views(self) -> tuple[str, ...]:
-        """Views that are rendered for this client now."""
-        watch = self._subscription
-        return () if watch is None else watch.rendered_views
 
     # -- of the server ---------------------------------------------------------------------
 
@@ -167,7 +164,7 @@ class Client:
     async def _listen(self) -> None:
         async for message in self._socket:
             if message.type == WSMsgType.ERROR:
-                return
+                break
             if not self._admits():
                 words = f"more than {self._limits.messages_per_s} messages in a second"
                 await self._socket.close(
@@ -186,6 +183,11 @@ class Client:
                 await self._shown(given)
             else:
                 await self._begin(given)
+        problem = self._socket.exception()
+        if problem is not None:
+            if not isinstance(problem, ConnectionError):
+                _log.warning("a viewer is disconnected: %s", _why(problem))
+            self._drop()
 
     def _admits(self) -> bool:
         now = self._loop.time()
@@ -223,8 +225,10 @@ class Client:
         except ConnectionError:
             return
         except Exception:
-            _log.exception("a viewer's request ends because of a fault")
-            await self._refuse(number, InvalidRequest("request", "it", "without a fault; see log"))
+            _log.exception("a viewer's request ends because of an internal error")
+            await self._refuse(
+                number, InternalFault("an internal error of the simulator, see its log")
+            )
         else:
             if isinstance(result, _File):
                 head = {"type": "file", "id": number, "name": result.name, "mime": result.mime}
@@ -254,18 +258,11 @@ class Client:
         if not all(isinstance(view, str) for view in views):
             raise InvalidRequest("views", views, "names of views")
         if self._subscription is not None and self._subscription.agent == agent:
-            self._subscription.show(views)
+            self._subscription.show(self._feeds.checked(views))
             return
         first = 1 if self._subscription is None else self._subscription.next_number
-        watch = ViewSubscription(
-            self._simulation,
-            self.debug_agent,
-            agent=agent,
-            views=views,
-            send=self._outbox.post,
-            changes=lambda: (self._simulation.info.revision, self._touched()),
-            ended=self._watch_ended,
-            first_number=first,
+        watch = self._feeds.watch(
+            agent, views, send=self._outbox.post, ended=self._watch_ended, first_number=first
         )
         self._end_watch()
         self._subscription = watch
@@ -273,7 +270,7 @@ class Client:
 
     def _end_watch(self) -> None:
         if self._subscription is not None:
-            self._subscription.close()
+            self._feeds.leave(self._subscription)
             self._subscription = None
 
     async def _screenshot(self, given: Arguments) -> _File:
@@ -334,6 +331,12 @@ class Client:
     async def _refuse(self, number: object, error: SailenvError) -> None:
         words = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
         await self._outbox.send_json({"type": "refused", "id": number, "error": words[:MAX_WORDS]})
+
+
+def _why(problem: BaseException) -> str:
+    if isinstance(problem, asyncio.TimeoutError):
+        return "it does not answer"
+    return str(problem) or type(problem).__name__
 
 
 class _File:

@@ -7,11 +7,7 @@ with the head's length (4 bytes, little-endian); the pictures follow in the orde
 from __future__ import annotations
 
 import json
-import threading
-import weakref
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
-from functools import partial
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import cv2
@@ -22,7 +18,7 @@ from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 
-__all__ = ["outline", "packed", "packed_frame", "picture_png", "view_png", "views_to_json"]
+__all__ = ["FrameMessages", "outline", "packed", "picture_png", "view_png", "views_to_json"]
 
 JPEG_QUALITY = 85
 
@@ -32,72 +28,80 @@ SPECK_PX = 6.0
 _FAST_PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
 
 
-class _SharedPictures:
-    """Encodes each view of a frame once, however many clients are sent it."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        # They go with the frame.
-        self._made: weakref.WeakKeyDictionary[Frame, dict[str, Future[tuple[str, bytes]]]] = (
-            weakref.WeakKeyDictionary()
-        )
-
-    def get(
-        self, frame: Frame, view: str, make: Callable[[], tuple[str, bytes]]
-    ) -> tuple[str, bytes]:
-        """Return the picture; made now, or waited for where another thread makes it."""
-        with self._lock:
-            pictures = self._made.setdefault(frame, {})
-            known = pictures.get(view)
-            mine = pictures.setdefault(view, Future())
-        if known is not None:
-            return known.result()
-        try:
-            mine.set_result(make())
-        except BaseException as fault:
-            mine.set_exception(fault)
-        return mine.result()
-
-
-_shared = _SharedPictures()
-
-
-def packed(head: Mapping[str, Any], pieces: Iterable[bytes] = ()) -> bytes:
-    """Put a head and what belongs to it into one message."""
-    text = json.dumps(head, separators=(",", ":"), allow_nan=False).encode()
-    return b"".join([len(text).to_bytes(4, "little"), text, *pieces])
-
-
-def packed_frame(
-    frame: Frame,
-    views: Sequence[str],
-    *,
-    number: int,
-    categories: CategoryTable,
-    depth_range_m: float,
-    selected: int = 0,
-) -> bytes:
-    """Write a frame.
+class FrameMessages:
+    """Messages of one frame for all who watch it: what they share is made once.
 
     Parameters
     ----------
     frame : Frame
-        Has at least the `views`; its instance view, if any, tells what is visible.
-    number : int
-        By which the page asks for its values and says that it has shown it.
+        Its instance view, if any, tells what is visible.
+    categories : CategoryTable
     depth_range_m : float
         Depth that is shown as black [m].
-    selected : int
-        Instance whose outline is told; 0 for none.
     """
-    pictures = [
-        _shared.get(frame, view, partial(_encoded, frame, view, categories, depth_range_m))
-        for view in views
-    ]
+
+    def __init__(self, frame: Frame, *, categories: CategoryTable, depth_range_m: float) -> None:
+        self.frame = frame
+        self._categories = categories
+        self._depth_range_m = depth_range_m
+        self._pictures: dict[str, tuple[str, bytes]] = {}
+        self._about = _head_of(frame)
+
+    def message(
+        self, views: Sequence[str], *, number: int, selected: int = 0, dropped: int = 0
+    ) -> bytes:
+        """Write it for one client.
+
+        Parameters
+        ----------
+        views : sequence of str
+            Views that the frame has.
+        number : int
+            By which the page asks for its values and says that it has shown it.
+        selected : int
+            Instance whose outline is told; 0 for none.
+        dropped : int
+            How many frames were not sent before it because the page had not shown those it had.
+        """
+        pictures = [self._picture(view) for view in views]
+        head: dict[str, Any] = {
+            "number": number,
+            "dropped": dropped,
+            "views": [
+                {"name": view, "mime": mime, "size": len(data)}
+                for view, (mime, data) in zip(views, pictures, strict=True)
+            ],
+        }
+        if "instance" in self.frame.views:
+            head["outline"] = outline(self.frame["instance"], selected) if selected else []
+        text = f"{_json(head)[:-1]},{self._about[1:]}"
+        return _packed(text, (data for _, data in pictures))
+
+    def _picture(self, view: str) -> tuple[str, bytes]:
+        if view not in self._pictures:
+            self._pictures[view] = _encoded(self.frame, view, self._categories, self._depth_range_m)
+        return self._pictures[view]
+
+
+def packed(head: Mapping[str, Any], pieces: Iterable[bytes] = ()) -> bytes:
+    """Put a head and what belongs to it into one message."""
+    return _packed(_json(head), pieces)
+
+
+def _packed(head: str, pieces: Iterable[bytes]) -> bytes:
+    data = head.encode()
+    return b"".join([len(data).to_bytes(4, "little"), data, *pieces])
+
+
+def _json(value: Mapping[str, Any]) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False)
+
+
+def _head_of(frame: Frame) -> str:
+    """Write what every client is told of a frame, as JSON."""
     lens = frame.camera.intrinsics
     head: dict[str, Any] = {
         "type": "frame",
-        "number": number,
         "agent": frame.agent,
         "scene": frame.scene,
         "epoch": frame.epoch,
@@ -112,18 +116,12 @@ def packed_frame(
         "position": list(frame.camera.pose.position_m),
         "rpy_deg": list(frame.camera.pose.rpy_deg),
         "timings_ms": {name: 1e3 * seconds for name, seconds in frame.timings_s.items()},
-        "views": [
-            {"name": view, "mime": mime, "size": len(data)}
-            for view, (mime, data) in zip(views, pictures, strict=True)
-        ],
     }
     if "instance" in frame.views:
-        instance = frame["instance"]
-        counts = np.bincount(instance.reshape(-1))
+        counts = np.bincount(frame["instance"].reshape(-1))
         ids = np.flatnonzero(counts[1:]) + 1
         head["visible"] = np.stack([ids, counts[ids]], axis=-1).tolist()
-        head["outline"] = outline(instance, selected) if selected else []
-    return packed(head, (data for _, data in pictures))
+    return _json(head)
 
 
 def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:

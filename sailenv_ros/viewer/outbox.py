@@ -64,6 +64,8 @@ class Outbox:
             )
             try:
                 await asyncio.wait_for(sent, self._send_s)
+            except ConnectionError:
+                return  # it went just now
             except asyncio.TimeoutError:
                 _log.warning("a viewer that does not read is disconnected")
                 self._drop()

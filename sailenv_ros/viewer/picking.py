@@ -114,8 +114,8 @@ def _normal(frame: Frame, u: int, v: int) -> Vector:
     length = float(np.linalg.norm(normal))
     if not math.isfinite(length) or length < 1e-12:
         return np.array([0.0, 0.0, -1.0])
-    sight = _optical(frame, u, v, 1.0)
-    return normal / (length if normal @ sight < 0.0 else -length)
+    ray = _optical(frame, u, v, 1.0)
+    return normal / (length if normal @ ray < 0.0 else -length)
 
 
 def _triple(point: Vector) -> tuple[float, float, float]:

@@ -28,8 +28,8 @@ def arguments_of_text(text: str) -> Arguments:
     """
     try:
         value = json.loads(text, parse_constant=_refuse)
-    except (ValueError, RecursionError) as fault:
-        raise InvalidRequest("message", text[:200], f"JSON ({str(fault)[:200]})") from None
+    except (ValueError, RecursionError) as error:
+        raise InvalidRequest("message", text[:200], f"JSON ({str(error)[:200]})") from None
     return Arguments(value, "message")
 
 

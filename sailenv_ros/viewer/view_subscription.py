@@ -1,27 +1,22 @@
-"""One client's view of one agent: a thread that takes frames, encodes them and sends them.
+"""One client's view of one agent: what it is shown, what is on its way to it, what it was sent.
 
-A `FrameStream` in, messages out, never more on their way than the page has said to have shown. A
-page that shows nothing more lets nothing be rendered for it.
+Frames come from the agent's `AgentFeed`, which encodes them once for all. Never more are on their
+way than the page has said to have shown; those that it misses meanwhile are counted.
 """
 
 from __future__ import annotations
 
 import collections
-import logging
 import threading
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable
 
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, SailenvError
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame, checked_views
-from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.validation import is_integer
-from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
-from sailenv_ros.viewer.encoding import packed_frame
+from sailenv_ros.viewer.encoding import FrameMessages
 
-__all__ = ["PROBED_VIEWS", "ViewSubscription"]
-
-_log = logging.getLogger(__name__)
+__all__ = ["IN_FLIGHT", "PROBED_VIEWS", "STALLED_S", "ViewSubscription"]
 
 PROBED_VIEWS = tuple(view for view in FIVE_VIEWS if VIEWS[view].source != "lighting")
 """Rendered whatever is shown: their values are told of any pixel."""
@@ -32,60 +27,53 @@ IN_FLIGHT = 2
 KEPT = 6
 """Frames whose values may still be asked for."""
 
-WAIT_S = 0.1
-"""Between two looks at whether anything has changed while time stands still [s of wall time]."""
-
 STALLED_S = 0.5
 """Who has shown nothing for so long gets nothing rendered until it has [s of wall time]."""
 
 
 class ViewSubscription:
-    """Frames of one agent for one client, from its making until `close`.
+    """Frames of one agent for one client; used by the client's thread and the feed's.
 
     Parameters
     ----------
-    simulation : Simulation
-    debug_agent : DebugAgent
     agent : str
-    views : sequence of str
-        What is shown; see `sailenv_ros.frame.VIEWS`.
+    views : tuple of str
+        What is shown, checked.
+    changed : threading.Condition
+        The feed's; notified when this may take a frame, or wants another.
     send : callable
-        Called in this thread with each message.
-    changes : callable
-        Gives what is another value after each request that may have changed what is seen.
+        Called in the feed's thread with each message.
     ended : callable
-        Called in this thread with the reason, if no more frames come although nobody closed it.
+        Called in the feed's thread with the reason, if no more frames come.
     first_number : int
         Of its first frame.
     """
 
     def __init__(
         self,
-        simulation: Simulation,
-        debug_agent: DebugAgent,
-        *,
         agent: str,
-        views: Sequence[str],
+        views: tuple[str, ...],
+        changed: threading.Condition,
+        *,
         send: Callable[[bytes], None],
         ended: Callable[[str], None],
-        changes: Callable[[], object],
-        first_number: int = 1,
+        first_number: int,
     ) -> None:
         self.agent = agent
         self.selected = 0
-        self._simulation = simulation
-        self._debug_agent = debug_agent
-        self._views = checked_views(views, supported=simulation.supported_views)
-        self._send, self._ended, self._changes = send, ended, changes
-        self._seen: object = None
+        self.dropped = 0
+        self.ended = ended
+        self.seen: object = None
+        self.changed = changed
+        self._views = views
+        self._send = send
         self._number = first_number - 1
         self._shown = self._number
-        self._turn = threading.Condition()
-        self._closed = False
-        self._stream: FrameStream | None = None
+        self._full_since_s = 0.0
+        self._missed: Frame | None = None
         self._frames: collections.OrderedDict[int, Frame] = collections.OrderedDict()
-        self._thread = threading.Thread(target=self._run, name="sailenv-viewer-watch", daemon=True)
-        self._thread.start()
+
+    # -- of the client ---------------------------------------------------------------------
 
     @property
     def next_number(self) -> int:
@@ -93,23 +81,15 @@ class ViewSubscription:
         return self._number + 1
 
     @property
-    def rendered_views(self) -> tuple[str, ...]:
-        """Views that are rendered for it now; none while its page stalls."""
-        stream = self._stream
-        return () if stream is None or stream.closed else stream.views
+    def views(self) -> tuple[str, ...]:
+        """What is shown."""
+        return self._views
 
-    def show(self, views: Sequence[str]) -> None:
-        """Change what is shown, from the next frame on.
-
-        Raises
-        ------
-        UnknownName, InvalidRequest
-            If there is no such view, or the renderer cannot make it; nothing is changed then.
-        """
-        wanted = checked_views(views, supported=self._simulation.supported_views)
-        with self._turn:
-            self._views = wanted
-            self._turn.notify_all()
+    def show(self, views: tuple[str, ...]) -> None:
+        """Change what is shown, from the next frame on."""
+        with self.changed:
+            self._views = views
+            self.changed.notify_all()
 
     def shown(self, number: object) -> None:
         """Take note that the page has shown a frame.
@@ -119,13 +99,13 @@ class ViewSubscription:
         InvalidRequest
             If no such frame was sent.
         """
-        with self._turn:
+        with self.changed:
             if not is_integer(number):
                 raise InvalidRequest("number of the frame", number, "an integer")
             if number > self._number:
                 raise InvalidRequest("number of the frame", number, f"at most {self._number}")
             self._shown = max(self._shown, number)
-            self._turn.notify_all()
+            self.changed.notify_all()
 
     def frame(self, number: object = None) -> Frame:
         """Return a frame that was sent lately; None means the last one.
@@ -135,7 +115,7 @@ class ViewSubscription:
         InvalidRequest
             If it is kept no longer, or was never sent.
         """
-        with self._turn:
+        with self.changed:
             if number is None and self._frames:
                 return self._frames[self._number]
             if not isinstance(number, int) or number not in self._frames:
@@ -143,86 +123,39 @@ class ViewSubscription:
                 raise InvalidRequest("number of the frame", number, accepted)
             return self._frames[number]
 
-    def close(self) -> None:
-        """End; does not wait for the thread, which ends by itself."""
-        with self._turn:
-            self._closed = True
-            self._turn.notify_all()
+    # -- of the feed -----------------------------------------------------------------------
 
-    # -- in the thread ---------------------------------------------------------------------
+    @property
+    def has_turn(self) -> bool:
+        """True if the page may be sent another frame."""
+        return self._number - self._shown < IN_FLIGHT
 
-    def _run(self) -> None:
-        own = self.agent == NAME
-        try:
-            if own:
-                self._debug_agent.begin()
-            try:
-                with self._simulation.stream(self.agent, self._rendered()) as stream:
-                    self._stream = stream
-                    self._pump(stream)
-            finally:
-                if own:
-                    self._debug_agent.end()
-        except SailenvError as error:
-            if not self._closed:
-                self._ended(str(error))
-        except Exception:
-            _log.exception("a viewer's frames end because of a fault")
-            self._ended("of a fault, which the simulator's log shows")
+    @property
+    def stalls(self) -> bool:
+        """True if the page has shown nothing for so long that nothing is rendered for it."""
+        return not self.has_turn and time.monotonic() - self._full_since_s >= STALLED_S
 
-    def _pump(self, stream: FrameStream) -> None:
-        while self._may_send(stream):
-            stream.set_views(self._rendered())
-            seen = (self._changes(), self._views, self.selected)
-            try:
-                frame = stream.get(WAIT_S)
-            except DeadlineExceeded:
-                if not self._is_stale(seen):
-                    continue  # slow, or nothing moves
-                frame = self._simulation.capture(self._rendered(), agent=self.agent)
-            self._seen = seen
+    def lacks(self, frame: Frame) -> bool:
+        """Say if it may be sent a frame now that came while it had no turn."""
+        return self.has_turn and self._missed is frame and {*self._views} <= frame.views.keys()
+
+    def deliver(self, messages: FrameMessages) -> None:
+        """Send a frame, or keep in mind that it came; one that never goes out is counted."""
+        frame = messages.frame
+        with self.changed:
             views = [view for view in self._views if view in frame.views]
-            if views:
-                self._deliver(frame, views)
-
-    def _is_stale(self, seen: object) -> bool:
-        """Say if time stands still, so that no frame will fall due, and something has changed.
-
-        Of the web viewer's own agent alone: a capture counts among an agent's frames.
-        """
-        info = self._simulation.info
-        stands = info.paused or info.mode == "lockstep"
-        return stands and self.agent == NAME and seen != self._seen
-
-    def _may_send(self, stream: FrameStream) -> bool:
-        """Wait for the page; False if this was closed."""
-        with self._turn:
-            if not self._turn.wait_for(self._has_turn, STALLED_S):
-                stream.set_views(())
-                stream.discard()
-                self._turn.wait_for(self._has_turn)
-            return not self._closed
-
-    def _has_turn(self) -> bool:
-        return self._closed or self._number - self._shown < IN_FLIGHT
-
-    def _deliver(self, frame: Frame, views: Sequence[str]) -> None:
-        info = self._simulation.info
-        ranges = (spec.depth_range_m for spec in info.agents if spec.name == frame.agent)
-        message = packed_frame(
-            frame,
-            views,
-            number=self._number + 1,
-            categories=info.categories,
-            depth_range_m=next(ranges, 10.0),
-            selected=self.selected,
-        )
-        with self._turn:
+            if self._missed not in (None, frame):
+                self.dropped += 1
+            self._missed = None if self.has_turn else frame
+            if self._missed is not None or not views:
+                return
             self._number += 1
-            self._frames[self._number] = frame
+            number = self._number
+            self._frames[number] = frame
             while len(self._frames) > KEPT:
                 self._frames.popitem(last=False)
-        self._send(message)
-
-    def _rendered(self) -> tuple[str, ...]:
-        return tuple(view for view in VIEWS if view in {*self._views, *PROBED_VIEWS})
+            if not self.has_turn:
+                self._full_since_s = time.monotonic()
+        self._send(
+            messages.message(views, number=number, selected=self.selected, dropped=self.dropped)
+        )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sailenv_ros.system.silent_peers import SILENT_S
+
 __all__ = ["ViewerLimits"]
 
 
@@ -23,13 +25,16 @@ class ViewerLimits:
         Requests of one client that may be on their way at a time.
     send_s : float
         From the beginning of an answer to its end [s]: who does not read is disconnected.
+    silent_s : float
+        A client that answers no ping for so long is gone [s].
     request_s : float
         Deadline of a request [s]; loading a scene takes many.
     """
 
-    clients: int = 8
+    clients: int = 24
     message_bytes: int = 64 * 1024
     messages_per_s: int = 400
     requests: int = 16
     send_s: float = 20.0
+    silent_s: float = SILENT_S
     request_s: float = 120.0

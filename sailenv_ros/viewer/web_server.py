@@ -22,6 +22,7 @@ from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.loop_thread import LoopThread
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
+from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.encoding import views_to_json
@@ -94,6 +95,7 @@ class ViewerServer:
         self._clients: set[Client] = set()
         self._connected = 0
         self._touched = 0
+        self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
         self._thread = LoopThread("viewer", self._serve)
         try:
             self._port = self._thread.start()
@@ -128,7 +130,7 @@ class ViewerServer:
     @property
     def rendered_views(self) -> frozenset[str]:
         """Views that are rendered for somebody here now; none for those that stall."""
-        return frozenset(view for client in tuple(self._clients) for view in client.rendered_views)
+        return self._feeds.rendered_views
 
     def set_intrinsics(self, intrinsics: CameraIntrinsics) -> None:
         """Change what the debug agent sees: its pictures' size and its angle of view."""
@@ -179,9 +181,9 @@ class ViewerServer:
 
     @web.middleware
     async def _checked(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
-        fault = self._access.fault_of_request(request.headers)
-        if fault:
-            return self._refusal(fault)
+        reason = self._access.refusal_of_request(request.headers)
+        if reason:
+            return self._refusal(reason)
         try:
             response = await handler(request)
         except web.HTTPException as refusal:
@@ -193,17 +195,17 @@ class ViewerServer:
         return response
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
-        fault = self._access.fault_of_token(request.query.get("token", ""))
-        return self._refusal(fault) if fault else self._file("index.html")
+        reason = self._access.refusal_of_token(request.query.get("token", ""))
+        return self._refusal(reason) if reason else self._file("index.html")
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
         return self._file(request.match_info["name"])
 
     async def _thumbnail(self, request: web.Request) -> web.StreamResponse:
         """Return the picture of a catalogue's object; made now if it was not yet."""
-        fault = self._access.fault_of_token(request.query.get("token", ""))
-        if fault:
-            return self._refusal(fault)
+        reason = self._access.refusal_of_token(request.query.get("token", ""))
+        if reason:
+            return self._refusal(reason)
         try:
             making = self._simulation.get_thumbnail_png.submit(
                 request.match_info["asset"][:MAX_NAME]
@@ -216,14 +218,16 @@ class ViewerServer:
         )
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        fault = self._access.fault_of_socket(request.headers, request.query.get("token", ""))
-        if fault:
-            _log.warning("a viewer is refused: %s", fault)
-            return self._refusal(fault)
+        reason = self._access.refusal_of_socket(request.headers, request.query.get("token", ""))
+        if reason:
+            _log.warning("a viewer is refused: %s", reason)
+            return self._refusal(reason)
         if self._connected >= self._limits.clients:
             return self._refusal(f"{self._connected} viewers are connected, which is the most")
         answer = web.WebSocketResponse(
-            max_msg_size=self._limits.message_bytes, heartbeat=20.0, compress=False
+            max_msg_size=self._limits.message_bytes,
+            heartbeat=self._limits.silent_s / 1.5,  # aiohttp waits half as long for the answer
+            compress=False,
         )
         self._connected += 1
         try:
@@ -241,6 +245,7 @@ class ViewerServer:
             drop=lambda: None if transport is None else transport.abort(),
             simulation=self._simulation,
             debug_agent=self._debug_agent,
+            feeds=self._feeds,
             may_change=self._may_change,
             limits=self._limits,
             greeting={
@@ -252,7 +257,6 @@ class ViewerServer:
                 "skies": await asyncio.to_thread(skies_to_json),
             },
             touch=self._touch,
-            touched=lambda: self._touched,
         )
         self._clients.add(client)
         try:
@@ -281,6 +285,7 @@ class ViewerServer:
                 "real_time_factor": max(0.0, (now[1] - before[1]) * 1e-9 / (now[0] - before[0])),
                 "skipped_frames": self._simulation.skipped_frames,
                 "viewers": len(self._clients),
+                "building": self._simulation.background_task,
             }
             before = now
             for client in self._clients:

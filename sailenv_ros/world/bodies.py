@@ -50,7 +50,7 @@ class Body:
         True until it is put elsewhere by hand: whatever moves it since is physics.
     entry_pose : Pose
         Where its entry puts it.
-    behaves_as_told : bool
+    behaviours_unchanged : bool
         True while its behaviours are those of its entry.
     """
 
@@ -58,7 +58,7 @@ class Body:
         self.placement = placement
         self.arranged = True
         self.entry_pose = placement.pose
-        self.behaves_as_told = True
+        self.behaviours_unchanged = True
         self._behaviours = placement.behaviours
         self._is_fast = False
         self._client = client
@@ -173,7 +173,7 @@ class Body:
         new = Body(self._client, moving)
         new.arranged = self.arranged and placement.scale == self.placement.scale
         new.entry_pose = self.entry_pose
-        new.behaves_as_told = self.behaves_as_told
+        new.behaviours_unchanged = self.behaviours_unchanged
         return new
 
     @property
@@ -200,12 +200,12 @@ class Body:
                 "remove them first"
             )
         self._behaviours = (*self._behaviours, running)
-        self.behaves_as_told = False
+        self.behaviours_unchanged = False
 
     def detach(self) -> None:
         """Let no behaviour move it any more; its speed remains."""
         self._behaviours = ()
-        self.behaves_as_told = False
+        self.behaviours_unchanged = False
 
     def act(self, time_s: float, frustum_planes: FrustumPlanes) -> None:
         """Do what its behaviours and its want of gravity ask for the step that begins now."""

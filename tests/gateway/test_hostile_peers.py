@@ -124,6 +124,23 @@ def test_a_peer_that_stops_reading(gateway: GatewayServer) -> None:
         until(lambda: gateway.clients == 0, "it to be disconnected", 30.0)
 
 
+def test_a_peer_that_takes_nothing_is_gone_before_its_answer_is_due(
+    blank_simulation: Simulation, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As one whose machine was switched off: the system finds out, long before `write_s`."""
+    limits = GatewayLimits(silent_s=1.0)
+    with (
+        GatewayServer(blank_simulation, port=0, limits=limits) as gateway,
+        connected(gateway) as peer,
+    ):
+        peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        peer.sendall(hello(1024, 1024) + b"\x00\x3d" * 500)
+        until(lambda: _agents(blank_simulation), "it to be registered")
+        until(lambda: not gateway.clients, "it to be disconnected", 10.0)
+        until(lambda: not _agents(blank_simulation), "its agent to be gone")
+    assert "neither answered nor took anything for 1 s" in caplog.text
+
+
 def test_a_peer_that_vanishes_in_the_middle_of_a_frame(gateway: GatewayServer) -> None:
     """The connection is reset with most of the frame on its way."""
     for _ in range(5):

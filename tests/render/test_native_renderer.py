@@ -215,6 +215,21 @@ def test_pictures_are_those_of_opengl(
     assert (off <= 2).mean() >= 0.95
 
 
+def test_textures_are_as_bright_as_those_of_opengl(pair: tuple[NativeRenderer, Renderer]) -> None:
+    """Fine grain that is smaller than a pixel is averaged without rounding down."""
+    grain = np.random.default_rng(3).integers(110, 146, (256, 256, 4)).astype(np.uint8)
+    grain[..., 3] = 255
+    things = [Thing(model_of(wall_mesh(6, 6), base_colour_texture=grain), Pose((3.0, 0, 0)))]
+    contents = contents_of(things, lights=(SUN,), environment=Environment(sky_share=0.5))
+    snapshot = snapshot_of(things, contents=contents)
+    camera = camera_at(width=200, height=150)
+    first, second = (
+        made.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(int) for made in pair
+    )
+    assert abs((first - second).mean()) < 0.1
+    assert (np.abs(first - second).max(axis=-1) <= 2).mean() > 0.98
+
+
 @pytest.fixture(scope="module")
 def pair() -> Iterator[tuple[NativeRenderer, Renderer]]:
     """A native renderer and one with OpenGL."""

@@ -15,8 +15,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
 from sailenv_ros.render.ambient_occlusion import ambient_visibility
-from sailenv_ros.render.bloom import add_bloom
-from sailenv_ros.render.sensor_noise import add_sensor_noise
+from sailenv_ros.render.sensor import sensor_light
 from sailenv_ros.render.tone import code_table, filmic, tone_mapped
 from sailenv_ros.render.tone_map import apply_visibility, tone_map
 from tests.render.conftest import Render
@@ -230,7 +229,7 @@ def test_noise_has_the_variance_of_its_formula(level: float, exposure: float) ->
     settings = PictureSettings(full_well=2000.0, read_noise=3.0, exposure=exposure)
     grey = np.full((300, 400, 4), level, np.float16)
     value = float(grey[0, 0, 0]) * 2.0**exposure
-    seen = add_sensor_noise(grey, settings, "eye", 0)[..., :3].astype(float) * 2.0**exposure
+    seen = sensor_light(grey, settings, "eye", 0)[..., :3].astype(float) * 2.0**exposure
     variance = value / 2000.0 + (3.0 / 2000.0) ** 2
     assert seen.mean() == pytest.approx(value, abs=5 * np.sqrt(variance / seen.size))
     # Half precision rounds by a part in 2^11 at most, evenly: less than a hundredth of this.
@@ -254,10 +253,11 @@ def test_noise_comes_from_the_camera_and_the_time(render: Render) -> None:
 def test_bloom_moves_light_and_makes_none() -> None:
     """A uniform picture stays; a bright spot loses its share to its surroundings."""
     grey = np.full((64, 96, 4), 0.5, np.float16)
-    np.testing.assert_array_equal(add_bloom(grey, 0.5), grey)
+    half = PictureSettings(bloom=0.5)
+    np.testing.assert_array_equal(sensor_light(grey, half, "eye", 0), grey)
     spot = np.zeros((129, 129, 4), np.float16)
     spot[60:68, 60:68, :3] = 10.0
-    spread = add_bloom(spot, 0.25).astype(float)
+    spread = sensor_light(spot, PictureSettings(bloom=0.25), "eye", 0).astype(float)
     assert spread[..., :3].sum() == pytest.approx(10.0 * 64 * 3, rel=0.02)
     assert 7.4 < spread[64, 64, 0] < 10.0
     assert spread[64, 90, 0] > 0.0

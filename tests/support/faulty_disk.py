@@ -209,7 +209,7 @@ class FaultyDisk:
         if "b" in mode:
             return buffered
         text = io.TextIOWrapper(buffered, encoding or "utf-8", errors, newline)
-        text.mode = mode
+        text.mode = mode  # type: ignore[misc]  # as open() does
         return text
 
 

@@ -22,7 +22,7 @@ def hostile_scenes() -> dict[str, Callable[[], WorldSnapshot]]:
 
     def shaped(points: NDArray[np.float64]) -> WorldSnapshot:
         triangles = np.arange(len(points) // 3 * 3, dtype=np.uint32).reshape(-1, 3)
-        flat = np.tile(np.float32([0, 0, 1]), (len(points), 1))
+        flat = np.tile(np.array([0, 0, 1], np.float32), (len(points), 1))
         mesh = mesh_of(points.astype(np.float32), flat, np.zeros((len(points), 2)), triangles)
         return snapshot_of([Thing(model_of(mesh, double_sided=True), Pose((0, 0, 0)))])
 

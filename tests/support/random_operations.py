@@ -88,7 +88,7 @@ def _work(simulation: Simulation, model: _Model, number: int, operations: int, s
         elif kind < 5 and model.poses:
             id_ = rng.choice(list(model.poses))
             model.poses[id_] = _pose(rng, number)
-            simulation.move_object(id_, model.poses[id_], teleport=rng.random() < 0.5)
+            simulation.move_object(id_, pose=model.poses[id_], teleport=rng.random() < 0.5)
         elif kind == 5 and model.poses:
             id_ = rng.choice(list(model.poses))
             model.scales[id_] = rng.choice((0.5, 1.0, 2.0))
@@ -110,7 +110,7 @@ def _work(simulation: Simulation, model: _Model, number: int, operations: int, s
 def _spawn(simulation: Simulation, model: _Model, name: str, rng: random.Random) -> None:
     pose = _pose(rng, int(name.split("_")[1]))
     asset = rng.choice(("cube", "sphere", "cylinder"))
-    id_ = simulation.spawn_object(asset, name=name, pose=pose, static=True)
+    id_ = simulation.spawn_object(asset, object_name=name, pose=pose, remove_dynamics=True)
     assert id_ not in model.poses
     model.poses[id_], model.names[id_], model.scales[id_] = pose, name, 1.0
 
@@ -121,7 +121,7 @@ def _refused(simulation: Simulation, model: _Model, rng: random.Random) -> None:
         if rng.random() < 0.5:
             simulation.despawn_object("nothing of that name")
         else:
-            simulation.spawn_object("cube", name="a", pose=Pose((0.0, 0.0, 0.0)), scale=(0, 1, 1))
+            simulation.spawn_object("cube", object_name="a", scale=(0, 1, 1))
     except SailenvError:
         model.refused += 1
     else:

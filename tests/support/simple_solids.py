@@ -16,7 +16,7 @@ def one_triangle() -> Mesh:
     return Mesh(
         positions=np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]),
         normals=np.array([[0, 0, 1]] * 3),
-        uvs=np.zeros((3, 2)),
+        uvs=np.zeros((3, 2), np.float32),
         triangles=np.array([[0, 1, 2]]),
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
@@ -60,7 +60,8 @@ def wall_mesh(width: float = 1.0, height: float = 1.0) -> Mesh:
 def box_mesh(size: float | Sequence[float] = 1.0) -> Mesh:
     """A box around the origin with flat faces."""
     half = 0.5 * np.broadcast_to(np.asarray(size, float), 3)
-    positions, normals, uvs, triangles = [], [], [], []
+    positions: list[NDArray[np.float64]] = []
+    normals, uvs, triangles = [], [], []
     for axis in range(3):
         for sign in (-1.0, 1.0):
             normal = np.zeros(3)
@@ -180,6 +181,5 @@ def two_instants() -> tuple[WorldSnapshot, WorldSnapshot, Camera, Camera]:
     contents = contents_of(things)
     before = snapshot_of(things, contents=contents)
     after = snapshot_of(moved(things, *ends), contents=contents, time_ns=FRAME_NS)
-    size = {"width": 203, "height": 151}
-    now = camera_at(Pose.from_rpy_deg((0.0, 0.05, 0.0), (1, 2, 3)), **size)
-    return before, after, camera_at(**size), now
+    now = camera_at(Pose.from_rpy_deg((0.0, 0.05, 0.0), (1, 2, 3)), width=203, height=151)
+    return before, after, camera_at(width=203, height=151), now

@@ -10,6 +10,7 @@ import aiohttp
 import numpy as np
 import pytest
 
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import AddressInUse, InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import light_named
@@ -65,7 +66,9 @@ def test_who_shows_nothing_holds_nobody_up(server: ViewerServer, simulation: Sim
             await stalled.ask("select", object=0)
             assert len(stalled.heads) == IN_FLIGHT
             await stalled.socket.send_json({"do": "shown", "number": 1})
-            assert (await stalled.frame())["number"] == IN_FLIGHT + 1
+            head = await stalled.frame()
+            assert head["number"] == IN_FLIGHT + 1
+            assert head["dropped"] > 0
 
     asyncio.run(look())
 
@@ -281,7 +284,7 @@ def test_hostile_messages_are_answered_in_words(
 
     asyncio.run(send())
     assert simulation.info.scene == before
-    assert "fault" not in caplog.text
+    assert "internal error" not in caplog.text
 
 
 def test_bytes_floods_and_giants_end_a_conversation(server: ViewerServer) -> None:
@@ -316,6 +319,33 @@ async def closing_code(client: ViewerSocket) -> int | None:
     ):
         pass
     return client.socket.close_code
+
+
+def test_who_does_not_answer_is_gone(
+    simulation: Simulation, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As one whose machine was switched off; the debug agent goes with it."""
+
+    async def fall_silent(server: ViewerServer) -> None:
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(
+                server.url + "socket",
+                headers={"Origin": server.url.rstrip("/")},
+                autoping=False,
+            ) as socket,
+        ):
+            await socket.send_json({"do": "watch", "agent": "debug_agent", "views": ["rgb"]})
+            await asyncio.to_thread(until, lambda: server.clients, "it to be greeted")
+            await asyncio.to_thread(until, lambda: "debug_agent" in agents_of(simulation), "it")
+            await asyncio.to_thread(until, lambda: not server.clients, "its end", 10.0)
+
+    limits = ViewerLimits(silent_s=0.5)
+    with ViewerServer(simulation, port=0, limits=limits) as server:
+        server.set_intrinsics(CameraIntrinsics(width=160, height=120))
+        asyncio.run(fall_silent(server))
+        until(lambda: "debug_agent" not in agents_of(simulation), "the debug agent to go")
+    assert "a viewer is disconnected: it does not answer" in caplog.text
 
 
 def test_other_sites_and_too_many_are_refused(simulation: Simulation) -> None:

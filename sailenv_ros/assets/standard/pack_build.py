@@ -1,7 +1,8 @@
 """Building the standard pack: recipe and fetched sources in, a pack in the user's cache out.
 
 Idempotent: a pack that was built from the same recipe, code and sources is left as it is. What is
-damaged of it is made anew, and the rest of it kept.
+damaged or missing of it is made, and the rest of it kept. Some objects can be built before others:
+the pack names those that are missing then.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import multiprocessing
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import lru_cache
 from importlib import metadata
@@ -31,7 +32,7 @@ from sailenv_ros.assets.standard.catalogues import LICENCES, Catalogues
 from sailenv_ros.assets.standard.fetch import fetched
 from sailenv_ros.assets.standard.prepare import prepare
 from sailenv_ros.assets.standard.recipe import Recipe, standard_recipe
-from sailenv_ros.errors import AssetError
+from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.extras import need
 from sailenv_ros.system.files import (
     UNFINISHED,
@@ -64,10 +65,21 @@ BUILD_S = 3600.0
 """How long another process may take to build the pack [s]."""
 
 
-def is_current(folder: Path | None = None) -> bool:
-    """Return whether the pack is whole and was made as it would be made now."""
+def is_current(folder: Path | None = None, *, names: Collection[str] | None = None) -> bool:
+    """Return whether the pack is undamaged and was made as it would be made now.
+
+    Parameters
+    ----------
+    folder : Path or None
+        None means the standard pack's.
+    names : collection of str or None
+        Objects that have to be in it; None means all.
+    """
     folder = standard_pack_folder() if folder is None else folder
-    return _is_of_now(folder) and not damaged_files(folder)
+    if not _is_of_now(folder) or damaged_files(folder):
+        return False
+    pack = AssetPack(folder)
+    return not pack.content.missing if names is None else set(names) <= set(pack.entries)
 
 
 def damaged_files(folder: Path | None = None) -> Mapping[str, str]:
@@ -97,6 +109,7 @@ def build_standard_pack(
     say: Callable[[str], None] = lambda _: None,
     jobs: int | None = None,
     force: bool = False,
+    names: Collection[str] | None = None,
 ) -> Path:
     """Build the pack, unless it is there and whole; return its folder.
 
@@ -110,9 +123,14 @@ def build_standard_pack(
         Processes at work; None takes one for each core.
     force : bool
         Build it even if it is there.
+    names : collection of str or None
+        Objects to build now, besides those that are there; the others are missing until the next
+        call. None means all.
 
     Raises
     ------
+    UnknownName
+        If the pack has no object of a name.
     AssetError
         If the sources are not to be had, or an object cannot be made. Nothing is changed then.
     MissingPackage
@@ -124,8 +142,12 @@ def build_standard_pack(
     """
     for package in _OPTIONAL:
         need(package, _PURPOSE)  # now, and not after minutes of work
+    assets = standard_recipe().assets
+    for name in names or ():
+        if name not in assets:
+            raise UnknownName("object of the standard pack", name, assets)
     folder = standard_pack_folder()
-    if is_current(folder) and not force:
+    if is_current(folder, names=names) and not force:
         return folder
 
     def tell() -> None:
@@ -140,13 +162,20 @@ def build_standard_pack(
             waiting=tell,
         ),
     ):
-        if force or not is_current(folder):  # another process may have built it meanwhile
-            _build(folder, progress=progress, say=say, jobs=jobs, force=force)
+        # Another process may have built it meanwhile.
+        if force or not is_current(folder, names=names):
+            _build(folder, progress=progress, say=say, jobs=jobs, force=force, names=names)
     return folder
 
 
 def _build(
-    folder: Path, *, progress: Progress, say: Callable[[str], None], jobs: int | None, force: bool
+    folder: Path,
+    *,
+    progress: Progress,
+    say: Callable[[str], None],
+    jobs: int | None,
+    force: bool,
+    names: Collection[str] | None,
 ) -> None:
     recipe = standard_recipe()
     kept = {} if force else _intact_entries(folder)
@@ -159,15 +188,19 @@ def _build(
     with replaced_folder(folder) as scratch:
         for entry in kept.values():
             shutil.copyfile(folder / entry.file, scratch / entry.file)
-        entries = _objects(recipe, furniture, scratch, kept, progress, jobs)
+        wanted = [
+            name for name in recipe.assets if name not in kept and (names is None or name in names)
+        ]
+        entries = {**kept, **_objects(wanted, furniture, scratch, progress, jobs)}
         _keep_skies(skies, scratch)
         _keep_credits(furniture, recipe, scratch)
         content = PackContent(
             version=1,
             title=recipe.title,
             fingerprint=_fingerprint(),
-            assets=tuple(entries[name] for name in recipe.assets),
+            assets=tuple(entries[name] for name in recipe.assets if name in entries),
             files=_other_files(scratch),
+            missing=tuple(name for name in recipe.assets if name not in entries),
         )
         write_content(scratch, content)
 
@@ -196,16 +229,10 @@ def _other_files(scratch: Path) -> dict[str, str]:
 
 
 def _objects(
-    recipe: Recipe,
-    furniture: Path,
-    scratch: Path,
-    kept: Mapping[str, PackEntry],
-    progress: Progress,
-    jobs: int | None,
+    wanted: Sequence[str], furniture: Path, scratch: Path, progress: Progress, jobs: int | None
 ) -> Mapping[str, PackEntry]:
-    """Make every object that is not kept; return all entries by name."""
-    wanted = [name for name in recipe.assets if name not in kept]
-    entries = dict(kept)
+    """Make objects; return their entries by name."""
+    entries: dict[str, PackEntry] = {}
     if not wanted:
         return entries
     # Spawned, because forking a process with threads of GL or DDS may hang.
@@ -221,7 +248,7 @@ def _objects(
         try:
             for done in as_completed(waiting):
                 entries[waiting[done]] = done.result()
-                progress(waiting[done], len(entries), len(recipe.assets))
+                progress(waiting[done], len(entries), len(wanted))
         except BaseException:
             pool.shutdown(wait=True, cancel_futures=True)
             raise

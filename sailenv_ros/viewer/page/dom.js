@@ -68,7 +68,7 @@ export function toast(words, kind = "note") {
   const holder = $("toasts");
   holder.append(note);
   while (holder.children.length > 4) holder.firstChild.remove();
-  setTimeout(() => note.remove(), kind === "fault" ? 8000 : 4000);
+  setTimeout(() => note.remove(), kind === "error" ? 8000 : 4000);
 }
 
 /** Call `send(value)` for the newest value only, one at a time: for sliders and mice. */
@@ -82,8 +82,8 @@ export function latest(send) {
       waiting = null;
       try {
         await send(value);
-      } catch (fault) {
-        toast(fault.message, "fault");
+      } catch (error) {
+        toast(error.message, "error");
       }
     }
     busy = false;

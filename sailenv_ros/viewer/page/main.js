@@ -73,8 +73,8 @@ class App {
   async try(what, values = {}) {
     try {
       return await this.ask(what, values);
-    } catch (fault) {
-      toast(fault.message, "fault");
+    } catch (error) {
+      toast(error.message, "error");
       return undefined;
     }
   }
@@ -124,10 +124,11 @@ class App {
   #counted(stats) {
     $("clock").textContent = `${fixed(stats.time_s)} s`;
     $("pace").textContent = `× ${fixed(stats.real_time_factor)}`;
+    $("building").textContent = stats.building;
   }
 
   #lost(why) {
-    toast(`No more pictures of ${this.agent}: ${why}`, "fault");
+    toast(`No more pictures of ${this.agent}: ${why}`, "error");
     if (!this.ownAgent) {
       this.agent = this.hello.debug_agent;
       this.#watch();

@@ -55,9 +55,9 @@ export class PicturePanel {
     const newest = latest(async ([agent, value]) => {
       try {
         await this.app.ask("set_picture", { agent, changes: { [name]: value } });
-      } catch (fault) {
+      } catch (error) {
         this.update(this.app.scene); // what was refused is not shown as if it were so
-        throw fault;
+        throw error;
       }
     });
     const send = (value) => newest([this.app.agent, value]);

@@ -67,9 +67,9 @@ export class Walker {
     mover.controller = before === "waypoint" ? "rigidbody" : "waypoint";
     try {
       await this.app.ask("set_controller", { mover: mover.name, controller: mover.controller });
-    } catch (fault) {
+    } catch (error) {
       mover.controller = before;
-      toast(fault.message, "fault");
+      toast(error.message, "error");
     }
     $("stage").focus();
   }

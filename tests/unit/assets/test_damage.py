@@ -12,15 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.checksums import damaged_by_manifest, write_manifest
 from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.skies import load_sky, sky_files
+from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.assets.standard import pack_build as build
 from sailenv_ros.assets.standard.fetch import fetched, kept_folder
 from sailenv_ros.assets.standard.recipe import Recipe, standard_recipe
 from sailenv_ros.cli.main import main
-from sailenv_ros.errors import AssetError
+from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.system.files import UNFINISHED
 from tests.support.waiting import until
 
@@ -97,6 +99,29 @@ def test_damaged_objects_are_found_and_made_anew(
     assert made == ["fork_01"]
     assert {path: path.read_bytes() for path in (file, sky)} == whole
     assert build.is_current()
+
+
+def test_some_objects_can_be_built_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The others are known and missing until the rest is built; what was built first stays."""
+    use(tmp_path / "cache", monkeypatch)
+    with pytest.raises(UnknownName, match="no_fork"):
+        build.build_standard_pack(jobs=1, names=["no_fork"])
+    build.build_standard_pack(jobs=1, names=["fork_01"])
+    folder = standard_pack_folder()
+    assert AssetPack(folder).content.missing == ("spoon_01",)
+    assert build.is_current(names=["fork_01"])
+    assert not build.is_current()
+    library = AssetLibrary(installed_sources())
+    fork = library.get("fork_01")
+    with pytest.raises(AssetError, match="has not been built on this machine yet"):
+        library.get("spoon_01")
+    made: list[str] = []
+    build.build_standard_pack(progress=lambda name, *_: made.append(name), jobs=1)
+    assert made == ["spoon_01"]
+    assert build.is_current()
+    library.renew(installed_sources())
+    assert library.get("spoon_01").name == "spoon_01"
+    assert library.get("fork_01") is fork
 
 
 def test_an_empty_object_is_not_up_to_date(pack: Path) -> None:

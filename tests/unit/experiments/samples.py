@@ -67,7 +67,7 @@ DATA: dict[str, dict[str, Any]] = {
             {"label": "base", "transport": "in process", **CASE, **FIGURES},
             {"label": "over DDS", "transport": "DDS, default", **CASE, "problem": "no ROS"},
         ],
-        "peers": [
+        "baselines": [
             {"label": "sailenv_ros", "size": "64×48", "ours": True, "draws": "all",
              "frame": summary_ms([0.01]), "ratio": 1.0, "problem": None},
             {"label": "MuJoCo", "size": "64×48", "ours": False, "draws": "all", "frame": None,

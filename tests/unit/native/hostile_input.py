@@ -26,6 +26,7 @@ from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.picture_kernels import make_picture
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
+from sailenv_ros.native.sensor import gather_light
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.render.ambient_occlusion import PATTERN
 from tests.support.hostile_scenes import hostile_scenes
@@ -176,6 +177,16 @@ def drive_light_maps() -> None:
         blur_directions(light, light, np.full((5, 4), numbers, np.float32), light, threads=2)
 
 
+def drive_sensor() -> None:
+    """Light of any numbers, pictures of one pixel and more."""
+    rng = np.random.default_rng(4)
+    normal = np.zeros(65536, np.float32)
+    for shape in ((1, 1), (3, 5), (64, 65), (0, 4)):
+        halves = rng.choice(np.array([0.0, 1e-7, 6e4, np.inf, np.nan], np.float16), (*shape, 4))
+        gather_light(halves, 0.5, np.nan, 1e38, -1, normal, threads=2)
+        gather_light(halves, 1.0, 0.0, 0.0, 0, None, threads=2)
+
+
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_annotate,
@@ -184,6 +195,7 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_client_views,
     drive_drawing,
     drive_light_maps,
+    drive_sensor,
 )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.native import ambient_visibility, annotation, picture_kernels, resolve
+from sailenv_ros.native import ambient_visibility, annotation, picture_kernels, resolve, sensor
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.pictures import frame_dict
@@ -183,6 +183,24 @@ def test_samples_are_resolved_as_the_definition_does(times: int, shaded: bool) -
 
 
 @pytest.mark.usefixtures("instruction_set")
+@pytest.mark.parametrize("size", [(48, 64), (37, 53), (1, 1), (2, 9)])
+@pytest.mark.parametrize("bloom", [0.0, 0.3])
+@pytest.mark.parametrize("noisy", [False, True])
+def test_light_is_gathered_as_the_definition_does(
+    size: tuple[int, int], bloom: float, noisy: bool
+) -> None:
+    """Bloom and noise, by themselves and together, on any number of threads."""
+    rng = np.random.default_rng(11)
+    radiance = rng.exponential(1.0, (*size, 4)).astype(np.float16)
+    radiance[0, 0, 0] = 60000.0
+    normal = rng.normal(size=65536).astype(np.float32) if noisy else None
+    given = radiance, bloom, 1.0 / 300.0, 1e-4, -(2**62) + 12345, normal
+    expected = reference.gather_light(*given, threads=1)
+    for threads in (1, 3):
+        got = sensor.gather_light(*given, threads=threads)
+        np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
+
+
 def test_the_clients_arrays_are_those_that_numpy_makes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Grey depth, colours of instances, and flow that is 0 where there is none."""
     rng = np.random.default_rng(5)

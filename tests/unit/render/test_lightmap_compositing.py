@@ -29,7 +29,7 @@ def test_a_lamp_counts_by_colour_and_strength_its_bounces_by_their_multiplier(
     composited = composite_lightmap(light, [lamp], Environment())
     power = np.asarray(colour) * intensity
     expected = power * (0.25 + indirect * np.array([0.5, 0.25, 0.125]))
-    np.testing.assert_allclose(composited.texels[3, 4, :3], expected, rtol=2e-3, atol=1e-6)
+    np.testing.assert_allclose(composited.texels()[3, 4, :3], expected, rtol=2e-3, atol=1e-6)
     np.testing.assert_allclose(composited.probes[1, 1, 1, 2], 0.5 * power, rtol=1e-5, atol=1e-6)
     assert not composited.live
 
@@ -38,7 +38,7 @@ def test_the_main_light_s_direct_part_is_left_to_the_renderer() -> None:
     """It adds its bounces alone; its shadows travel in the fourth channel."""
     sun = layer(SUN, direct=0.7, bounced=0.125, visible=0.5)
     composited = composite_lightmap(baked({}, [sun]), [SUN], Environment())
-    np.testing.assert_allclose(composited.texels[0, 0], [0.25, 0.25, 0.25, 0.5], atol=3e-3)
+    np.testing.assert_allclose(composited.texels()[0, 0], [0.25, 0.25, 0.25, 0.5], atol=3e-3)
     assert composited.main_baked
 
 
@@ -47,7 +47,7 @@ def test_a_weaker_sun_is_mixed_in_whole() -> None:
     weak = replace(SUN, name="sky light", intensity=1.0)
     layers = [layer(SUN, direct=0.7, visible=1.0), layer(weak, direct=0.25, visible=1.0)]
     composited = composite_lightmap(baked({}, layers), [SUN, weak], Environment())
-    np.testing.assert_allclose(composited.texels[0, 0, :3], 0.25, rtol=1e-3)
+    np.testing.assert_allclose(composited.texels()[0, 0, :3], 0.25, rtol=1e-3)
 
 
 def test_a_light_that_was_moved_is_live_again() -> None:
@@ -57,7 +57,7 @@ def test_a_light_that_was_moved_is_live_again() -> None:
         baked({}, [layer(LAMP, direct=1.0, bounced=1.0)]), [moved], Environment()
     )
     assert composited.live == (moved,)
-    assert not composited.texels[..., :3].any()
+    assert not composited.texels()[..., :3].any()
 
 
 def test_a_sun_that_was_turned_has_no_baked_shadows() -> None:
@@ -68,7 +68,7 @@ def test_a_sun_that_was_turned_has_no_baked_shadows() -> None:
     )
     assert not composited.main_baked
     assert composited.live == ()
-    assert (composited.texels[..., 3] == 1.0).all()
+    assert (composited.texels()[..., 3] == 1.0).all()
 
 
 def test_a_light_that_was_removed_is_gone() -> None:
@@ -76,20 +76,20 @@ def test_a_light_that_was_removed_is_gone() -> None:
     composited = composite_lightmap(
         baked({}, [layer(LAMP, direct=1.0, bounced=1.0)]), [], Environment()
     )
-    assert not composited.texels[..., :3].any()
+    assert not composited.texels()[..., :3].any()
 
 
 def test_ambient_light_counts_as_far_as_it_was_changed() -> None:
     """The scene's own ambient light stands in for bounces, which are baked."""
     of_scene = Environment(ambient=(0.5, 0.5, 0.5))
     light = replace(baked({}, [], layer(None, bounced=0.25)), environment=of_scene)
-    np.testing.assert_allclose(composite_lightmap(light, [], of_scene).texels[0, 0, :3], 0.25)
+    np.testing.assert_allclose(composite_lightmap(light, [], of_scene).texels()[0, 0, :3], 0.25)
     brighter = Environment(ambient=(0.75, 0.5, 0.5))
     np.testing.assert_allclose(
-        composite_lightmap(light, [], brighter).texels[0, 0, :3], [0.5, 0.25, 0.25]
+        composite_lightmap(light, [], brighter).texels()[0, 0, :3], [0.5, 0.25, 0.25]
     )
     dark = Environment(ambient=(0.0, 0.0, 0.0))
-    assert composite_lightmap(light, [], dark).texels.min() == 0.0
+    assert composite_lightmap(light, [], dark).texels().min() == 0.0
 
 
 def test_the_sky_s_light_follows_the_sky() -> None:
@@ -98,7 +98,7 @@ def test_the_sky_s_light_follows_the_sky() -> None:
     light = replace(baked({}, [], layer(None, bounced=0.25)), environment=plain)
     red = Environment(sky_zenith=(1.0, 0.5, 0.5), sky_horizon=(1.0, 0.5, 0.5))
     np.testing.assert_allclose(
-        composite_lightmap(light, [], red).texels[0, 0, :3], [0.5, 0.25, 0.25]
+        composite_lightmap(light, [], red).texels()[0, 0, :3], [0.5, 0.25, 0.25]
     )
 
 

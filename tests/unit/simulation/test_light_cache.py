@@ -95,7 +95,7 @@ def test_a_stamp_changes_with_the_file(cell: Path) -> None:
 def test_the_command_bakes_once(
     cell: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The second time it says that the light is there; `run` then bakes nothing either."""
+    """The second time it says that the light is there; `setup` then bakes nothing either."""
     times: list[str] = []
 
     def fake(library: object, scene: str) -> BakedLight:
@@ -103,10 +103,10 @@ def test_the_command_bakes_once(
         return quick_bake(SceneLibrary(), cell)
 
     monkeypatch.setattr(scene_bake, "_with_a_bar", fake)
-    scene_bake.bake_before_running(str(cell), [], allow_modules=False)
+    assert scene_bake.ensure_baked(str(cell), allow_modules=False)
     assert main(["scene", "bake", str(cell)]) == 0
     assert "baked already" in capsys.readouterr().out
-    scene_bake.bake_before_running(str(cell), [], allow_modules=False)
+    assert not scene_bake.ensure_baked(str(cell), allow_modules=False)
     assert len(times) == 1
     assert main(["scene", "bake", "--force", str(cell)]) == 0
     assert "MB" in capsys.readouterr().out

@@ -210,4 +210,4 @@ def test_a_fault_of_the_engine_ends_it_with_the_reason(
         drain()
     with pytest.raises(SimulationClosed, match="the world came apart"):
         simulation.get_agent_pose(agent="eye")
-    assert "the simulation ends because of a fault" in caplog.text
+    assert "the simulation ends because of an internal error" in caplog.text

@@ -17,7 +17,7 @@ ELSEWHERE = AccessControl(loopback=False, token="abc123")
 )
 def test_names_of_this_machine_are_accepted_on_any_port(host: str) -> None:
     """The page may come through a tunnel, from another port."""
-    assert HERE.fault_of_request({"Host": host}) == ""
+    assert HERE.refusal_of_request({"Host": host}) == ""
 
 
 @pytest.mark.parametrize(
@@ -25,22 +25,22 @@ def test_names_of_this_machine_are_accepted_on_any_port(host: str) -> None:
 )
 def test_another_host_is_refused_on_loopback(host: str) -> None:
     """A name that was rebound to this machine's address gives itself away."""
-    assert "not this machine's" in HERE.fault_of_request({"Host": host})
+    assert "not this machine's" in HERE.refusal_of_request({"Host": host})
 
 
 def test_a_socket_of_another_site_is_refused() -> None:
     """Only the page that came from the same host and port may open a socket."""
     host = {"Host": "localhost:8090"}
-    assert HERE.fault_of_socket({**host, "Origin": "http://localhost:8090"}, "") == ""
+    assert HERE.refusal_of_socket({**host, "Origin": "http://localhost:8090"}, "") == ""
     for origin in ("http://evil.example", "http://localhost:3000", "null", "file://", ""):
-        assert "origin" in HERE.fault_of_socket({**host, "Origin": origin}, "")
-    assert "origin" in HERE.fault_of_socket(host, "")
+        assert "origin" in HERE.refusal_of_socket({**host, "Origin": origin}, "")
+    assert "origin" in HERE.refusal_of_socket(host, "")
 
 
 @given(st.text())
 def test_no_other_token_opens_the_page_from_elsewhere(token: str) -> None:
     """Whatever is tried, only the token that was printed is accepted."""
-    assert (ELSEWHERE.fault_of_token(token) == "") == (token == "abc123")
+    assert (ELSEWHERE.refusal_of_token(token) == "") == (token == "abc123")
 
 
 def test_which_addresses_are_of_this_machine_alone() -> None:

@@ -17,7 +17,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import Instance
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.viewer.encoding import outline, packed_frame, view_png, views_to_json
+from sailenv_ros.viewer.encoding import FrameMessages, outline, view_png, views_to_json
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from tests.support.tiny_scenes import CATEGORIES
 
@@ -134,17 +134,12 @@ def test_a_message_holds_what_it_says() -> None:
     views["instance"][:3] = 0
     views["category"][:3] = 9
     frame = frame_of(**views)
-    message = packed_frame(
-        frame,
-        ("rgb", "category"),
-        number=4,
-        categories=CATEGORIES,
-        depth_range_m=10.0,
-        selected=300,
-    )
+    messages = FrameMessages(frame, categories=CATEGORIES, depth_range_m=10.0)
+    message = messages.message(("rgb", "category"), number=4, selected=300, dropped=2)
     size = int.from_bytes(message[:4], "little")
     head = json.loads(message[4 : 4 + size])
     assert (head["number"], head["sequence"], head["time_s"]) == (4, 7, 1.5)
+    assert head["dropped"] == 2
     assert head["visible"] == [[300, WIDTH * (HEIGHT - 3)]]
     assert head["outline"] == [[0, 3, 0, 8, 11, 8, 11, 3]]
     at = 4 + size
@@ -161,7 +156,7 @@ def test_a_message_holds_what_it_says() -> None:
 
 
 def test_a_picture_is_made_once_for_all_clients(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The second client of a frame is sent the same bytes; another frame has its own."""
+    """The second client of a frame is sent the same pictures."""
     made: list[str] = []
 
     def counted(view: str, *rest: Any, **settings: Any) -> Any:
@@ -169,13 +164,12 @@ def test_a_picture_is_made_once_for_all_clients(monkeypatch: pytest.MonkeyPatch)
         return view_picture(view, *rest, **settings)
 
     monkeypatch.setattr("sailenv_ros.viewer.encoding.view_picture", counted)
-    settings: dict[str, Any] = {"number": 1, "categories": CATEGORIES, "depth_range_m": 10.0}
     frame = frame_of(**numbered_views())
-    first = packed_frame(frame, ("rgb", "depth"), **settings)
-    assert packed_frame(frame, ("rgb", "depth"), **settings) == first
+    messages = FrameMessages(frame, categories=CATEGORIES, depth_range_m=10.0)
+    first = messages.message(("rgb", "depth"), number=1)
+    assert messages.message(("rgb", "depth"), number=1) == first
+    assert len(messages.message(("depth",), number=1)) < len(first)
     assert made == ["rgb", "depth"]
-    packed_frame(frame_of(**numbered_views()), ("depth",), **settings)
-    assert made == ["rgb", "depth", "depth"]
 
 
 def test_a_screenshot_loses_nothing() -> None:

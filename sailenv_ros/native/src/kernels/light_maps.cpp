@@ -1,68 +1,16 @@
 // Light maps and reflection maps, brought up to date when lights change.
 #include "../abi.h"
 #include "../threads.h"
-#include "lanes.h"
+#include "layer_sum.h"
 #include "texture.h"
 
-namespace {
-
-// Three numbers, over and over: of eight texels with three channels each.
-struct Pattern {
-    f8 part[3];
-};
-
-LANES_INLINE Pattern repeated(const float* c) {
-    return {{f8{c[0], c[1], c[2], c[0], c[1], c[2], c[0], c[1]},
-             f8{c[2], c[0], c[1], c[2], c[0], c[1], c[2], c[0]},
-             f8{c[1], c[2], c[0], c[1], c[2], c[0], c[1], c[2]}}};
-}
-
-}  // namespace
-
-// The sum of layers of a light map, in the order of lightmap_compositing.sum_texels. `count` is a
-// multiple of eight; `layers` holds the addresses of (count, 3) or (count,) halves.
-SAILENV_KERNEL(sum_texels)
-(int64_t threads, int64_t count, int64_t terms, const uint16_t* const* layers,
- const int32_t* channels, const float* factors, const float* more, const uint8_t* shown,
- uint16_t* out) {
-    if (count < 0 || count % 8 != 0 || terms < 1 || terms > 256 || channels[0] != 3) {
+// The sum of layers of a light map, in the order of lightmap_compositing.sum_texels.
+SAILENV_KERNEL(sum_texels)(int64_t threads, const sailenv::LayerSum* sum) {
+    if (sum->count < 0 || sum->count % 8 != 0 || sum->terms < 1 || sum->channels[0] != 3) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
-    const Pattern offset = repeated(more);
-    sailenv::parallel_for(threads, count, 8192, [&](int64_t first, int64_t last, int64_t) {
-        for (int64_t at = first; at < last; at += 8) {
-            f8 sum[3] = {offset.part[0], offset.part[1], offset.part[2]};
-            for (int64_t t = 0; t < terms; t++) {
-                const Pattern factor = repeated(factors + 3 * t);
-                f8 value[3];
-                if (channels[t] == 3) {
-                    for (int k = 0; k < 3; k++) value[k] = load_halves(layers[t] + 3 * at + 8 * k);
-                } else {
-                    const f8 d = load_halves(layers[t] + at);
-                    value[0] = SHUFFLE(d, d, 0, 0, 0, 1, 1, 1, 2, 2);
-                    value[1] = SHUFFLE(d, d, 2, 3, 3, 3, 4, 4, 4, 5);
-                    value[2] = SHUFFLE(d, d, 5, 5, 6, 6, 6, 7, 7, 7);
-                }
-                for (int k = 0; k < 3; k++) {
-                    const f8 term = value[k] * factor.part[k];
-                    sum[k] = sum[k] + term;
-                }
-            }
-            alignas(32) int32_t colour[24];
-            for (int k = 0; k < 3; k++) {
-                store(colour + 8 * k, to_half(clamp8(sum[k], 0.0f, 65504.0f)));
-            }
-            f8 share;
-            for (int k = 0; k < 8; k++) share[k] = shown[at + k];
-            const i8 arriving = to_half(share * (1.0f / 255.0f));
-            uint16_t* texel = out + 4 * at;
-            for (int k = 0; k < 8; k++) {
-                for (int c = 0; c < 3; c++) {
-                    texel[4 * k + c] = static_cast<uint16_t>(colour[3 * k + c]);
-                }
-                texel[4 * k + 3] = static_cast<uint16_t>(arriving[k]);
-            }
-        }
+    sailenv::parallel_for(threads, sum->count, 8192, [&](int64_t first, int64_t last, int64_t) {
+        sailenv::add_layers(*sum, first, last);
     });
     return sailenv::STATUS_OK;
 }

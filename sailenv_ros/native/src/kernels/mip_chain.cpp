@@ -50,5 +50,6 @@ SAILENV_KERNEL(structure_sizes)(int64_t* sizes) {
     sizes[2] = sizeof(sailenv::Light);
     sizes[3] = sizeof(sailenv::View);
     sizes[4] = sizeof(sailenv::Outputs);
+    sizes[5] = sizeof(sailenv::LayerSum);
     return sailenv::STATUS_OK;
 }

@@ -276,7 +276,8 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
         for (int j = 0; j < 3; j++) t.vertex[j] = r.vertex[j][k];
         t.inverse_det = r.inverse_det[k];
         t.part = seen.part;
-        t.back = r.back[k];
+        t.back = static_cast<int16_t>(r.back[k]);
+        t.masked = PERSPECTIVE && (part.flags & PART_MASKED) ? 1 : 0;
         t.x0 = static_cast<int16_t>(r.x0[k]);
         t.x1 = static_cast<int16_t>(r.x1[k]);
         t.y0 = static_cast<int16_t>(r.y0[k]);
@@ -578,11 +579,16 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
         const Segment& segment = set.segments[static_cast<size_t>(s)];
         const uint32_t begin = segment.starts[static_cast<size_t>(band)];
         const uint32_t end = segment.starts[static_cast<size_t>(band) + 1];
+        const uint32_t* entries = segment.entries.data();
         for (uint32_t k = begin; k < end; k++) {
-            const uint32_t number = segment.entries[k];
+            const uint32_t number = entries[k];
+            const char* ahead = reinterpret_cast<const char*>(
+                set.triangles.data() + entries[k + 8 < end ? k + 8 : end - 1]);
+            __builtin_prefetch(ahead);
+            __builtin_prefetch(ahead + 64);
             const Triangle& t = set.triangles[number];
             const Part& part = parts.parts[t.part];
-            if (projection.perspective && (part.flags & PART_MASKED)) {
+            if (t.masked) {
                 draw_triangle<true>(t, number, part, projection, first_row, last_row, stride,
                                     visible, nearness);
             } else {

@@ -20,7 +20,8 @@ struct Triangle {
     float inverse_det;
     int32_t vertex[3];
     int32_t part;
-    int32_t back;  // 1: its back is seen
+    int16_t back;    // 1: its back is seen
+    int16_t masked;  // 1: its texture has holes
     int16_t x0, x1, y0, y1;
 };
 

@@ -80,6 +80,20 @@ struct ShadowMap {
     const float* nearness;  // (size, size + 8)
 };
 
+// A light map that is added up where it is looked at: texels from `LAYER_RUN` to `LAYER_RUN`, each
+// run when it is needed first. See kernels/layer_sum.h.
+struct LayerSum {
+    int64_t count;  // of texels, a multiple of eight
+    int64_t terms;
+    const uint16_t* const* layers;  // halves, (count, 3) or (count,)
+    const int32_t* channels;        // of each layer, 3 or 1
+    const float* factors;           // (terms, 24): three numbers, eight times
+    const float* more;              // (24,)
+    const uint8_t* shown;           // (count,)
+    uint16_t* texels;               // halves (count, 4): takes the sum
+    uint8_t* states;                // RunState of each run; zeros at first
+};
+
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
     float main_colour[3];
@@ -99,7 +113,7 @@ struct Light {
     const Lamp* lamps;
     int32_t baked;              // 1: what follows counts
     int32_t reflecting;         // 1: there is a reflection map
-    const uint16_t* light_map;  // halves (height, width, 4): irradiance / pi, share of main light
+    const LayerSum* light_map;  // (height, width): irradiance / pi, share of main light
     int32_t light_map_width, light_map_height;
     const float* instance_light;  // (ids, 3, 4): c0, cx, cy, cz of red, green, blue
     float main_baked, main_clear;

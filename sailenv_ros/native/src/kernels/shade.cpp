@@ -4,6 +4,7 @@
 // each quantity, and each stage goes over them eight at a time.
 #include "shade.h"
 
+#include "layer_sum.h"
 #include "texture.h"
 
 namespace sailenv {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int32_t CHUNK = 64;
 constexpr float PI = 3.14159265f;
+constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's size
 
 struct Chunk {
     int32_t x, y, count, padded;
@@ -95,7 +97,9 @@ void gather(const Shading& s, Chunk& c) {
         }
     }
     c.hit = c.missed = c.coloured = c.detailed = false;
-    const f8 nothing_there = {1, 0, 0, 0, 0, 0, 0, 1}, plain = {0, 0, 0, 0, 1, 0, 0, 0};
+    uint32_t whole = 0;  // groups of eight pixels that are filled in already
+    const f8 nothing_there = {1, 0, 0, 0, 0, 0, 0, 1}, plain = {0, 0, 0, 0, 1, 0, 0, 0},
+             no_maps = {0, 0, 0, 0, NO_MAP, 0, 0, 0};
     for (int32_t r = 0; r < runs; r++) {
         int32_t i = begins[r];
         const int32_t end = begins[r + 1];
@@ -104,7 +108,7 @@ void gather(const Shading& s, Chunk& c) {
             for (; i < end; i++) {
                 store(attributes + 8 * i, nothing_there);
                 store(material + 8 * i, plain);
-                store(maps + 8 * i, splat(0.0f));
+                store(maps + 8 * i, no_maps);
                 c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
                 c.id[i] = 0;
                 c.empty[i] = -1;
@@ -140,7 +144,7 @@ void gather(const Shading& s, Chunk& c) {
         const f8 look = {part.colour[0], part.colour[1], part.colour[2], t.nearness[0],
                          part.roughness, part.metallic,  part.emission,  t.nearness[1]};
         const bool coloured = part.colour_map != nullptr, detailed = part.detail_map != nullptr;
-        f8 map = splat(0.0f);
+        f8 map = no_maps;
         const uint32_t *colour_texels = WHITE_TEXELS, *detail_texels = WHITE_TEXELS;
         if (coloured || detailed) {
             const f8 at_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
@@ -148,7 +152,7 @@ void gather(const Shading& s, Chunk& c) {
                      object_x[4],
                      at_y[3],
                      at_y[4],
-                     coloured ? static_cast<float>(part.colour_map->log2_size) : 0.0f,
+                     coloured ? static_cast<float>(part.colour_map->log2_size) : NO_MAP,
                      detailed ? static_cast<float>(part.detail_map->log2_size) : 0.0f,
                      part.flags & PART_FINISH_MAP ? 1.0f : 0.0f,
                      part.flags & PART_NORMAL_MAP ? 1.0f : 0.0f};
@@ -159,6 +163,37 @@ void gather(const Shading& s, Chunk& c) {
         }
         const float offset = t.nearness[1] * y + t.nearness[2];
         for (; i < end; i++) {
+            if ((i & 7) == 0 && end - i >= 8) {
+                // Eight pixels of one triangle: each number at its place at once.
+                whole |= 1u << (i / 8);
+                const f8 xs = counting() + static_cast<float>(c.x + i);
+                const f8 depth = 1.0f / (t.nearness[0] * xs + offset);
+                float* const rows[8] = {c.nx, c.ny, c.nz, c.u, c.v, c.light_u, c.light_v, c.depth};
+                float* const looks[8] = {c.red,       c.green,    c.blue,     c.nearness_x,
+                                         c.roughness, c.metallic, c.emission, c.nearness_y};
+                for (int k = 0; k < 8; k++) {
+                    store(rows[k] + i, (at_x[k] * xs + at_0[k]) * depth + moved[k]);
+                    store(looks[k] + i, splat(look[k]));
+                }
+                store(c.colour_log2 + i, splat(map[4]));
+                store(c.detail_log2 + i, splat(map[5]));
+                store(c.finish + i, splat(map[6]));
+                store(c.relief + i, splat(map[7]));
+                if (coloured || detailed) {
+                    store(c.ux + i, splat(map[0]));
+                    store(c.vx + i, splat(map[1]));
+                    store(c.uy + i, splat(map[2]));
+                    store(c.vy + i, splat(map[3]));
+                }
+                store(c.id + i, splat(part.id));
+                store(c.empty + i, splat(0));
+                for (int k = 0; k < 8; k++) {
+                    c.colour_texels[i + k] = colour_texels;
+                    c.detail_texels[i + k] = detail_texels;
+                }
+                i += 7;
+                continue;
+            }
             const float x = static_cast<float>(c.x + i);
             const float depth = 1.0f / (t.nearness[0] * x + offset);
             store(attributes + 8 * i, (at_x * x + at_0) * depth + moved);
@@ -173,12 +208,13 @@ void gather(const Shading& s, Chunk& c) {
     for (int32_t i = c.count; i < c.padded; i++) {
         store(attributes + 8 * i, nothing_there);
         store(material + 8 * i, plain);
-        store(maps + 8 * i, splat(0.0f));
+        store(maps + 8 * i, no_maps);
         c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
         c.id[i] = 0;
         c.empty[i] = -1;
     }
     for (int32_t i = 0; i < c.padded; i += 8) {
+        if (whole >> (i / 8) & 1) continue;
         f8 r[8];
         for (int k = 0; k < 8; k++) r[k] = load(attributes + 8 * (i + k));
         transpose(r);
@@ -273,28 +309,31 @@ LANES_INLINE void store_taps(TapRows& rows, int32_t i, const Taps& taps) {
 }
 
 void colour(Chunk& c) {
-    TapRows fine, coarse;
-    alignas(32) float share[CHUNK];
-    for (int32_t i = 0; i < c.padded; i += 8) {
-        const Slopes d = uv_slopes(c, i);
-        const i8 size = truncated(load(c.colour_log2 + i));
-        const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.0f);
-        const i8 whole = truncated(level);
-        const i8 next = whole < size ? whole + 1 : whole;
-        const f8 u = load(c.u + i), v = load(c.v + i);
-        store_taps(fine, i, texture_taps(u, v, size, whole));
-        store_taps(coarse, i, texture_taps(u, v, size, next));
-        store(share + i, level - as_float(whole));
-    }
     alignas(32) float texels[4 * 8];
     for (int32_t i = 0; i < c.padded; i += 8) {
-        for (int k = 0; k < 8; k++) {
-            const int32_t at = i + k;
-            const f4 near = sample_bytes(c.colour_texels[at], fine.upper[at], fine.lower[at],
-                                         fine.across[at], fine.down[at]);
-            const f4 far = sample_bytes(c.colour_texels[at], coarse.upper[at], coarse.lower[at],
-                                        coarse.across[at], coarse.down[at]);
-            *reinterpret_cast<f4_any*>(texels + 4 * k) = near + (far - near) * share[at];
+        const f8 log2 = load(c.colour_log2 + i);
+        if (!any(log2 >= 0.0f)) continue;
+        const i8 size = truncated(max8(log2, splat(0.0f)));
+        const Slopes d = uv_slopes(c, i);
+        const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.0f);
+        const i8 whole = truncated(level);
+        const f8 u = load(c.u + i), v = load(c.v + i), share = level - as_float(whole);
+        const Taps fine = texture_taps(u, v, size, whole);
+        const uint32_t* const* maps = c.colour_texels + i;
+        if (any(share > 0.0f)) {
+            const Taps coarse = texture_taps(u, v, size, whole < size ? whole + 1 : whole);
+            for (int k = 0; k < 8; k++) {
+                const f4 near = sample_bytes(maps[k], fine.upper[k], fine.lower[k], fine.across[k],
+                                             fine.down[k]);
+                const f4 far = sample_bytes(maps[k], coarse.upper[k], coarse.lower[k],
+                                            coarse.across[k], coarse.down[k]);
+                *reinterpret_cast<f4_any*>(texels + 4 * k) = near + (far - near) * share[k];
+            }
+        } else {
+            for (int k = 0; k < 8; k++) {
+                *reinterpret_cast<f4_any*>(texels + 4 * k) = sample_bytes(
+                    maps[k], fine.upper[k], fine.lower[k], fine.across[k], fine.down[k]);
+            }
         }
         f8 r, g, b, a;
         transpose4(texels, r, g, b, a);
@@ -447,13 +486,15 @@ void baked_light(const Shading& s, Chunk& c) {
         store(down + i, y - as_float(iy));
         store(at + i, iy * width + ix);
     }
+    const LayerSum& map = *light.light_map;
+    for (int32_t i = 0; i < c.padded; i += 8) need_texels(map, at + i, width);
     const float* main = light.main_towards;
     const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
     const int64_t row = 4 * static_cast<int64_t>(width);
     alignas(32) float texels[4 * 8];
     for (int32_t i = 0; i < c.padded; i += 8) {
         for (int k = 0; k < 8; k++) {
-            const uint16_t* p = light.light_map + 4 * static_cast<int64_t>(at[i + k]);
+            const uint16_t* p = map.texels + 4 * static_cast<int64_t>(at[i + k]);
             *reinterpret_cast<f4_any*>(texels + 4 * k) =
                 sample_halves(p, p + row, across[i + k], down[i + k]);
         }
@@ -788,11 +829,27 @@ void place_points(const Shading& s, Chunk& c) {
     }
 }
 
+// The same as `write_surface`, of a chunk that was gathered.
+void write_gathered_surface(const Shading& s, const Chunk& c) {
+    float* out = s.outputs->surface + 2 * (c.y * s.width + c.x);
+    alignas(32) float pairs[2 * CHUNK];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 id = as_float(load(c.id + i));
+        const f8 depth = load(c.empty + i) ? splat(__builtin_inff()) : load(c.depth + i);
+        store(pairs + 2 * i, SHUFFLE(depth, id, 0, 8, 1, 9, 2, 10, 3, 11));
+        store(pairs + 2 * i + 8, SHUFFLE(depth, id, 4, 12, 5, 13, 6, 14, 7, 15));
+    }
+    memcpy(out, pairs, static_cast<size_t>(c.count) * 8);
+}
+
 void shade_chunk(const Shading& s, Chunk& c) {
-    if (s.outputs->surface != nullptr) write_surface(s, c.x, c.y, c.count);
     const Outputs& wanted = *s.outputs;
-    if (!wanted.radiance && !wanted.normals && !wanted.albedo) return;
+    if (!wanted.radiance && !wanted.normals && !wanted.albedo) {
+        if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
+        return;
+    }
     gather(s, c);
+    if (wanted.surface != nullptr) write_gathered_surface(s, c);
     set_rays(s, c);
     if (wanted.normals != nullptr) write_normals(s, c);
     if (wanted.albedo != nullptr) write_albedo(s, c);

@@ -1,4 +1,4 @@
-"""Companions of an agent's image topics: pictures for RViz and rqt, compressed images.
+"""Topics derived from an agent's image topics: pictures for RViz and rqt, compressed images.
 
 `Frame` → `<view>/color` (rgb8 pictures of numbers and ids) and `<view>/compressed` (jpeg of the
 picture, lossless png of ids), each made only while somebody subscribes. Knows no simulation.
@@ -22,12 +22,12 @@ from sailenv_ros.frame import VIEWS, Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 
-__all__ = ["Companions", "compressed_view"]
+__all__ = ["DerivedTopics", "compressed_view"]
 
 JPEG_QUALITY = 90
 
 
-class Companions:
+class DerivedTopics:
     """Publishes what people look at.
 
     Parameters
@@ -35,7 +35,7 @@ class Companions:
     make_publisher : callable
         ``make_publisher(kind, topic)`` makes a publisher below the agent's name.
     views : iterable of str
-        Views that the renderer can make; `VIEWS` says which companions each of them has.
+        Views that the renderer can make; `VIEWS` says which topics are derived from each.
     depth_range_m : float
         Depth that is shown as black [m].
     categories : callable
@@ -70,7 +70,7 @@ class Companions:
         return (*self._colour.values(), *self._compressed.values())
 
     def wanted_views(self) -> frozenset[str]:
-        """Return the views that somebody subscribes to a companion of."""
+        """Return the views that somebody subscribes to a derived topic of."""
         topics = (*self._colour.items(), *self._compressed.items())
         return frozenset(view for view, topic in topics if topic.get_subscription_count())
 

@@ -21,7 +21,7 @@ from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
-NAMESPACE = "/companions"
+NAMESPACE = "/derived"
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def test_compressed_ids_are_lossless_and_pictures_nearly(probe: Probe) -> None:
 
 
 def test_nothing_is_made_that_nobody_looks_at(probe: Probe) -> None:
-    """With a companion alone subscribed to, a capture sends no image of its view."""
+    """With a derived topic alone subscribed to, a capture sends no image of its view."""
     heard = probe.listen(Image, "agent/flow/color")
     until(lambda: heard.messages, "a picture")
     answer = probe.done(Capture, "agent/capture", Capture.Request(views=["flow"]))
@@ -118,14 +118,14 @@ def test_diagnostics_tell_rates_times_and_renderer(probe: Probe) -> None:
         return {s.name: s for message in heard.messages[-1:] for s in message.status}
 
     def streams() -> bool:
-        agent = statuses().get("companions: agent agent")
+        agent = statuses().get("derived: agent agent")
         return agent is not None and float(values_of(agent)["frames per second"]) > 1.0
 
     until(lambda: images.messages, "a frame", 20.0)
     heard.messages.clear()  # what was told before may be of the test before
     until(streams, "diagnostics of frames", 20.0)
-    agent = values_of(statuses()["companions: agent agent"])
-    simulation = values_of(statuses()["companions: simulation"])
+    agent = values_of(statuses()["derived: agent agent"])
+    simulation = values_of(statuses()["derived: simulation"])
     assert float(agent["render [ms]"]) > 0.0
     assert float(agent["publish [ms]"]) > 0.0
     assert int(agent["frames dropped"]) >= 0
@@ -201,7 +201,7 @@ def test_other_parameters_say_what_to_use_instead(probe: Probe) -> None:
 
 def test_a_rate_without_its_agent_is_refused() -> None:
     """Where the first agent was deleted, its rate cannot be set, and the reason says so."""
-    with NodeProcess("/companions_gone"), Probe("/companions_gone") as probe:
+    with NodeProcess("/derived_gone"), Probe("/derived_gone") as probe:
         probe.done(GetPose, "agent/get_pose")
         probe.done(DeleteAgent, "delete_agent", DeleteAgent.Request(name="agent"))
         refused = set_parameter(probe, "agent.rate_hz", 5.0)

@@ -1,0 +1,125 @@
+"""Agents of clients that were killed go, at once where the host knows it, and nobody else's do."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from sailenv_ros import Agent
+from sailenv_ros.agents import MAX_AGENTS, AgentSpec
+from sailenv_ros.errors import NameTaken
+from tests.support.sim_node_process import NodeProcess
+from tests.support.waiting import until
+
+NAMESPACE = "/leased"
+
+CLIENT = """
+import os, sys
+from sailenv_ros import Agent
+agents = [
+    Agent(width=32, height=24, namespace="/leased", name=name) for name in sys.argv[1:]
+]
+print("up", flush=True)
+sys.stdin.readline()
+"""
+
+
+class Client:
+    """A program that holds agents until it is killed."""
+
+    def __init__(self, *names: str, environment: dict[str, str] | None = None) -> None:
+        self._running = subprocess.Popen(
+            [sys.executable, "-c", CLIENT, *names],
+            env={
+                **os.environ,
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+                **(environment or {}),
+            },
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        assert self._running.stdout is not None
+        assert self._running.stdout.readline() == "up\n"
+
+    def kill(self) -> None:
+        """End it as nothing but the kernel can."""
+        self._running.kill()
+        self._running.wait(10.0)
+        assert self._running.stdin is not None
+        assert self._running.stdout is not None
+        self._running.stdin.close()
+        self._running.stdout.close()
+
+
+@pytest.fixture(scope="module")
+def watcher() -> Iterator[Agent]:
+    """An agent of this process in a simulator of its own process."""
+    with (
+        NodeProcess(NAMESPACE, mode="lockstep", agent__name="first"),
+        Agent(width=32, height=24, namespace=NAMESPACE, name="watcher") as watcher,
+    ):
+        yield watcher
+
+
+def names(watcher: Agent) -> set[str]:
+    """Return the agents that there are."""
+    return {spec.name for spec in watcher.info.agents}
+
+
+def test_killed_clients_leave_nothing_and_others_stay(watcher: Agent) -> None:
+    """All agents of a killed process go; those of the node, of this one and of nobody stay."""
+    watcher.register_agent(AgentSpec(name="of_nobody", rate_hz=0.0))
+    try:
+        client = Client("one", "two")
+        assert {"one", "two"} <= names(watcher)
+        client.kill()
+        until(lambda: not {"one", "two"} & names(watcher), "the killed one's agents to go", 10.0)
+        assert names(watcher) == {"first", "watcher", "of_nobody"}
+        assert watcher.get_frame()["main"] is not None
+    finally:
+        watcher.delete_agent("of_nobody")
+
+
+def test_killed_clients_use_nothing_up_and_give_their_names_back(watcher: Agent) -> None:
+    """Their places and their names are free the moment they are dead, as often as one likes."""
+    many = [f"agent_{number}" for number in range(MAX_AGENTS - 2)]
+    for _ in range(2):
+        Client(*many).kill()
+    with Agent(width=32, height=24, namespace=NAMESPACE, name=many[0]) as successor:
+        assert [successor.get_frame()["sequence"] for _ in range(2)] == [1, 2]
+
+
+def test_a_refused_name_does_not_take_its_owners_agent_along(watcher: Agent) -> None:
+    """Who asked for a name that was taken, and ended, never held that agent."""
+    with Agent(width=32, height=24, namespace=NAMESPACE, name="owned") as owner:
+        for name in ("owned", "first"):
+            with pytest.raises(NameTaken):
+                Agent(width=32, height=24, namespace=NAMESPACE, name=name)
+        Client("other").kill()
+        until(lambda: "other" not in names(watcher), "a killed one's agent to go", 10.0)
+        assert owner.get_frame()["sequence"] == 1
+        assert "first" in names(watcher)
+
+
+def test_a_client_of_elsewhere_goes_when_dds_hears_nothing_of_it(
+    watcher: Agent, tmp_path: Path
+) -> None:
+    """One whose lock cannot be seen, as on another host, is gone within 10 s."""
+    (tmp_path / "runtime").mkdir(mode=0o700)
+    client = Client("far", environment={"XDG_RUNTIME_DIR": str(tmp_path / "runtime")})
+    assert "far" in names(watcher)
+    client.kill()
+    until(lambda: "far" not in names(watcher), "the far one's agent to go", 10.0)
+
+
+def test_an_end_in_order_is_told_at_once(watcher: Agent) -> None:
+    """A closed Agent is gone when `close` returns."""
+    with Agent(width=32, height=24, namespace=NAMESPACE, name="orderly"):
+        until(lambda: "orderly" in names(watcher), "the agent to be announced")
+    until(lambda: "orderly" not in names(watcher), "its end to be announced", 1.0)

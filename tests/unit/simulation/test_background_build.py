@@ -1,0 +1,66 @@
+"""What is built beside a running simulation is shown by it, as if it had been there before."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.bake.light_files import light_folder
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.geometry import Pose
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.background_build import BackgroundBuild
+from tests.support.waiting import until
+
+ROOM = """
+version: 1
+lights:
+  - {name: lamp, type: point, position: [0, 0, 1.5]}
+room: {size: [2, 2, 2]}
+objects:
+  - {name: ball, asset: sphere, position: [0.5, 0, 0.5], scale: 0.4, static: true}
+"""
+EYE = AgentSpec(
+    name="eye",
+    intrinsics=CameraIntrinsics(width=64, height=48),
+    rate_hz=0.0,
+    following=False,
+    pose=Pose((-0.8, 0.0, 1.0)),
+)
+
+
+@pytest.fixture
+def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A small room's file, and a cache of the test's own."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
+    file = tmp_path / "cell.yaml"
+    file.write_text(ROOM)
+    return file
+
+
+def test_light_that_is_baked_meanwhile_is_shown(cell: Path) -> None:
+    """The same picture as that of a simulation that begins with the light."""
+    with Simulation(cell, mode="lockstep", agent=EYE) as simulation:
+        before, revision = simulation.capture(["rgb"]), simulation.info.revision
+        with BackgroundBuild(simulation, str(cell), everything=False) as build:
+            until(lambda: simulation.background_task, "a report of progress", timeout_s=100.0)
+            assert simulation.background_task.startswith("light of "), simulation.background_task
+            until(lambda: not build.running, "the light to be baked", timeout_s=100.0)
+        assert simulation.background_task == ""
+        until(lambda: simulation.info.revision > revision, "the light to be taken up")
+        after = simulation.capture(["rgb"])
+    with Simulation(cell, mode="lockstep", agent=EYE) as fresh:
+        np.testing.assert_array_equal(after["rgb"], fresh.capture(["rgb"])["rgb"])
+    assert np.abs(after["rgb"].astype(int) - before["rgb"].astype(int)).max() > 10
+
+
+def test_a_simulation_that_ends_breaks_it_off(cell: Path) -> None:
+    """No process goes on, and nothing that is half done is left."""
+    with Simulation(cell, mode="lockstep") as simulation:
+        build = BackgroundBuild(simulation, str(cell), everything=False)
+        build.close()
+    assert not build.running
+    assert not list(light_folder().glob("*.light"))

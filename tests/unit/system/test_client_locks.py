@@ -1,0 +1,78 @@
+"""The lock that tells whether a client lives."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from sailenv_ros.system.client_locks import ClientLock, client_lives
+from sailenv_ros.system.process_locks import private_folder
+from tests.support.waiting import until
+
+HOLD = """
+import os, sys
+from sailenv_ros.system.client_locks import ClientLock
+lock = ClientLock("client_1_abcdef")
+child = os.fork() if "fork" in sys.argv else 1
+if child:
+    print(child, flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.fixture(autouse=True)
+def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "none"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    (tmp_path / f"sailenv_ros_{os.getuid()}").mkdir(mode=0o700)
+
+
+def test_a_client_lives_until_it_lets_go() -> None:
+    """Who ended in order leaves nothing, and nothing is known of who never was."""
+    assert client_lives("a") is None
+    with ClientLock("a") as lock:
+        assert client_lives("a") is True
+        assert client_lives("b") is None
+    lock.release()
+    assert client_lives("a") is None
+    assert not list(private_folder().iterdir())
+
+
+@pytest.mark.parametrize("arguments", [(), ("fork",)])
+def test_a_killed_client_is_dead_and_a_stopped_one_is_not(arguments: tuple[str, ...]) -> None:
+    """A process that was forked of it does not count for it."""
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLD, *arguments],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as holder:
+        assert holder.stdout is not None
+        assert holder.stdin is not None
+        child = int(holder.stdout.readline())
+        holder.send_signal(signal.SIGSTOP)
+        assert client_lives("client_1_abcdef") is True
+        holder.kill()
+        holder.wait(10.0)
+        # The fork may have begun just now.
+        until(lambda: client_lives("client_1_abcdef") is False, "the lock to be free", 5.0)
+        if arguments:
+            os.kill(child, signal.SIGKILL)
+
+
+def test_what_a_killed_client_leaves_is_removed_by_a_later_one() -> None:
+    """Not at once: a simulator must find that it was killed."""
+    left = private_folder() / "left.client"
+    left.write_text("1")
+    with ClientLock("a"):
+        assert client_lives("left") is False
+    os.utime(left, (0, 0))
+    with ClientLock("b"):
+        assert not left.exists()
