@@ -7,11 +7,12 @@ the package's own. Everything is drawn from one seed, so that a failure comes ag
 from __future__ import annotations
 
 import io
+import itertools
 import json
 import random
 import struct
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -38,7 +39,10 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.viewer.request_arguments import arguments_of_text
 from tests.support.upload_files import box_zip
 
-__all__ = ["TARGETS", "Target", "inputs", "run_target"]
+__all__ = ["TARGETS", "Target", "inputs", "keep", "kept", "replay", "run_target"]
+
+CORPUS = Path(__file__).resolve().parents[1] / "data" / "fuzz"
+"""Inputs that reached new code in `benchmarks/fuzz_coverage.py`, or were faults once."""
 
 _NUMBERS = ("0", "-1", "1e999", "nan", "-0.0", "4294967296", "99999999999999999999", "1e-320")
 _BYTES = (b"\0", b"\xff" * 4, b"\x7f\xff\xff\xff", b"\x80\0\0\0", b"{" * 60, b"[" * 60, b"&a *a")
@@ -65,19 +69,50 @@ def inputs(samples: tuple[bytes, ...], seed: int) -> Iterator[bytes]:
 
 def run_target(name: str, *, seed: int, count: int, folder: Path) -> int:
     """Read so many inputs; return how many were accepted. What was wrong goes up with the input."""
-    target, accepted = TARGETS[name], 0
-    for number, data in enumerate(inputs(target.samples(), seed)):
-        if number == count:
-            break
-        try:
-            target.read(data, folder)
-            accepted += 1
-        except SailenvError:
-            pass
-        except BaseException as problem:
-            problem.add_note(f"{name}, seed {seed}, input {number}: {data[:2000]!r}")
-            raise
-    return accepted
+    samples = (*TARGETS[name].samples(), *kept(name))
+    given = itertools.islice(inputs(samples, seed), count)
+    return sum(
+        _is_accepted(name, data, folder, f"seed {seed}, input {number}")
+        for number, data in enumerate(given)
+    )
+
+
+def replay(name: str, folder: Path) -> int:
+    """Read all samples and all kept inputs; return how many were accepted."""
+    known = (*TARGETS[name].samples(), *kept(name))
+    return sum(
+        _is_accepted(name, data, folder, f"kept input {number}")
+        for number, data in enumerate(known)
+    )
+
+
+def kept(name: str) -> tuple[bytes, ...]:
+    """Return the kept inputs of a target; in the file, 4 bytes of length precede each."""
+    path, inputs = CORPUS / f"{name}.bin", []
+    data = path.read_bytes() if path.exists() else b""
+    while data:
+        size = int.from_bytes(data[:4], "little")
+        inputs.append(data[4 : 4 + size])
+        data = data[4 + size :]
+    return tuple(inputs)
+
+
+def keep(name: str, inputs: Sequence[bytes]) -> None:
+    """Keep these inputs of a target, and no others."""
+    CORPUS.mkdir(parents=True, exist_ok=True)
+    data = b"".join(len(data).to_bytes(4, "little") + data for data in inputs)
+    (CORPUS / f"{name}.bin").write_bytes(data)
+
+
+def _is_accepted(name: str, data: bytes, folder: Path, which: str) -> bool:
+    try:
+        TARGETS[name].read(data, folder)
+    except SailenvError:
+        return False
+    except BaseException as problem:
+        problem.add_note(f"{name}, {which}: {data[:2000]!r}")
+        raise
+    return True
 
 
 def _change(data: bytearray, samples: tuple[bytes, ...], rng: random.Random) -> None:
