@@ -31,7 +31,7 @@ class ViewerLimits:
         Deadline of a request [s]; loading a scene takes many.
     """
 
-    clients: int = 8
+    clients: int = 24
     message_bytes: int = 64 * 1024
     messages_per_s: int = 400
     requests: int = 16
