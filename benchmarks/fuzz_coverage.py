@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import itertools
 import logging
 import os
 import subprocess
@@ -31,11 +32,11 @@ with atheris.instrument_imports(include=["sailenv_ros"], enable_loader_override=
 INSIDE = "SAILENV_FUZZ_TARGET"
 """Target and program, set in atheris's own process; its arguments are those of libFuzzer alone."""
 
-LONGEST_BYTES = 1500
-"""Longer ones are not kept."""
+KEPT_BYTES = 2**14
+"""So much is kept of a target, the shortest inputs first."""
 
 MOST = 60
-"""So many are kept, the shortest first."""
+"""So many inputs are kept of a target."""
 
 
 def main() -> None:
@@ -62,7 +63,8 @@ def main() -> None:
         _run([program, f"-max_total_time={options.seconds}", "-max_len=4096", found], environment)
         _run([program, "-merge=1", least, found], environment)
         inputs = sorted({path.read_bytes() for path in least.iterdir()}, key=lambda d: (len(d), d))
-        small = [data for data in inputs if len(data) <= LONGEST_BYTES][:MOST]
+        sizes = itertools.accumulate(len(data) for data in inputs[:MOST])
+        small = [data for data, size in zip(inputs, sizes, strict=False) if size <= KEPT_BYTES]
         print(f"{options.target}: {len(inputs)} inputs reach all that was reached")
         if options.keep:
             keep(options.target, small)

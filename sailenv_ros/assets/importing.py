@@ -139,7 +139,11 @@ def _drawn(parts: Sequence[RawPart], meshes: Sequence[RawMesh]) -> tuple[ModelPa
         material = part.material
         if not material.double_sided and is_open(mesh):
             material = dataclasses.replace(material, double_sided=True)
-        drawn.append(ModelPart(mesh=smooth_mesh(mesh), material=material))
+        smooth = smooth_mesh(mesh)
+        if len(smooth.triangles):
+            drawn.append(ModelPart(mesh=smooth, material=material))
+    if not drawn:
+        raise AssetError(parts[0].name, "none of its triangles has an area, for its size")
     return tuple(drawn)
 
 

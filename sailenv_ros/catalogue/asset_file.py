@@ -72,6 +72,10 @@ def write_asset(path: Path, asset: Asset) -> None:
             file.write(array.tobytes())
 
 
+_MALFORMED = (LookupError, ValueError, TypeError, AttributeError, RecursionError, OverflowError)
+"""What comes of a description that is another one than it should be."""
+
+
 def read_asset(path: Path) -> Asset:
     """Read what `write_asset` wrote.
 
@@ -88,7 +92,7 @@ def read_asset(path: Path) -> Asset:
     del rest
     try:
         return _asset(json.loads(line), reader)
-    except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as problem:
+    except _MALFORMED as problem:
         raise AssetError(path.name, f"it is no asset as an import writes it ({problem})") from None
 
 

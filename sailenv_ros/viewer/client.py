@@ -141,9 +141,13 @@ class Client:
         finally:
             self._end_watch()
             ending = [telling, *self._running, *self._outbox.tasks]
-            for task in ending:
-                task.cancel()
-            await asyncio.wait(ending, timeout=1.0)
+            # Again and again: until Python 3.12, wait_for loses a cancellation that meets a result.
+            for _ in range(10):
+                for task in ending:
+                    task.cancel()
+                _, left = await asyncio.wait(ending, timeout=0.1)
+                if not left:
+                    break
 
     def scene_changed(self) -> None:
         """Have the scene told when there is time to."""

@@ -45,6 +45,9 @@ _RECORD_HEAD = struct.Struct("<BQ")
 _CHUNK_HEAD = struct.Struct("<QQQI")
 _ZSTD_LEVEL = 1
 
+LARGEST_CHUNK_BYTES = 2**31
+"""A chunk that says that it holds more is refused; writers make chunks of some megabytes [B]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SealedChunk:
@@ -265,6 +268,11 @@ def _unpacked(chunk: Chunk) -> bytes:
     if unpack is None:
         known = ", ".join(repr(name) for name in _DECOMPRESSORS)
         raise RecordingError(f"a chunk's compression must be one of {known}: {chunk.compression!r}")
+    if chunk.uncompressed_size > LARGEST_CHUNK_BYTES:
+        raise RecordingError(
+            f"a chunk says that it holds {chunk.uncompressed_size} bytes, and "
+            f"{LARGEST_CHUNK_BYTES} are accepted"
+        )
     try:
         data = unpack(chunk)
     except (zstandard.ZstdError, RuntimeError, ValueError, MemoryError) as problem:

@@ -6,6 +6,7 @@ through. A file that was not finished is refused by name of the command that men
 
 from __future__ import annotations
 
+import os
 import struct
 import zlib
 from collections import OrderedDict
@@ -76,10 +77,11 @@ class FileIndex:
         self._cache: OrderedDict[int, memoryview] = OrderedDict()
         self._chunks: list[tuple[int, int]] = []
         self._stream = _open(path)
+        self._size = os.fstat(self._stream.fileno()).st_size
         try:
             self._check_ends()
             self.schemas, self.channels, self.entries = self._read_index()
-        except (McapError, struct.error, ValueError, KeyError, OverflowError) as problem:
+        except (McapError, struct.error, ValueError, KeyError, OverflowError, OSError) as problem:
             self.close()
             raise damaged(path, str(problem) or type(problem).__name__) from None
         except RecordingError as problem:
@@ -133,6 +135,9 @@ class FileIndex:
         return memoryview(self._read(offset, _HEAD_BYTES + length))
 
     def _read(self, start: int, length: int) -> bytes:
+        # Where a record says that it is longer than any file, there is nothing to seek either.
+        if not 0 <= length <= self._size - start:
+            raise damaged(self.path, "it is shorter than its index says")
         self._stream.seek(start)
         data = self._stream.read(length)
         if len(data) != length:
@@ -142,8 +147,7 @@ class FileIndex:
     # -- the index -------------------------------------------------------------------------
 
     def _check_ends(self) -> None:
-        self._stream.seek(0, 2)
-        size = self._stream.tell()
+        size = self._size
         if size < len(MAGIC) or self._read(0, len(MAGIC)) != MAGIC:
             raise RecordingError(f"{self.path} is no MCAP file")
         if size < 2 * len(MAGIC) or self._read(size - len(MAGIC), len(MAGIC)) != MAGIC:

@@ -95,6 +95,7 @@ def test_a_glb_keeps_its_size_without_a_height(tmp_path: Path) -> None:
         ("a.glb", b""),
         ("a.obj", b"v 1 2\nf 1 2 3\n"),
         ("a.obj", b"# nothing\n"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
         ("a.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
         ("a.gltf", b'{"asset": {"version": "2.0"}, "buffers": [{"uri": "/etc/passwd"}]}'),
         ("a.stl", b"solid\n"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 import threading
 import time
@@ -124,6 +125,17 @@ def box_file() -> bytes:
         write_asset(path, asset)
         assert_same(asset, read_asset(path))
         return path.read_bytes()
+
+
+def test_a_description_of_another_kind_is_refused(tmp_path: Path) -> None:
+    """Found by fuzzing: a text where a table should be."""
+    path = tmp_path / "asset"
+    line, _, rest = box_file().partition(b"\n")
+    told = json.loads(line)
+    told["parts"][0]["textures"] = "none"
+    path.write_bytes(json.dumps(told).encode() + b"\n" + rest)
+    with pytest.raises(AssetError):
+        read_asset(path)
 
 
 @settings(max_examples=100)

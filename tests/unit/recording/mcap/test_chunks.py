@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from mcap.reader import make_reader
 from mcap.records import Channel, Schema
 
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.recording.mcap.chunks import ChunkBuilder, records_in
+from sailenv_ros.recording.mcap.chunks import ChunkBuilder, records_in, unpacked
 from sailenv_ros.recording.mcap.file_writer import McapFile
 from tests.support.recordings import file_size_limit
 
@@ -74,6 +75,16 @@ def test_what_is_written_is_read_by_the_formats_library(
     assert summary.statistics.chunk_count == len(chunks)
     assert [entry[0] for entry in read] == sorted(entry[0] for entry in read)
     assert sorted(read) == written
+
+
+@pytest.mark.parametrize("size", [2**31 + 1, 2**62, 2**63, 2**64 - 1])
+@pytest.mark.parametrize("compression", ["zstd", "lz4", ""])
+def test_a_chunk_larger_than_memory_is_refused(size: int, compression: str) -> None:
+    """Nothing is set aside for what a chunk says of itself: found by fuzzing as OverflowError."""
+    kind = compression.encode()
+    head = struct.pack("<QQQI", 0, 0, size, 0) + len(kind).to_bytes(4, "little") + kind
+    with pytest.raises(RecordingError, match="says that it holds"):
+        unpacked(head + bytes(8))
 
 
 def test_a_record_that_is_cut_off_is_told() -> None:

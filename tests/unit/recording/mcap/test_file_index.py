@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mcap.opcode import Opcode
 from mcap.reader import NonSeekingReader
 from mcap.writer import CompressionType, IndexType, Writer
 
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.mcap.file_index import FileIndex
+from sailenv_ros.recording.mcap.file_writer import MAGIC
 
 MESSAGES = st.lists(
     st.tuples(st.integers(0, 2), st.integers(0, 2**62), st.integers(0, 2**62), st.binary()),
@@ -91,4 +93,15 @@ def test_what_was_not_finished_names_the_command_that_restores_it(tmp_path: Path
     write(path, [(0, 1, 1, b"x")])
     path.write_bytes(path.read_bytes()[:-1])
     with pytest.raises(RecordingError, match="sailenv bag recover"):
+        FileIndex(path)
+
+
+@pytest.mark.parametrize("length", [2**31, 2**63 - 1, 2**63 + 1, 2**64 - 1])
+def test_a_record_longer_than_any_file_is_damage(tmp_path: Path, length: int) -> None:
+    """The next one would lie where no file can be read: found by fuzzing as an OSError."""
+    path = tmp_path / "long.mcap"
+    record = bytes([0x80]) + length.to_bytes(8, "little")  # of a kind that readers pass over
+    footer = bytes([Opcode.FOOTER]) + (20).to_bytes(8, "little") + bytes(20)
+    path.write_bytes(MAGIC + record + footer + MAGIC)
+    with pytest.raises(RecordingError, match="shorter than its index says"):
         FileIndex(path)
