@@ -138,9 +138,9 @@ class CaptureServer:
         except SailenvError as error:
             return _refused(error)
         except Exception as error:
-            _log.exception("a frame could not be made because of a fault in the simulator")
+            _log.exception("a frame could not be made because of an internal error")
             what = f"{type(error).__name__}: {error}"
-            return _refused(InternalFault(f"a fault in the simulator, see its log: {what}"))
+            return _refused(InternalFault(f"an internal error of the simulator, see its log: {what}"))
         info = frame_info_to_msg(
             frame, header_of_frame(frame), views=frame.views, depth_range_m=frame.depth_range_m
         )
