@@ -1,21 +1,25 @@
-"""Time the native renderer beside OpenGL in software and TinyRenderer, and compare what they draw.
+"""Time the native renderer beside OpenGL in software and others, and compare what they draw.
 
-    python benchmarks/native_renderer.py [--scene NAME]... [--size WxH]... [--threads 1,2,4]
-                                         [--frames N] [--changes] [--json FILE]
+    python benchmarks/native_renderer.py [--scene NAME]... [--size WxH]... [--threads 2,1,4]
+                                         [--frames N] [--changes] [--agents] [--json FILE]
 
 One simulated world moves on; at each of its instants all take their turn in one process, so that
 what disturbs the machine disturbs all alike. Ratios are of medians. ``CPU`` is the processor time
 of all threads: it is what a busy machine disturbs least. OpenGL has as many threads as the machine
-has processors; the native renderer has those that are told.
+has processors; the native renderer has those that are told. PyBullet's two renderers and MuJoCo's
+(where they are to be had) draw at every fourth instant.
 
-`--changes` times the frame after a light was set, an object was spawned and was removed.
+`--changes` times the frame after a light was set, an object was spawned and was removed. `--agents`
+times five views of 1, 4 and 16 cameras at 320 x 240.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import itertools
 import json
+import multiprocessing
 import os
 import platform
 import statistics
@@ -32,6 +36,8 @@ import render_passes
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.errors import SailenvError
+from sailenv_ros.experiments.baselines import BASELINES, BaselineScene
 from sailenv_ros.frame import FIVE_VIEWS
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.render.renderer import Renderer
@@ -43,6 +49,14 @@ SETS = {
     "five views": FIVE_VIEWS,
     "annotations": tuple(view for view in FIVE_VIEWS if view != "rgb"),
 }
+OTHERS = ("PyBullet TinyRenderer", "PyBullet OpenGL", "MuJoCo")
+OTHERS_EACH = 4
+"""They draw at each so many instants: some take a second."""
+
+ANSWER_S = 60.0
+"""How long another process may take to draw, or to begin [s]."""
+
+AGENTS = (1, 4, 16)
 WARM_UP = 3
 STEPS = 8
 """Physics steps between two frames: 30 frames per simulated second."""
@@ -51,14 +65,14 @@ Times = dict[tuple[str, str], list[float]]
 
 
 def measure(
-    scene: str, size: tuple[int, int], frames: int, threads: Sequence[int], *, tiny: bool
+    scene: str, size: tuple[int, int], frames: int, threads: Sequence[int]
 ) -> dict[str, Any]:
     """Time one scene at one size; medians [ms], and the greatest differences."""
     world = render_passes.world_maker(scene, 400)()
     camera_of = render_passes._camera_of(world, CameraIntrinsics(width=size[0], height=size[1]))
     renderers: dict[str, RenderBackend] = {"OpenGL": Renderer()}
     renderers |= {f"native {count}": NativeRenderer(threads=count) for count in threads}
-    bullet = render_passes.PlainBullet()
+    others = _others(scene, size)
     wall: Times = defaultdict(list)
     cpu: Times = defaultdict(list)
     stages: dict[str, list[float]] = defaultdict(list)
@@ -85,15 +99,13 @@ def measure(
                     if name == f"native {threads[0]}" and views == "five views":
                         for stage, seconds in made.timings_s.items():
                             stages[stage].append(1e3 * seconds)
-            if tiny:
-                bullet.prepare(snapshot, camera)
-                began = time.perf_counter()
-                bullet.shoot(camera.intrinsics)
-                wall["TinyRenderer", "five views"].append(1e3 * (time.perf_counter() - began))
+            for name, other in others.items() if number % OTHERS_EACH == 0 else ():
+                wall[name, "five views"].append(other.draw())
             if number >= WARM_UP:
                 compare(pictures["OpenGL"], pictures[f"native {threads[0]}"], differences)
     finally:
-        bullet.close()
+        for other in others.values():
+            other.close()
         world.close()
         for renderer in renderers.values():
             renderer.close()
@@ -106,6 +118,76 @@ def measure(
         "picture_within_2": min(differences["picture"]),
         "picture_within_2_mean": statistics.mean(differences["picture"]),
     }
+
+
+class Elsewhere:
+    """Another renderer in a process of its own, with a world of its own at the same instants.
+
+    PyBullet's and MuJoCo's OpenGL do not get along with ours in one process.
+
+    Raises
+    ------
+    RuntimeError
+        If it is not to be had; the text says why.
+    """
+
+    def __init__(self, name: str, scene: str, size: tuple[int, int]) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_draw_elsewhere, args=(theirs, name, scene, size))
+        self._process.start()
+        theirs.close()
+        if answer := self._ask():
+            self.close()
+            raise RuntimeError(answer)
+
+    def draw(self) -> float:
+        """Go on and draw once; return how long that took [ms]."""
+        self._pipe.send(True)
+        return float(self._ask())
+
+    def close(self) -> None:
+        """End the process."""
+        self._pipe.close()
+        self._process.join(10.0)
+        self._process.kill()
+
+    def _ask(self) -> Any:
+        try:
+            return self._pipe.recv() if self._pipe.poll(ANSWER_S) else "no answer"
+        except EOFError:
+            return "the process ended"
+
+
+def _draw_elsewhere(pipe: Any, name: str, scene: str, size: tuple[int, int]) -> None:
+    """Draw when told to, in a process of its own."""
+    try:
+        world = BaselineScene(scene, *size)
+        picture = BASELINES[name][1]()
+        picture.prepare(*world.advance(400))
+        picture.draw()
+    except (SailenvError, ImportError, OSError) as problem:
+        pipe.send(str(problem))
+        return
+    pipe.send("")
+    with contextlib.suppress(EOFError):
+        while pipe.recv():
+            picture.prepare(*world.advance(OTHERS_EACH * STEPS))
+            began = time.perf_counter()
+            picture.draw()
+            pipe.send(1e3 * (time.perf_counter() - began))
+    os._exit(0)
+
+
+def _others(scene: str, size: tuple[int, int]) -> dict[str, Elsewhere]:
+    """Start the other renderers that are to be had here."""
+    made = {}
+    for name in OTHERS:
+        try:
+            made[name] = Elsewhere(name, scene, size)
+        except RuntimeError as problem:
+            print(f"without {name}: {problem}")
+    return made
 
 
 def compare(theirs: Any, ours: Any, differences: dict[str, list[float]]) -> None:
@@ -132,9 +214,11 @@ def show(scene: str, size: tuple[int, int], threads: Sequence[int], found: dict[
             print(
                 f"  {'':12} {name:12} {wall:8.1f} {wall / base:6.2f} {cpu:8.1f} {cpu / busy:6.2f}"
             )
-    tiny = found["wall_ms"].get("TinyRenderer five views")
-    if tiny is not None:
-        print(f"  {'':12} {'TinyRenderer':12} {tiny:8.1f}")
+    base = found["wall_ms"]["OpenGL five views"]
+    for name in OTHERS:
+        took = found["wall_ms"].get(f"{name} five views")
+        if took is not None:
+            print(f"  {'':12} {name:22} {took:8.1f} {took / base:6.2f}")
     print(f"  stages: {', '.join(f'{k} {v:.1f}' for k, v in found['stages_ms'].items())}")
     print(
         f"  ids differ in {found['ids_differ']:.1e} at most, depth by {found['depth_off_999']:.1e} "
@@ -181,6 +265,38 @@ def measure_changes(scene: str, size: tuple[int, int], rounds: int) -> dict[str,
     return result
 
 
+def measure_agents(scene: str, threads: int, frames: int) -> dict[str, dict[str, float]]:
+    """Time an instant of several cameras; medians [ms] of processor time and wall time."""
+    world = render_passes.world_maker(scene, 400)()
+    camera_of = render_passes._camera_of(world, CameraIntrinsics(width=320, height=240))
+    renderers: dict[str, RenderBackend] = {
+        "OpenGL": Renderer(),
+        f"native {threads}": NativeRenderer(threads=threads),
+    }
+    wall: dict[str, list[float]] = defaultdict(list)
+    cpu: dict[str, list[float]] = defaultdict(list)
+    for number in range(WARM_UP + frames):
+        world.step(STEPS)
+        snapshot = world.snapshot()
+        # Cameras follow each other on their rails, a second apart.
+        cameras = [camera_of(world.sim_time_ns + k * 10**9) for k in range(max(AGENTS))]
+        for name, renderer in renderers.items():
+            for agents in AGENTS:
+                began, busy = time.perf_counter(), time.process_time()
+                for camera in cameras[:agents]:
+                    renderer.render(snapshot, None, camera, FIVE_VIEWS)
+                if number >= WARM_UP:
+                    wall[f"{name}, {agents} agents"].append(1e3 * (time.perf_counter() - began))
+                    cpu[f"{name}, {agents} agents"].append(1e3 * (time.process_time() - busy))
+    world.close()
+    for renderer in renderers.values():
+        renderer.close()
+    return {
+        "wall_ms": {name: statistics.median(times) for name, times in wall.items()},
+        "cpu_ms": {name: statistics.median(times) for name, times in cpu.items()},
+    }
+
+
 def _timed(
     renderer: RenderBackend,
     snapshot: WorldSnapshot,
@@ -213,19 +329,24 @@ def main() -> None:
     parser.add_argument("--threads", default="2,1,4", help="the first one is compared")
     parser.add_argument("--frames", type=int, default=20)
     parser.add_argument("--changes", action="store_true")
+    parser.add_argument("--agents", action="store_true")
     parser.add_argument("--json", type=Path, default=None, help="write the figures here too")
     arguments = parser.parse_args()
     threads = [int(count) for count in arguments.threads.split(",")]
     sizes = [tuple(map(int, text.split("x"))) for text in arguments.size or ()] or list(SIZES)
     print(f"{os.cpu_count()} CPUs, {platform.platform()}")
     results: dict[str, Any] = {}
-    for scene in arguments.scene or SCENES:
+    found: Any
+    for scene in arguments.scene or SCENES if arguments.agents else ():
+        results[f"{scene} agents"] = found = measure_agents(scene, threads[0], arguments.frames)
+        print(f"{scene}, 320 x 240, five views of several cameras: {found}")
+    for scene in () if arguments.agents else arguments.scene or SCENES:
         for width, height in sizes:
             if arguments.changes:
-                found: Any = measure_changes(scene, (width, height), max(3, arguments.frames // 4))
+                found = measure_changes(scene, (width, height), max(3, arguments.frames // 4))
                 print(f"{scene}, {width} x {height}, CPU [ms]: {found}")
             else:
-                found = measure(scene, (width, height), arguments.frames, threads, tiny=True)
+                found = measure(scene, (width, height), arguments.frames, threads)
                 show(scene, (width, height), threads, found)
             results[f"{scene} {width}x{height}"] = found
     if arguments.json is not None:

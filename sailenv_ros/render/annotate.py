@@ -72,8 +72,9 @@ def motion_table(
         turn = previous.camera.camera_from_world[:3, :3] @ camera.world_from_camera[:3, :3]
         motions[_SKY_ROW, :, :3] = turn - np.eye(3)
     if now_rows:
-        bodies = snapshot.world_from_body[now_rows]
-        past_bodies = past.world_from_body[past_rows]
+        bodies, past_bodies = snapshot.world_from_body, past.world_from_body
+        if not len(bodies) == len(past_bodies) == len(now_rows) or now_rows != past_rows:
+            bodies, past_bodies = bodies[now_rows], past_bodies[past_rows]
         chain = previous.camera.camera_from_world @ past_bodies @ invert(bodies)
         motion = (chain @ camera.world_from_camera)[:, :3] - np.eye(4)[:3]
         if camera_still:

@@ -207,11 +207,11 @@ def instance_light(
     at = np.clip(at, 0.0, last)
     low = np.minimum(at.astype(np.intp), np.maximum(last - 1, 0))
     share = (at - low).astype(np.float32)
-    result = np.zeros((len(points), 4, 3), np.float32)
-    for corner in np.ndindex(2, 2, 2):
-        weight = np.prod(np.where(corner, share, 1.0 - share), axis=1)
-        x, y, z = np.minimum(low + corner, last).T
-        result += weight[:, None, None] * probes[z, y, x]
+    # Of the eight probes around each point.
+    corners = np.array(list(np.ndindex(2, 2, 2)))[:, None, :]
+    weight = np.prod(np.where(corners, share, 1.0 - share), axis=2)
+    x, y, z = np.moveaxis(np.minimum(low + corners, last), 2, 0)
+    result: NDArray[np.float32] = (weight[:, :, None, None] * probes[z, y, x]).sum(axis=0)
     return result
 
 

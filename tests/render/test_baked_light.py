@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light
@@ -145,6 +146,28 @@ def test_behind_glass_what_moves_gets_less_of_the_main_light(render: Render) -> 
 
     assert seen(1.0).min() > 0.05
     np.testing.assert_allclose(seen(0.5), 0.5 * seen(1.0), rtol=0.03)
+
+
+def test_a_change_of_lights_leaves_nothing_behind() -> None:
+    """After it a picture has the bytes that a renderer makes which has seen nothing else."""
+    lamp = Light(name="lamp", type="point", position_m=(1, 1, 1), intensity=2.0)
+    shiny = model_of(wall_mesh(8.0, 8.0), base_colour=(0.9, 0.9, 0.9, 1.0), roughness=0.1)
+    ramp = np.linspace(0.0, 0.4, SIZE)[None, :, None] * np.ones(3)
+    layers = [layer(SUN, bounced=ramp, visible=0.5), layer(lamp, direct=0.3, bounced=0.1)]
+    light = baked({1: chart(shiny, AHEAD)}, layers, layer(None, bounced=0.05))
+    things = [Thing(shiny, AHEAD), Thing(model_of(box_mesh(0.5)), Pose((2.0, 0.5, 0.0)))]
+    moved = replace(lamp, position_m=(2.0, 0.0, 1.0))
+    red = replace(SUN, colour=(1.0, 0.2, 0.1), intensity=3.0)
+    kept = NativeRenderer(threads=2)
+    for lights in ((SUN, lamp), (red, lamp), (red, moved), (replace(lamp, intensity=0.0), SUN)):
+        scene = snapshot_of(things, lights=lights, environment=DARK, baked=light)
+        fresh = NativeRenderer(threads=1)
+        pictures = [
+            made.render(scene, None, camera_at(), ["rgb"]).views["rgb"] for made in (kept, fresh)
+        ]
+        fresh.close()
+        np.testing.assert_array_equal(*pictures)
+    kept.close()
 
 
 def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:

@@ -12,7 +12,7 @@ namespace {
 
 // Rows of a band: enough bands that threads finish together, few enough that triangles are not in
 // many of them.
-int32_t band_rows_of(int64_t height) { return height <= 256 ? 8 : 16; }
+int32_t band_rows_of(int64_t height) { return height <= 128 ? 8 : 16; }
 
 void reserve_pixels(Scratch& scratch, int64_t width, int64_t height) {
     // Rows are read and written in steps of eight pixels from any column.
