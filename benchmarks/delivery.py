@@ -89,7 +89,9 @@ def copies(size_bytes: int, count: int) -> list[float]:
     source = np.ones(size_bytes, np.uint8).data
     memory = multiprocessing.shared_memory.SharedMemory(create=True, size=size_bytes)
     try:
-        return [timed(lambda: copy_into(memory.buf, source))[0] for _ in range(count)]
+        target = memory.buf
+        assert target is not None
+        return [timed(lambda: copy_into(target, source))[0] for _ in range(count)]
     finally:
         memory.close()
         memory.unlink()

@@ -263,7 +263,8 @@ def main() -> None:
     parser.add_argument("--size", action="append", help="WIDTHxHEIGHT; may be given repeatedly")
     parser.add_argument("--json", type=Path, help="write the results here too")
     options = parser.parse_args()
-    sizes = [tuple(map(int, size.split("x"))) for size in options.size or ()] or SIZES
+    given = [size.partition("x") for size in options.size or ()]
+    sizes = [(int(width), int(height)) for width, _, height in given] or SIZES
     scenes = options.scene or ["optical"]
     use_shared_memory_profile()
     results = []

@@ -24,43 +24,43 @@ from sailenv_ros.frame import VIEWS
 from sailenv_ros.system.frame_memory import Segment, SegmentPool, padded, view_of
 from sailenv_ros.system.frame_socket import connect, is_wanted, receive, send
 
-__all__ = ["DirectFrames", "LineBroken"]
+__all__ = ["DirectFrames", "Disconnected"]
 
 
-class LineBroken(Exception):
-    """The simulator hung up; frames come by topics from now on."""
+class Disconnected(Exception):
+    """The simulator ended the connection; frames come by topics from now on."""
 
 
 class DirectFrames:
-    """One Agent's line to the simulator.
+    """One Agent's socket to the simulator.
 
     Parameters
     ----------
     connection : Connection
         Whose waits are used: they break off when the simulator ends.
-    line : socket
+    sock : socket
         Owned from now on.
     """
 
-    def __init__(self, connection: Connection, line: socket.socket) -> None:
+    def __init__(self, connection: Connection, sock: socket.socket) -> None:
         self._connection = connection
-        self._line = line
+        self._socket = sock
         self._pool = SegmentPool()
         self._ready = select.poll()
-        self._ready.register(line, select.POLLIN)
+        self._ready.register(sock, select.POLLIN)
 
     @classmethod
     def open(cls, connection: Connection) -> DirectFrames | None:
         """Connect to the simulator of that connection; None if it is not on this machine."""
         if not is_wanted():
             return None
-        line = connect(connection.domain_id, connection.namespace)
-        if line is None:
+        sock = connect(connection.domain_id, connection.namespace)
+        if sock is None:
             return None
         if not connection.simulator_lives():
-            line.close()  # it was opened by another simulator, which came after the one we know
+            sock.close()  # it was opened by another simulator, which came after the one we know
             return None
-        return cls(connection, line)
+        return cls(connection, sock)
 
     def capture(
         self,
@@ -91,8 +91,8 @@ class DirectFrames:
 
         Raises
         ------
-        LineBroken
-            If the simulator hung up.
+        Disconnected
+            If the simulator ended the connection.
         SailenvError
             As the operation raised in the simulator.
         SimulatorLost, DeadlineExceeded
@@ -107,9 +107,9 @@ class DirectFrames:
         try:
             segment = self._pool.take(max(1, sum(map(padded, sizes))))
         except OSError as problem:
-            raise LineBroken(str(problem)) from None
+            raise Disconnected(str(problem)) from None
         if segment is None:
-            raise LineBroken("too many frames are held")
+            raise Disconnected("too many frames are held")
         try:
             header, parts = self._asked(
                 segment,
@@ -140,8 +140,8 @@ class DirectFrames:
         return info, arrays
 
     def close(self) -> None:
-        """Hang up; frames that are held stay as they are."""
-        self._line.close()
+        """Disconnect; frames that are held stay as they are."""
+        self._socket.close()
         self._pool.close()
 
     def _asked(
@@ -151,17 +151,17 @@ class DirectFrames:
 
         def met(interval_s: float) -> bool:
             if self._ready.poll(1e3 * interval_s):
-                answers.append(receive(self._line))
+                answers.append(receive(self._socket))
             return bool(answers)
 
         try:
             descriptors = [segment.fd] if segment.fd >= 0 else []
-            send(self._line, {**request, "segment": segment.number}, (), descriptors)
+            send(self._socket, {**request, "segment": segment.number}, (), descriptors)
             segment.forget_fd()
             self._connection.wait_for(met, what, timeout_s)
         except (OSError, InvalidRequest) as problem:
-            raise LineBroken(str(problem)) from None
+            raise Disconnected(str(problem)) from None
         if answers[0] is None:
-            raise LineBroken("the simulator hung up")
+            raise Disconnected("the simulator ended the connection")
         header, parts, _ = answers[0]
         return header, parts

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs.srv import Capture
 from sailenv_msgs_py.error_codes import error_from_response
-from sailenv_ros.agent.direct_frames import DirectFrames, LineBroken
+from sailenv_ros.agent.direct_frames import DirectFrames, Disconnected
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.agent.frame_topics import AgentTopics
 from sailenv_ros.agent.received import frame_of_info, views_of_bundle
@@ -108,8 +108,8 @@ class FrameClient:
             left_s = max(0.0, deadline - time.monotonic())
 
     def close(self) -> None:
-        """End the subscriptions, and the direct line."""
-        self._hang_up()
+        """End the subscriptions, and the socket of direct frames."""
+        self._disconnect()
         self._topics.close()
 
     # -- through shared memory ---------------------------------------------------------------
@@ -126,13 +126,13 @@ class FrameClient:
             captured = self._direct.capture(
                 self._spec.name, views, self._topics.subscribed, intrinsics, _left_s(deadline)
             )
-        except LineBroken as problem:
+        except Disconnected as problem:
             _log.info("frames come by topics from now on: %s", problem)
-            self._hang_up()
+            self._disconnect()
             self._by_topics_alone = True
             return self._captured_by_topics(views, deadline)
         except DeadlineExceeded:
-            self._hang_up()  # its late answer must not be taken for that of the next request
+            self._disconnect()  # its late answer must not be taken for that of the next request
             raise
         if captured is None:
             return None
@@ -140,7 +140,7 @@ class FrameClient:
         self._last_captured = info.sequence
         return self._frame_of(info, arrays, deadline)
 
-    def _hang_up(self) -> None:
+    def _disconnect(self) -> None:
         if self._direct is not None:
             self._direct.close()
             self._direct = None

@@ -55,60 +55,60 @@ class CaptureServer:
     ) -> None:
         self._simulation = simulation
         self._publisher_of = publisher_of
-        self._lines: set[socket.socket] = set()
+        self._sockets: set[socket.socket] = set()
         self._closed = False
-        self._door: socket.socket | None = None
+        self._listener: socket.socket | None = None
         if not is_wanted():
             return
         try:
-            self._door, self._path = listen(domain_id, namespace)
+            self._listener, self._path = listen(domain_id, namespace)
         except (OSError, InvalidRequest) as problem:
             _log.info("Agents of this machine get frames by topics alone: %s", problem)
             return
-        threading.Thread(target=self._accept, name="frames-door", daemon=True).start()
+        threading.Thread(target=self._accept, name="frames-listener", daemon=True).start()
 
     def close(self) -> None:
         """Hang up on everybody; a second call does nothing."""
-        if self._closed or self._door is None:
+        if self._closed or self._listener is None:
             return
         self._closed = True
         with contextlib.suppress(OSError):
             self._path.unlink()
-        for line in (self._door, *self._lines):
+        for sock in (self._listener, *self._sockets):
             with contextlib.suppress(OSError):
-                line.shutdown(socket.SHUT_RDWR)  # wakes the thread that waits there
-        self._door.close()
+                sock.shutdown(socket.SHUT_RDWR)  # wakes the thread that waits there
+        self._listener.close()
 
     def _accept(self) -> None:
-        assert self._door is not None
+        assert self._listener is not None
         while not self._closed:
             try:
-                line, _ = self._door.accept()
+                sock, _ = self._listener.accept()
             except OSError:
                 return
-            if not peer_is_same_user(line):
-                line.close()
+            if not peer_is_same_user(sock):
+                sock.close()
                 continue
-            self._lines.add(line)
+            self._sockets.add(sock)
             threading.Thread(
-                target=self._serve, args=(line,), name="direct-frames", daemon=True
+                target=self._serve, args=(sock,), name="direct-frames", daemon=True
             ).start()
 
-    def _serve(self, line: socket.socket) -> None:
+    def _serve(self, sock: socket.socket) -> None:
         segments: dict[int, mmap.mmap] = {}
         try:
-            while not self._closed and self._answer(line, segments):
+            while not self._closed and self._answer(sock, segments):
                 pass
         except (OSError, SailenvError, KeyError, TypeError, ValueError) as problem:
             if not self._closed:
-                _log.info("an Agent's line for frames was closed: %r", problem)
+                _log.info("an Agent's socket for frames was closed: %r", problem)
         finally:
-            self._lines.discard(line)
-            line.close()
+            self._sockets.discard(sock)
+            sock.close()
 
-    def _answer(self, line: socket.socket, segments: dict[int, mmap.mmap]) -> bool:
-        """Answer one request; False at the end of the line."""
-        received = receive(line)
+    def _answer(self, sock: socket.socket, segments: dict[int, mmap.mmap]) -> bool:
+        """Answer one request; False at the end of the connection."""
+        received = receive(sock)
         if received is None:
             return False
         request, _, descriptors = received
@@ -122,7 +122,7 @@ class CaptureServer:
             for fd in descriptors:
                 os.close(fd)
         header, parts = self._captured(request, segments[number])
-        send(line, header, parts)
+        send(sock, header, parts)
         return True
 
     def _captured(

@@ -1,4 +1,4 @@
-"""The door through which processes of one user on one machine hand over frames: a Unix socket.
+"""A Unix socket over which processes of one user on one machine hand over frames.
 
 It lies in the folder that nobody else can write to, beside the simulator's lock. Packets are a
 header of JSON, raw parts, and descriptors. Knows nothing of ROS or of frames.
@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 DIRECT_FRAMES = "SAILENV_DIRECT_FRAMES"
-"""The variable that closes this door with the value 0: frames then come by topics alone."""
+"""The variable that turns this off with the value 0: frames then come by topics alone."""
 
 _MAX_PACKET = 160 * 1024
 _MAX_DESCRIPTORS = 4
@@ -46,48 +46,48 @@ def is_wanted() -> bool:
 
 
 def listen(domain_id: int, namespace: str) -> tuple[socket.socket, Path]:
-    """Open the door of a simulator, which holds the lock of its name.
+    """Listen for a simulator, which holds the lock of its name.
 
     Raises
     ------
     OSError, InvalidRequest
         If it cannot be opened.
     """
-    door = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     try:
         with open_private_folder() as folder:
             path = folder / _file(domain_id, namespace)
             with contextlib.suppress(FileNotFoundError):
                 path.unlink()  # of a simulator that was killed
-            door.bind(str(path))
-        door.listen(32)
+            listener.bind(str(path))
+        listener.listen(32)
     except BaseException:
-        door.close()
+        listener.close()
         raise
-    return door, path
+    return listener, path
 
 
 def connect(domain_id: int, namespace: str) -> socket.socket | None:
-    """Knock at the door of a simulator; None if there is none on this machine."""
-    line = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    """Connect to a simulator; None if there is none on this machine."""
+    sock = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     try:
         with open_private_folder() as folder:
-            line.connect(str(folder / _file(domain_id, namespace)))
+            sock.connect(str(folder / _file(domain_id, namespace)))
     except (OSError, InvalidRequest):
-        line.close()
+        sock.close()
         return None
-    return line
+    return sock
 
 
-def peer_is_same_user(line: socket.socket) -> bool:
+def peer_is_same_user(sock: socket.socket) -> bool:
     """Say whether the process at the other end is of this user."""
-    credentials = line.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize("3i"))
+    credentials = sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize("3i"))
     _, user, _ = struct.unpack("3i", credentials)
     return bool(user == os.getuid())
 
 
 def send(
-    line: socket.socket,
+    sock: socket.socket,
     header: dict[str, Any],
     parts: Sequence[bytes] = (),
     descriptors: Sequence[int] = (),
@@ -102,22 +102,22 @@ def send(
     text = json.dumps({**header, "parts": [len(part) for part in parts]}).encode()
     packet = [struct.pack("<I", len(text)), text, *parts]
     if descriptors:
-        socket.send_fds(line, packet, descriptors)
+        socket.send_fds(sock, packet, descriptors)
     else:
-        line.sendmsg(packet)
+        sock.sendmsg(packet)
 
 
-def receive(line: socket.socket) -> tuple[dict[str, Any], list[bytes], list[int]] | None:
-    """Wait for a packet; None at the end of the line. The descriptors are the caller's.
+def receive(sock: socket.socket) -> tuple[dict[str, Any], list[bytes], list[int]] | None:
+    """Wait for a packet; None at the end of the connection. The descriptors are the caller's.
 
     Raises
     ------
     OSError
-        If the line broke.
+        If the connection broke.
     InvalidRequest
         If it is no packet of this kind.
     """
-    packet, descriptors, flags, _ = socket.recv_fds(line, _MAX_PACKET, _MAX_DESCRIPTORS)
+    packet, descriptors, flags, _ = socket.recv_fds(sock, _MAX_PACKET, _MAX_DESCRIPTORS)
     if not packet and not descriptors:
         return None
     try:

@@ -51,12 +51,12 @@ def agent(keeper: Agent, monkeypatch: pytest.MonkeyPatch) -> Iterator[Agent]:
             yield agent
 
 
-def line_to(simulator: Agent) -> socket.socket:
-    """Open a line of one's own."""
-    line = connect(int(os.environ["ROS_DOMAIN_ID"]), NAMESPACE)
-    assert line is not None
-    line.settimeout(10.0)
-    return line
+def socket_to(simulator: Agent) -> socket.socket:
+    """Open a connection of one's own."""
+    sock = connect(int(os.environ["ROS_DOMAIN_ID"]), NAMESPACE)
+    assert sock is not None
+    sock.settimeout(10.0)
+    return sock
 
 
 def test_frames_are_the_same_as_by_topics(keeper: Agent, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,7 +154,7 @@ def test_a_camera_that_another_client_changed_is_noticed(
 
 
 def test_refusals_are_the_operations_own(agent: Agent, keeper: Agent) -> None:
-    """The simulator's sentence arrives, and the line goes on."""
+    """The simulator's sentence arrives, and the connection goes on."""
     keeper.delete_agent(agent.id)
     with pytest.raises(UnknownName, match="agent"):
         agent.get_frame()
@@ -171,11 +171,11 @@ def test_refusals_are_the_operations_own(agent: Agent, keeper: Agent) -> None:
         {"segment": "many", "agent": 3, "views": 5, "subscribed": None},
     ],
 )
-def test_a_hostile_line_is_closed(agent: Agent, keeper: Agent, header: dict[str, Any]) -> None:
-    """Whoever sends nonsense is hung up on, and nobody else notices."""
-    line = line_to(keeper)
+def test_a_hostile_connection_is_closed(agent: Agent, keeper: Agent, header: dict[str, Any]) -> None:
+    """Whoever sends nonsense is disconnected, and nobody else notices."""
+    sock = socket_to(keeper)
     with open(os.devnull) as null:
-        send(line, header, (), [null.fileno()] * (header.get("segment") == 10**9))
-    assert receive(line) is None
-    line.close()
+        send(sock, header, (), [null.fileno()] * (header.get("segment") == 10**9))
+    assert receive(sock) is None
+    sock.close()
     assert agent.get_frame()["main"].shape == (120, 160, 3)

@@ -1,4 +1,4 @@
-"""The door for frames on one machine: whole packets, and nobody who should not come in."""
+"""The socket for frames on one machine: whole packets, and nobody who should not come in."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from sailenv_ros.system.frame_socket import (
 
 @pytest.fixture
 def ends() -> Iterator[tuple[socket.socket, socket.socket]]:
-    """Both ends of a line."""
+    """Both ends of a connection."""
     pair = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     yield pair
     for end in pair:
@@ -32,7 +32,7 @@ def ends() -> Iterator[tuple[socket.socket, socket.socket]]:
 
 
 def test_packets_come_whole(ends: tuple[socket.socket, socket.socket]) -> None:
-    """Header, parts and descriptors as they were sent; then the end of the line."""
+    """Header, parts and descriptors as they were sent; then the end of the connection."""
     read_end, write_end = os.pipe()
     send(ends[0], {"views": ["rgb"]}, [b"", b"abc"], [write_end])
     os.close(write_end)
@@ -77,15 +77,15 @@ def test_the_door_is_found_by_its_name(monkeypatch: pytest.MonkeyPatch, tmp_path
     assert connect(7, "/here") is None
     listen(7, "/here")[0].close()  # leaves its file, as a process does that is killed
     assert connect(7, "/here") is None
-    door, path = listen(7, "/here")
+    listener, path = listen(7, "/here")
     assert path.parent.parent == tmp_path
-    line = connect(7, "/here")
-    assert line is not None
-    assert peer_is_same_user(line)
+    sock = connect(7, "/here")
+    assert sock is not None
+    assert peer_is_same_user(sock)
     assert connect(7, "/there") is None
     assert connect(8, "/here") is None
-    line.close()
-    door.close()
+    sock.close()
+    listener.close()
 
 
 @pytest.mark.parametrize(
