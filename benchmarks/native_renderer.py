@@ -32,7 +32,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import render_passes
+import render_passes  # type: ignore[import-not-found]  # beside this file
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer

@@ -9,9 +9,9 @@ from __future__ import annotations
 from sailenv_ros.native import (
     ambient_visibility,
     annotation,
+    light_gathering,
     picture_kernels,
     resolve,
-    sensor_kernel,
 )
 from sailenv_ros.native.library import native_is_usable
 from sailenv_ros.render import reference_kernels
@@ -27,7 +27,7 @@ __all__ = [
 if native_is_usable():
     annotate_pixels = annotation.annotate_pixels
     find_ambient_visibility = ambient_visibility.find_ambient_visibility
-    gather_light = sensor_kernel.gather_light
+    gather_light = light_gathering.gather_light
     make_picture = picture_kernels.make_picture
     resolve_samples = resolve.resolve_samples
 else:

@@ -302,7 +302,7 @@ def gather_light(
     *,
     threads: int,
 ) -> NDArray[np.float16]:
-    """Spread light and add noise; see `native.sensor_kernel`."""
+    """Spread light and add noise; see `native.light_gathering`."""
     light = radiance[..., :3].astype(F32)
     if bloom > 0.0:
         part = F32(1.0) / F32(BLOOM_LEVELS)

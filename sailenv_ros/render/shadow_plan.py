@@ -7,6 +7,7 @@ has changed; then what has not moved is copied from a second map, where it was d
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,9 +34,22 @@ comes to rest creeps for seconds, by less than can be seen, and needs no new map
 
 def casts(drawn: DrawnInstance) -> bool:
     """Tell if a body casts a shadow: walls and ceilings of halls do, grounds do not."""
-    low, high = drawn.model.bounds() * np.asarray(drawn.scale)
-    largest = LARGEST_SHEET_M if (high - low).min() < 1e-3 else LARGEST_CASTER_M
-    return float(np.linalg.norm(high - low)) <= largest
+    boxes = _boxes([drawn])
+    return bool(_casting(boxes[:, 1] - boxes[:, 0])[0])
+
+
+def _boxes(instances: Sequence[DrawnInstance]) -> NDArray[np.float64]:
+    """Return (N, 2, 3): lowest and highest corner of each, in its own frame [m]."""
+    bounds = np.array([drawn.model.bounds() for drawn in instances]).reshape(-1, 2, 3)
+    scales = np.array([drawn.scale for drawn in instances], np.float64).reshape(-1, 1, 3)
+    boxes: NDArray[np.float64] = bounds * scales
+    return boxes
+
+
+def _casting(extents: NDArray[np.float64]) -> NDArray[np.bool_]:
+    largest = np.where(extents.min(axis=1) < 1e-3, LARGEST_SHEET_M, LARGEST_CASTER_M)
+    casting: NDArray[np.bool_] = np.linalg.norm(extents, axis=1) <= largest
+    return casting
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -270,14 +284,10 @@ class _Spheres:
         if self._instances is contents.instances:
             return
         self._instances = contents.instances
-        bounds = np.array(
-            [drawn.model.bounds() * np.asarray(drawn.scale) for drawn in contents.instances]
-        ).reshape(-1, 2, 3)
-        casting = np.array([casts(drawn) for drawn in contents.instances], bool)
-        self._middles = bounds.mean(axis=1)
-        self._radii = np.where(
-            casting, 0.5 * np.linalg.norm(bounds[:, 1] - bounds[:, 0], axis=1), 0.0
-        )
+        boxes = _boxes(contents.instances)
+        extents = boxes[:, 1] - boxes[:, 0]
+        self._middles = boxes.mean(axis=1)
+        self._radii = np.where(_casting(extents), 0.5 * np.linalg.norm(extents, axis=1), 0.0)
 
 
 def _caster_bounds(

@@ -171,7 +171,7 @@ def test_refusals_are_the_operations_own(agent: Agent, keeper: Agent) -> None:
         {"segment": "many", "agent": 3, "views": 5, "subscribed": None},
     ],
 )
-def test_a_hostile_connection_is_closed(agent: Agent, keeper: Agent, header: dict[str, Any]) -> None:
+def test_a_hostile_client_is_cut_off(agent: Agent, keeper: Agent, header: dict[str, Any]) -> None:
     """Whoever sends nonsense is disconnected, and nobody else notices."""
     sock = socket_to(keeper)
     with open(os.devnull) as null:

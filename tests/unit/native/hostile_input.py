@@ -22,11 +22,11 @@ from sailenv_ros.native.ambient_visibility import find_ambient_visibility
 from sailenv_ros.native.annotation import annotate_pixels
 from sailenv_ros.native.client_views import convert_views
 from sailenv_ros.native.library import using_instruction_set
+from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.picture_kernels import make_picture
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
-from sailenv_ros.native.sensor_kernel import gather_light
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.render.ambient_occlusion import PATTERN
 from tests.support.hostile_scenes import hostile_scenes

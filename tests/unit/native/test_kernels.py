@@ -14,9 +14,9 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.native import (
     ambient_visibility,
     annotation,
+    light_gathering,
     picture_kernels,
     resolve,
-    sensor_kernel,
 )
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.picture_settings import PictureSettings
@@ -203,7 +203,7 @@ def test_light_is_gathered_as_the_definition_does(
     given = radiance, bloom, 1.0 / 300.0, 1e-4, -(2**62) + 12345, normal
     expected = reference.gather_light(*given, threads=1)
     for threads in (1, 3):
-        got = sensor_kernel.gather_light(*given, threads=threads)
+        got = light_gathering.gather_light(*given, threads=threads)
         np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
 
 
