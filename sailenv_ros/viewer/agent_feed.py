@@ -22,6 +22,8 @@ __all__ = ["AgentFeeds"]
 
 _log = logging.getLogger(__name__)
 
+_CLOSE_TIMEOUT_S = 5.0
+
 WAIT_S = 0.1
 """Between two looks at whether anything has changed while time stands still [s of wall time]."""
 
@@ -45,6 +47,7 @@ class AgentFeeds:
         self._touched = touched
         self._guard = threading.Lock()
         self._feeds: dict[str, _AgentFeed] = {}
+        self._ending: list[_AgentFeed] = []
 
     @property
     def rendered_views(self) -> frozenset[str]:
@@ -91,7 +94,16 @@ class AgentFeeds:
                 )
                 if feed.join(watcher):
                     return watcher
-                del self._feeds[agent]  # it ends just now
+                # It ends just now.
+                self._ending = [old for old in self._ending if old.running]
+                self._ending.append(self._feeds.pop(agent))
+
+    def close(self) -> None:
+        """End all feeds, and wait for that: the agent of this server is gone then."""
+        with self._guard:
+            feeds = [*self._feeds.values(), *self._ending]
+        for feed in feeds:
+            feed.close()
 
     def leave(self, watcher: ViewSubscription) -> None:
         """Send nothing more."""
@@ -146,6 +158,21 @@ class _AgentFeed:
                 self._watchers.remove(watcher)
                 self._ended = not self._watchers
                 self.changed.notify_all()
+
+    @property
+    def running(self) -> bool:
+        """True until its thread has ended."""
+        return self._thread.is_alive()
+
+    def close(self) -> None:
+        """Send nothing more to anybody, and wait for the thread to end."""
+        with self.changed:
+            self._ended = True
+            self._watchers.clear()
+            self.changed.notify_all()
+        self._thread.join(_CLOSE_TIMEOUT_S)
+        if self.running:
+            _log.warning("frames of agent %r have not ended in time", self._agent)
 
     # -- in the thread ---------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import weakref
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
@@ -21,8 +22,19 @@ NAME = "debug_agent"
 RATE_HZ = 30.0
 
 
+class _Watchers:
+    """How many watch the debug agent of a simulation, in all its viewers."""
+
+    def __init__(self) -> None:
+        self.guard = threading.Lock()
+        self.count = 0
+
+
+_watchers: weakref.WeakKeyDictionary[Simulation, _Watchers] = weakref.WeakKeyDictionary()
+
+
 class DebugAgent:
-    """Comes with the first who watches it and goes with the last.
+    """Comes with the first who watches it and goes with the last; viewers of a simulation share it.
 
     Parameters
     ----------
@@ -31,8 +43,7 @@ class DebugAgent:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._guard = threading.Lock()
-        self._watchers = 0
+        self._watchers = _watchers.setdefault(simulation, _Watchers())
         self._intrinsics = CameraIntrinsics()
         self._picture = PictureSettings()
 
@@ -49,7 +60,7 @@ class DebugAgent:
         InvalidRequest
             If there are too many agents.
         """
-        with self._guard:
+        with self._watchers.guard:
             if all(spec.name != NAME for spec in self._simulation.info.agents):
                 spec = AgentSpec(
                     name=NAME,
@@ -58,13 +69,13 @@ class DebugAgent:
                     picture=self._picture,
                 )
                 self._simulation.register_agent(spec)
-            self._watchers += 1
+            self._watchers.count += 1
 
     def end(self) -> None:
         """Count one less; remove the agent with the last."""
-        with self._guard:
-            self._watchers -= 1
-            if self._watchers:
+        with self._watchers.guard:
+            self._watchers.count -= 1
+            if self._watchers.count:
                 return
             # Whoever watches next finds the picture as it was left.
             for spec in self._simulation.info.agents:
@@ -76,7 +87,7 @@ class DebugAgent:
 
     def set_intrinsics(self, intrinsics: CameraIntrinsics) -> None:
         """Change its lens or size, for all who watch it."""
-        with self._guard:
+        with self._watchers.guard:
             self._intrinsics = intrinsics
-            if self._watchers:
+            if self._watchers.count:
                 self._simulation.set_intrinsics(intrinsics, agent=NAME)

@@ -143,6 +143,7 @@ class ViewerServer:
         with contextlib.suppress(AttributeError):
             self._end_news()
         self._thread.end()
+        self._feeds.close()
 
     def __enter__(self) -> ViewerServer:
         return self

@@ -348,6 +348,25 @@ def test_who_does_not_answer_is_gone(
     assert "a viewer is disconnected: it does not answer" in caplog.text
 
 
+def test_viewers_of_one_simulation_share_the_debug_agent(simulation: Simulation) -> None:
+    """It stays while anybody watches it in either of them, and goes with the last."""
+
+    async def look(first: ViewerServer, other: ViewerServer) -> None:
+        async with connected(other) as stays:
+            async with connected(first) as leaves:
+                await leaves.ask("watch", agent="debug_agent", views=["rgb"])
+                await leaves.frame()
+                await stays.ask("watch", agent="debug_agent", views=["rgb"])
+                await stays.frame()
+            await asyncio.to_thread(first.close)
+            for _ in range(3):
+                await stays.frame()
+
+    with ViewerServer(simulation, port=0) as other, ViewerServer(simulation, port=0) as first:
+        asyncio.run(look(first, other))
+    until(lambda: "debug_agent" not in agents_of(simulation), "the debug agent to go")
+
+
 def test_other_sites_and_too_many_are_refused(simulation: Simulation) -> None:
     """A foreign Origin, a foreign Host and the ninth viewer get words instead of a socket."""
     limits = ViewerLimits(clients=1)
