@@ -57,7 +57,7 @@ def flow_speed(args: argparse.Namespace) -> int:
     ]
     data = {
         "scene": args.scene,
-        "transport": "in process" if in_process else "Agent.get_frame() over DDS",
+        "transport": "in process" if in_process else "Agent.get_frame()",
         "frames": frames,
         "renderer": renderer,
         "methods": entries,
