@@ -110,16 +110,17 @@ def test_a_refused_name_does_not_take_its_owners_agent_along(watcher: Agent) -> 
 def test_a_client_of_elsewhere_goes_when_dds_hears_nothing_of_it(
     watcher: Agent, tmp_path: Path
 ) -> None:
-    """One whose lock cannot be seen, as on another host, is gone within 10 s."""
+    """One whose lock cannot be seen, as on another host, is gone after its lease of 6 s."""
     (tmp_path / "runtime").mkdir(mode=0o700)
     client = Client("far", environment={"XDG_RUNTIME_DIR": str(tmp_path / "runtime")})
     assert "far" in names(watcher)
     client.kill()
-    until(lambda: "far" not in names(watcher), "the far one's agent to go", 10.0)
+    # 8 s on an idle machine; DDS looks at leases from time to time.
+    until(lambda: "far" not in names(watcher), "the far one's agent to go", 40.0)
 
 
 def test_an_end_in_order_is_told_at_once(watcher: Agent) -> None:
     """A closed Agent is gone when `close` returns."""
     with Agent(width=32, height=24, namespace=NAMESPACE, name="orderly"):
         until(lambda: "orderly" in names(watcher), "the agent to be announced")
-    until(lambda: "orderly" not in names(watcher), "its end to be announced", 1.0)
+    until(lambda: "orderly" not in names(watcher), "its end to be announced", 5.0)
