@@ -203,6 +203,12 @@ def address_error(what: str, host: str, port: int, problem: OSError) -> SailenvE
 class InternalFault(SailenvError):
     """An internal error of the simulator; its log says more."""
 
+    @classmethod
+    def of(cls, error: Exception) -> InternalFault:
+        """Return what a client is told of an exception that was not expected."""
+        what = f"{type(error).__name__}: {error}"
+        return cls(f"an internal error of the simulator, see its log: {what}")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneDiagnostic:

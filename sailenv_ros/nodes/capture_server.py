@@ -139,10 +139,7 @@ class CaptureServer:
             return _refused(error)
         except Exception as error:
             _log.exception("a frame could not be made because of an internal error")
-            what = f"{type(error).__name__}: {error}"
-            return _refused(
-                InternalFault(f"an internal error of the simulator, see its log: {what}")
-            )
+            return _refused(InternalFault.of(error))
         info = frame_info_to_msg(
             frame, header_of_frame(frame), views=frame.views, depth_range_m=frame.depth_range_m
         )

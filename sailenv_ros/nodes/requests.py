@@ -78,8 +78,7 @@ def answered(
             refusal = error
         except Exception as error:
             _log.exception("a service failed because of an internal error in the simulator")
-            what = f"{type(error).__name__}: {error}"
-            refusal = InternalFault(f"an internal error of the simulator, see its log: {what}")
+            refusal = InternalFault.of(error)
         # A fresh response: what the handler filled in before it failed is not told.
         response = type(response)()
         error_to_response(refusal, response)

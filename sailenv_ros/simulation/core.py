@@ -330,9 +330,8 @@ class SimulationCore(WorldOperations):
     def _info_of_frames(self) -> SceneInfo:
         """Return what was announced last, which is what clients find a frame's ids in."""
         if self._announced is None or self._announced.revision < self.world.contents.revision:
-            self._announced = (
-                self.info
-            )  # of the beginning; no operation leaves a change unannounced
+            # At the beginning; later every operation announces what it changed.
+            self._announced = self.info
         return self._announced
 
     def _next_revision(self) -> int:

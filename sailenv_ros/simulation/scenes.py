@@ -86,9 +86,7 @@ class SceneLibrary:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
-        self._pack_version = _standard_pack_version()
-        self._packs = installed_packs()
-        self._skies = sky_files(pack.folder for pack in self._packs)
+        self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
         self._light_cache = LightCache()
         self._uploads = 0
@@ -188,9 +186,7 @@ class SceneLibrary:
 
     def refresh(self) -> None:
         """Take up what was built since this was made: furniture, skies and the user's packs."""
-        self._pack_version = _standard_pack_version()
-        self._packs = installed_packs()
-        self._skies = sky_files(pack.folder for pack in self._packs)
+        self._open_packs()
         self._assets.renew(installed_sources(self._packs))
 
     def load_light(self, world: World) -> None:
@@ -349,6 +345,11 @@ class SceneLibrary:
         checked_scene({"version": 1, "lights": entries}, self.knowledge, what="light")
 
     # -- inside ----------------------------------------------------------------------------
+
+    def _open_packs(self) -> None:
+        self._pack_version = _standard_pack_version()
+        self._packs = installed_packs()
+        self._skies = sky_files(pack.folder for pack in self._packs)
 
     def _load_light(self, world: World, scene: str) -> None:
         if world.described is not None and world.described.room is not None:
