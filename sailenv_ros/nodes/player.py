@@ -26,7 +26,7 @@ from sailenv_ros.nodes.lifecycle import StopRequest
 from sailenv_ros.nodes.parameters import Parameter, declare_table
 from sailenv_ros.nodes.qos import clock_qos, no_events
 from sailenv_ros.nodes.running import run_node
-from sailenv_ros.recording.channels import CLOCK, clock_message, stamp_of
+from sailenv_ros.recording.channels import CLOCK, clock_message, present_form, stamp_of
 from sailenv_ros.recording.playback import PlaybackClock, Programme, programme
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.schemas import message_class
@@ -148,7 +148,7 @@ class Player:
         publisher = self._publishers.get(topic.name)
         if publisher is None:
             return
-        data = bytes(raw.data)
+        data = bytes(present_form(topic, raw.data))
         if self._own_clock is not None:
             self._tell_time(topic, data, raw.log_ns)
         publisher.publish(data)
