@@ -1,118 +1,58 @@
-"""What motion costs: physics with many moving bodies, and many agents that look at them.
+"""How long the motion between two frames takes: python benchmarks/motion.py [--pairs N].
 
-Prints milliseconds per simulated second and the real-time factor for bodies in a closed box, and
-frames per second in all for 1, 4 and 16 agents at 320x240.
+Frames of a furnished room, or of `optical` where the furniture has not been built, from a moving
+camera; medians on as many threads as there are processors.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import tempfile
+import statistics
 import time
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
 
+from sailenv_ros import Simulation
 from sailenv_ros.agents import AgentSpec
-from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
-
-WALLS = (
-    ([0, 0, -0.1], [6.4, 6.4, 0.2]),
-    ([0, 0, 3.1], [6.4, 6.4, 0.2]),
-    ([0, 3.1, 1.5], [6.4, 0.2, 3]),
-    ([0, -3.1, 1.5], [6.4, 0.2, 3]),
-    ([3.1, 0, 1.5], [0.2, 6, 3]),
-    ([-3.1, 0, 1.5], [0.2, 6, 3]),
-)
-
-KINDS: dict[str, dict[str, Any]] = {
-    "poltergeist": {"mean_interval": 4.0},
-    "uniform_movement_random_bounce": {"speed": 1.0},
-}
+from sailenv_ros.errors import SailenvError
+from sailenv_ros.frame import Frame
+from sailenv_ros.motion import motion
 
 
-def scene_of(type_: str, count: int) -> str:
-    """Describe a closed box with so many cubes that move by a behaviour."""
-    objects: list[dict[str, Any]] = [
-        {"name": f"wall {n}", "asset": "cube", "static": True, "position": p, "scale": s}
-        for n, (p, s) in enumerate(WALLS)
-    ]
-    for number in range(count):
-        row, column, level = number % 8, number // 8 % 8, number // 64
-        objects.append(
-            {
-                "name": f"cube {number}",
-                "asset": "cube",
-                "scale": 0.2,
-                "position": [0.7 * row - 2.45, 0.7 * column - 2.45, 0.3 + 0.6 * level],
-                "gravity": type_ == "poltergeist",
-                "behaviours": [{"type": type_, **KINDS[type_]}],
-            }
-        )
-    return json.dumps({"version": 1, "objects": objects})
+def median_ms(work: Callable[[], object], rounds: int) -> float:
+    """Return the median wall time of a call [ms]."""
+    times = []
+    for _ in range(rounds):
+        began = time.perf_counter()
+        work()
+        times.append(1e3 * (time.perf_counter() - began))
+    return statistics.median(times)
 
 
-def core_of(text: str, folder: Path) -> SimulationCore:
-    """Build a simulation of a scene's text."""
-    path = folder / "bench.yaml"
-    path.write_text(text, encoding="utf-8")
-    return SimulationCore(
-        SceneLibrary(),
-        path,
-        make_backend("auto", None),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
-
-
-def time_physics(type_: str, count: int, seconds: float, folder: Path) -> None:
-    """Print what a simulated second costs."""
-    core = core_of(scene_of(type_, count), folder)
-    core.step(240)
-    began = time.perf_counter()
-    core.step(round(240 * seconds))
-    wall_s = (time.perf_counter() - began) / seconds
-    core.close()
-    print(
-        f"{count} bodies, {type_}: {1e3 * wall_s:.0f} ms per simulated second, "
-        f"real-time factor {1.0 / wall_s:.2f}"
-    )
-
-
-def time_agents(agents: int, frames: int, folder: Path) -> None:
-    """Print how many frames of five views are rendered in a second, by all agents together."""
-    core = core_of(scene_of("poltergeist", 50), folder)
-    lens = CameraIntrinsics(width=320, height=240)
-    for number in range(agents):
-        core.register_agent(AgentSpec(name=f"agent_{number}", intrinsics=lens))
-        core.capture(agent=f"agent_{number}")
-    began = time.perf_counter()
-    for _ in range(max(1, frames // agents)):
-        core.step(8)
-        for number in range(agents):
-            core.capture(agent=f"agent_{number}")
-    wall_s = time.perf_counter() - began
-    core.close()
-    print(f"{agents} agents at 320x240: {max(1, frames // agents) * agents / wall_s:.1f} frames/s")
+def two_frames(scene: str, width: int, height: int) -> list[Frame]:
+    """Return two frames half a second apart."""
+    lens = CameraIntrinsics(width=width, height=height)
+    spec = AgentSpec(name="eye", intrinsics=lens, rate_hz=0.0)
+    with Simulation(scene, mode="lockstep", agent=spec) as simulation:
+        frames = []
+        for _ in range(2):
+            simulation.step(120)
+            frames.append(simulation.capture(("depth", "instance"), agent="eye"))
+        return frames
 
 
 def main() -> None:
-    """Run the benchmark."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bodies", type=int, default=200)
-    parser.add_argument("--seconds", type=float, default=5.0, help="simulated, per measurement")
-    parser.add_argument("--frames", type=int, default=64)
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        for type_ in KINDS:
-            time_physics(type_, options.bodies, options.seconds, Path(folder))
-        for agents in (1, 4, 16):
-            time_agents(agents, options.frames, Path(folder))
+    parser.add_argument("--pairs", type=int, default=101)
+    args = parser.parse_args()
+    for width, height in ((320, 240), (640, 480), (1280, 960)):
+        try:
+            one, other = two_frames("room_01", width, height)
+        except SailenvError:
+            one, other = two_frames("optical", width, height)
+        taken = median_ms(lambda one=one, other=other: motion(one, other), args.pairs)  # type: ignore[misc]
+        print(f"motion of a pair, {one.scene}, {width} x {height}: {taken:.2f} ms")
 
 
 if __name__ == "__main__":

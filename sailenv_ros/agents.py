@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from sailenv_ros.camera import CameraIntrinsics, require_drawable
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import FIVE_VIEWS, checked_views
+from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS, checked_views
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.validation import IDENTIFIER, checked_number, is_finite_number, is_number
@@ -81,7 +81,7 @@ class AgentSpec:
                 self.name,
                 "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
             )
-        object.__setattr__(self, "views", checked_views(self.views))
+        object.__setattr__(self, "views", checked_views(self.views, supported=RENDERED_VIEWS))
         checked_rate("rate_hz", self.rate_hz)
         near = self.intrinsics.near_m
         if not (is_finite_number(self.depth_range_m) and self.depth_range_m > near):

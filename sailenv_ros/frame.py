@@ -27,6 +27,7 @@ __all__ = [
     "FIVE_VIEWS",
     "VIEWS",
     "Frame",
+    "RENDERED_VIEWS",
     "ImageCodec",
     "ViewDisplay",
     "ViewSource",
@@ -37,12 +38,13 @@ __all__ = [
 ]
 
 
-ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry"]
+ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry", "motion"]
 """What makes a view: the lit picture; arithmetic on depth and instance id, which all back ends
-share; or an attribute of the surface, which the geometry pass writes as it is."""
+share; an attribute of the surface, which the geometry pass writes as it is; or arithmetic on a
+frame and the one that follows it, which no renderer makes (`sailenv_ros.motion`)."""
 
 ViewDisplay: TypeAlias = Literal[
-    "colour", "depth", "category", "instance", "flow", "direction", "mask"
+    "colour", "depth", "category", "instance", "flow", "direction", "mask", "place", "displacement"
 ]
 """How a view is shown as a picture; `pictures.colours` has a function for each."""
 
@@ -67,12 +69,14 @@ class ViewSpec:
         Of the values, as it is shown to people; empty for none.
     invalid : str
         Values that stand for something else than a measurement; empty if there are none.
-    source : {'lighting', 'annotation', 'geometry'}
+    source : {'lighting', 'annotation', 'geometry', 'motion'}
         What makes it. A view of 'geometry' is an output of the geometry pass of the same name.
     needs_past : bool
         True if the view refers to an earlier frame of the same camera.
     needs_past_depth : bool
         True if the depth of that earlier frame is needed too.
+    needs_next : bool
+        True if the view refers to the next frame of the same camera: it is known one frame late.
     by_default : bool
         True if an agent gets it without asking.
     display : str
@@ -100,6 +104,7 @@ class ViewSpec:
     invalid: str = ""
     needs_past: bool = False
     needs_past_depth: bool = False
+    needs_next: bool = False
     by_default: bool = False
     color_topic: bool = False
     compressed_topic: ImageCodec | None = None
@@ -219,6 +224,41 @@ _SPECS = (
         display="colour",
         source="geometry",
     ),
+    ViewSpec(
+        name="object_coords",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="surface point in its instance's own frame",
+        unit="m",
+        invalid="NaN nothing hit or nearer than the near plane",
+        display="place",
+        source="annotation",
+    ),
+    ViewSpec(
+        name="flow_forward",
+        dtype=np.dtype(np.float32),
+        channels=2,
+        encoding="32FC2",
+        meaning="displacement in the image to the next frame, u right, v down",
+        unit="px",
+        invalid="NaN where it does not exist",
+        display="flow",
+        source="motion",
+        needs_next=True,
+    ),
+    ViewSpec(
+        name="scene_flow",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="displacement of the surface point in the world to the next frame, optical axes",
+        unit="m",
+        invalid="NaN where it does not exist",
+        display="displacement",
+        source="motion",
+        needs_next=True,
+    ),
 )
 
 VIEWS: Mapping[str, ViewSpec] = MappingProxyType({spec.name: spec for spec in _SPECS})
@@ -230,6 +270,9 @@ FIVE_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if spec
 
 ALWAYS_MADE: tuple[str, ...] = ("depth",)
 """What costs nothing beside any other view: for a frame of which only the camera is wanted."""
+
+RENDERED_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if not spec.needs_next)
+"""What a frame can have when it is made."""
 
 
 def view_spec(name: str) -> ViewSpec:
@@ -275,6 +318,14 @@ def checked_views(
         raise InvalidRequest("views", (), f"at least one of: {', '.join(VIEWS)}")
     ordered = tuple(name for name in VIEWS if name in wanted)
     missing = [] if supported is None else [name for name in ordered if name not in supported]
+    late = [name for name in missing if VIEWS[name].needs_next]
+    if late:
+        raise InvalidRequest(
+            "views",
+            late,
+            "views that are known with the frame itself; these are known with the next one: take "
+            "motion(frame, next_frame), a recording or their topics",
+        )
     if supported is not None and missing:
         offered = ", ".join(name for name in VIEWS if name in supported)
         raise InvalidRequest("views", missing, f"among those that this renderer makes: {offered}")

@@ -31,7 +31,14 @@ from sailenv_ros.geometry import look_at
 from sailenv_ros.pictures.colours import colour_flow
 from sailenv_ros.simulation.simulation import Simulation
 
-__all__ = ["OURS", "Accuracy", "FlowErrors", "evaluate_scenario", "flow_test_scene"]
+__all__ = [
+    "OURS",
+    "Accuracy",
+    "FlowErrors",
+    "begin_scenario",
+    "evaluate_scenario",
+    "flow_test_scene",
+]
 
 OURS = "sailenv"
 STEPS = 8
@@ -130,7 +137,7 @@ def evaluate_scenario(
     on_pair : callable
         Called after each.
     """
-    boxes = _begin(simulation, scenario)
+    boxes = begin_scenario(simulation, scenario)
     evaluated = {name: FlowErrors() for name in (OURS, *(method.name for method in methods))}
     motion_px, compared = [], []
     frame, instant = _observed(simulation, boxes)
@@ -157,8 +164,8 @@ def evaluate_scenario(
     )
 
 
-def _begin(simulation: Simulation, scenario: Scenario) -> list[BoxSolid]:
-    """Begin a scenario; return its boxes."""
+def begin_scenario(simulation: Simulation, scenario: Scenario) -> list[BoxSolid]:
+    """Begin a scenario in a `flow_test_scene`; return its boxes."""
     objects = scenario.objects()
     ids = simulation.load_scenario({"objects": objects})
     simulation.set_follow(scenario.camera_moves, agent=EYE)

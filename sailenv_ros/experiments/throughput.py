@@ -18,7 +18,7 @@ from sailenv_ros.experiments.baselines import BASELINES
 from sailenv_ros.experiments.statistics import summary_ms
 from sailenv_ros.experiments.worker import Worker
 from sailenv_ros.experiments.workloads import TRANSPORTS, Setting
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
 
 __all__ = ["Group", "Plan", "VIEW_SETS", "measure_group", "baseline_rows", "plan_of"]
 
@@ -32,7 +32,7 @@ VIEW_SETS: Mapping[str, tuple[str, ...]] = {
     "picture alone": ("rgb",),
     "annotations alone": tuple(view for view in FIVE_VIEWS if view != "rgb"),
     "picture and flow": ("rgb", "flow"),
-    "every view": tuple(VIEWS),
+    "every view": RENDERED_VIEWS,
 }
 
 

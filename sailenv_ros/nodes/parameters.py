@@ -18,7 +18,7 @@ from rclpy.node import Node
 from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
 from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.render.backend import BACKEND_NAMES, BackendName
@@ -176,7 +176,7 @@ _PARAMETERS: dict[str, _Parameter] = {
     ),
     "agent.views": _Parameter(
         list(FIVE_VIEWS), "Views of a captured frame unless the request names others.",
-        choices=tuple(VIEWS),
+        choices=RENDERED_VIEWS,
     ),
     "agent.following": _Parameter(True, "True: it takes over the pose of its mover."),
     "agent.mover": _Parameter("", "Name of the mover; empty: the scene's first."),

@@ -20,8 +20,10 @@ __all__ = [
     "colour_categories",
     "colour_depth",
     "colour_directions",
+    "colour_displacements",
     "colour_flow",
     "colour_mask",
+    "colour_places",
     "encoded_colour",
     "grey_depth",
     "view_picture",
@@ -157,6 +159,29 @@ def colour_directions(vectors: NDArray[np.float32]) -> Rgb:
     return picture
 
 
+def colour_places(points: NDArray[np.float32]) -> Rgb:
+    """Show places (H, W, 3) [m] with x, y, z as red, green, blue, to and fro every metre.
+
+    Black where there is none (nan).
+    """
+    # A triangle wave has no jumps, and the same colours left and right of the origin do not touch.
+    known = np.where(np.isfinite(points), points, np.float32(0.5))
+    wave = np.abs(np.mod(known + np.float32(0.5), 2.0) - 1.0)
+    return np.asarray(np.rint(255.0 * wave), np.uint8)
+
+
+def colour_displacements(vectors: NDArray[np.float32]) -> Rgb:
+    """Show displacements (H, W, 3) [m]: grey stands still, x, y, z change red, green, blue.
+
+    The longest of the picture has full colour; black has none (nan).
+    """
+    known = np.isfinite(vectors).all(axis=-1, keepdims=True)
+    values = np.where(known, vectors, np.float32(0.0))
+    longest = float(np.abs(values).max(initial=0.0))
+    shown = 127.5 * (values / longest if longest > 0.0 else values) + 127.5
+    return np.where(known, np.rint(shown), 0.0).astype(np.uint8)
+
+
 def colour_mask(mask: NDArray[np.bool_]) -> Rgb:
     """Show truth values (H, W): white where true, black where false."""
     return np.where(mask[..., None], _WHITE, _BLACK)
@@ -207,5 +232,7 @@ _DISPLAYS: Mapping[ViewDisplay, Callable[[NDArray[Any]], Rgb]] = {
     "flow": colour_flow,
     "direction": colour_directions,
     "mask": colour_mask,
+    "place": colour_places,
+    "displacement": colour_displacements,
 }
 """How views are shown that need nothing but their values."""

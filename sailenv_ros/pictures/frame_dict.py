@@ -47,7 +47,8 @@ def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
         names. Besides ``instances`` (the objects of this instant by their ids, `Frame.instances`),
         ``sizes`` (bytes of each view as received), ``deltaTime`` and ``dt`` [s],
         ``stamp_ns``, ``sequence``, ``scene``, ``render_s`` (wall time that rendering took),
-        ``K`` (3, 3), and the optical frame's ``world_from_camera`` (4, 4).
+        ``K`` (3, 3), the optical frame's ``world_from_camera`` (4, 4), and what
+        `sailenv_ros.motion` needs: ``camera``, ``states``, ``epoch``.
     """
     entries: dict[str, Any] = {}
     sizes: dict[str, int] = {}
@@ -73,6 +74,9 @@ def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
         render_s=frame.timings_s.get("render", 0.0),
         K=camera.intrinsics.K,
         world_from_camera=camera.world_from_camera.copy(),
+        camera=camera,
+        states=frame.states,
+        epoch=frame.epoch,
     )
     return entries
 

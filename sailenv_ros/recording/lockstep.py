@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import Frame, checked_views
+from sailenv_ros.motion import FORWARD_VIEWS, with_forward_motion
 from sailenv_ros.recording.channels import (
     SCENE_INFO,
     agent_topics,
@@ -118,7 +119,8 @@ def record_lockstep(
     agents : sequence of str
         Names; none means all.
     views : sequence of str
-        Views of every frame; none means each agent's own.
+        Views of every frame; none means each agent's own. Of ``flow_forward`` and ``scene_flow``
+        the last frame of each agent has none (nan).
     namespace : str
         What the topics' names begin with.
     on_frame : callable
@@ -152,7 +154,9 @@ def record_lockstep(
     stop_listening = simulation.on_info(infos.append)
     count = 0
     try:
-        for frame in _frames(simulation, shots, wanted):
+        late = tuple(view for view in wanted or () if view in FORWARD_VIEWS)
+        made = _frames(simulation, shots, _rendered(wanted))
+        for frame in with_forward_motion(made, late) if late else made:
             while infos:
                 recorder.write_info(infos.pop(0))
             recorder.write_frame(frame, ranges[frame.agent])
@@ -175,6 +179,14 @@ def _chosen(info: SceneInfo, names: Sequence[str]) -> list[AgentSpec]:
         if not spec.rate_hz:
             raise InvalidRequest(f"rate_hz of agent {spec.name!r}", 0.0, "above 0 to be recorded")
     return chosen
+
+
+def _rendered(views: tuple[str, ...] | None) -> tuple[str, ...] | None:
+    """Return the views to render: those that are known later are made of depth and ids."""
+    rendered = tuple(view for view in views or () if view not in FORWARD_VIEWS)
+    if views is None or rendered == views:
+        return views
+    return checked_views((*rendered, "depth", "instance"))
 
 
 def _frames(

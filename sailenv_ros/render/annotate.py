@@ -17,6 +17,7 @@ infinity have X = (x, y, 1) without translation.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.frame import VIEWS, views_of
 from sailenv_ros.geometry import invert
-from sailenv_ros.render.kernels import annotate_pixels
+from sailenv_ros.render.kernels import annotate_pixels, transform_points
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
 __all__ = ["OCCLUSION_TOLERANCE", "annotate", "motion_table"]
@@ -125,6 +126,9 @@ def annotate(
         dt_s = (snapshot.sim_time_ns - previous.snapshot.sim_time_ns) * 1e-9
         if "occlusion" in wanted and previous.depth is not None:
             past_depth = np.ascontiguousarray(previous.depth)
+    places = arrays.pop("object_coords", None)
+    if places is not None:
+        arrays.setdefault("instance", np.empty((height, width), np.uint16))
     intrinsics = camera.intrinsics
     if previous is not None and previous.camera.intrinsics != intrinsics:
         rows = np.zeros_like(rows)
@@ -140,7 +144,26 @@ def annotate(
         arrays,
         threads=threads,
     )
-    return arrays
+    if places is not None:
+        arrays["object_coords"] = _object_coords(arrays, snapshot, camera, threads)
+    return {name: arrays[name] for name in wanted}
+
+
+def _object_coords(
+    arrays: Mapping[str, NDArray[Any]], snapshot: WorldSnapshot, camera: Camera, threads: int
+) -> NDArray[np.float32]:
+    """Give each pixel's surface point in its instance's own frame."""
+    ids = snapshot.contents.instance_ids
+    rows = np.zeros(65536, np.uint16)
+    rows[ids] = np.arange(1, len(ids) + 1)
+    transforms = np.zeros((len(ids) + 1, 3, 4))
+    if len(ids):
+        transforms[1:] = (invert(snapshot.world_from_body) @ camera.world_from_camera)[:, :3]
+    return transform_points(
+        *(arrays["depth"], arrays["instance"], rows, transforms),
+        _lens(camera.intrinsics),
+        threads=threads,
+    )
 
 
 def _lens(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:

@@ -10,18 +10,21 @@ from sailenv_ros.native import (
     ambient_visibility,
     annotation,
     light_gathering,
+    motion_kernels,
     picture_kernels,
     resolve,
 )
 from sailenv_ros.native.library import native_is_usable
-from sailenv_ros.render import reference_kernels
+from sailenv_ros.render import reference_kernels, reference_motion
 
 __all__ = [
     "annotate_pixels",
     "find_ambient_visibility",
     "gather_light",
     "make_picture",
+    "move_points",
     "resolve_samples",
+    "transform_points",
 ]
 
 if native_is_usable():
@@ -30,9 +33,13 @@ if native_is_usable():
     gather_light = light_gathering.gather_light
     make_picture = picture_kernels.make_picture
     resolve_samples = resolve.resolve_samples
+    move_points = motion_kernels.move_points
+    transform_points = motion_kernels.transform_points
 else:
     annotate_pixels = reference_kernels.annotate_pixels
     find_ambient_visibility = reference_kernels.find_ambient_visibility
     gather_light = reference_kernels.gather_light
     make_picture = reference_kernels.make_picture
     resolve_samples = reference_kernels.resolve_samples
+    move_points = reference_motion.move_points
+    transform_points = reference_motion.transform_points

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
 from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS
+from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
@@ -22,7 +22,7 @@ _Size: TypeAlias = Annotated[
     int, Number(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
 ]
 _Clip: TypeAlias = Annotated[float, Number(least=1e-3, most=1e4, unit="m")]
-_ViewName: TypeAlias = Annotated[str, Choice(tuple(VIEWS))]
+_ViewName: TypeAlias = Annotated[str, Choice(RENDERED_VIEWS)]
 
 Controller = Literal["waypoint", "rigidbody"]
 

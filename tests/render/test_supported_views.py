@@ -11,7 +11,7 @@ import pytest
 from sailenv_ros.backends.tiny_renderer import TinyRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import VIEWS, views_of
+from sailenv_ros.frame import RENDERED_VIEWS, VIEWS, views_of
 from sailenv_ros.geometry import Pose
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.render.renderer import Renderer
@@ -51,7 +51,9 @@ def test_views_that_are_not_declared_are_refused(backends: dict[str, RenderBacke
     """With the names of those that are; so is a view that nobody knows."""
     for backend in backends.values():
         for view in VIEWS.keys() - set(backend.supported_views):
-            with pytest.raises(InvalidRequest, match="that this renderer makes: rgb, depth"):
+            late = VIEWS[view].needs_next
+            why = "known with the next one" if late else "that this renderer makes: rgb, depth"
+            with pytest.raises(InvalidRequest, match=why):
                 backend.render(SCENE, None, camera_at(), ["depth", view])
         with pytest.raises(UnknownName, match="view must be one of: rgb, depth"):
             backend.render(SCENE, None, camera_at(), ["heat"])
@@ -62,7 +64,7 @@ def test_all_but_the_fallback_make_every_view(
 ) -> None:
     """What follows from depth and ids by shared arithmetic, not even the fallback lacks."""
     for name in ("gl", "native"):
-        assert backends[name].supported_views == tuple(VIEWS)
+        assert backends[name].supported_views == RENDERED_VIEWS
     for backend in backends.values():
         assert set(views_of("annotation")) <= set(backend.supported_views)
 
@@ -77,6 +79,8 @@ def test_the_page_has_every_view(backends: dict[str, RenderBackend]) -> None:
         axes = "(H, W)" if spec.channels == 1 else f"(H, W, {spec.channels})"
         makers = [name for name, made in backends.items() if spec.name in made.supported_views]
         coded = f"`{spec.encoding}`" + (", 255 true" if spec.dtype == np.bool_ else "")
-        expected.append([f"`{spec.name}`", f"{axes} {spec.dtype}", coded, ", ".join(makers)])
+        expected.append(
+            [f"`{spec.name}`", f"{axes} {spec.dtype}", coded, ", ".join(makers) or "the next frame"]
+        )
     assert [row[:4] for row in shown] == expected
     assert all(row[4] for row in shown)

@@ -43,7 +43,7 @@ from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.frame import RENDERED_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import Category, CategoryTable, Instance
@@ -64,7 +64,7 @@ UNIT = st.floats(0.0, 1.0, width=32)
 COLOURS = st.tuples(UNIT, UNIT, UNIT)
 ANGLES = st.floats(-360.0, 360.0)
 POSES = st.builds(Pose.from_rpy_deg, TRIPLES, st.tuples(ANGLES, ANGLES, ANGLES))
-VIEW_SETS = st.sets(st.sampled_from(sorted(VIEWS)), min_size=1).map(tuple)
+VIEW_SETS = st.sets(st.sampled_from(sorted(RENDERED_VIEWS)), min_size=1).map(tuple)
 
 CATEGORIES = st.builds(
     Category,

@@ -24,6 +24,7 @@ from sailenv_ros.native.client_views import convert_views
 from sailenv_ros.native.library import using_instruction_set
 from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
+from sailenv_ros.native.motion_kernels import move_points, transform_points
 from sailenv_ros.native.picture_kernels import make_picture
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
@@ -91,6 +92,30 @@ def drive_annotate() -> None:
                     views,
                     threads=THREADS[1],
                 )
+
+
+def drive_motion() -> None:
+    """Ids without rows, rows beyond the tables, lenses and motions that are no numbers."""
+    rng = np.random.default_rng(2)
+    rows = rng.integers(0, 6, 65536).astype(np.uint16)
+    rows[::5] = 65535
+    motions, displacements = rng.choice(np.array(NUMBERS), (2, 4, 3, 4))
+    motions[1] = 0.0
+    plain = np.array((500.0, 0.5, 0.5, 0.05, 60.0))
+    wild = np.array((np.nan, 1e30, -np.inf, np.nan, np.nan))
+    others = [(np.full(size, 0.3, np.float32), np.zeros(size, np.uint16)) for size in SIZES[:4]]
+    for surface in surfaces(*SIZES, LARGEST):
+        depth = np.ascontiguousarray(surface[..., 0])
+        ids = np.nan_to_num(surface[..., 1], posinf=9.0).clip(0, 65535).astype(np.uint16)
+        large = depth.shape == LARGEST
+        for lens in (plain,) if large else (plain, wild):
+            for other in others[:1] if large else (*others, (depth, ids)):
+                for to in (plain, wild):
+                    move_points(
+                        *(depth, ids, rows, motions, displacements, lens, to, *other, np.nan),
+                        threads=THREADS[1],
+                    )
+            transform_points(depth, ids, rows, motions, lens, threads=THREADS[1])
 
 
 def drive_ambient_visibility() -> None:
@@ -190,6 +215,7 @@ def drive_sensor() -> None:
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_annotate,
+    drive_motion,
     drive_ambient_visibility,
     drive_pictures,
     drive_client_views,

@@ -90,7 +90,10 @@ def test_a_recorded_agent_gives_the_live_agents_dict(tmp_path: Path) -> None:
             np.testing.assert_allclose(
                 read["world_from_camera"], expected["world_from_camera"], rtol=0, atol=1e-12
             )
-            expected["world_from_camera"] = read["world_from_camera"]
+            assert expected["camera"].intrinsics == read["camera"].intrinsics
+            assert expected["states"].matrices.tobytes() == read["states"].matrices.tobytes()
+            for name in ("world_from_camera", "camera", "states"):
+                expected[name] = read[name]
             same_dict(read, expected)
             read["main"][:] = 0  # the caller's own
         with pytest.raises(RecordingError, match=r"no frame after its 3; seek\(0\)"):
