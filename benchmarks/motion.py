@@ -1,4 +1,4 @@
-"""How long the motion between two frames takes: python benchmarks/motion.py [--pairs N].
+"""How long motion between frames and tracks take: python benchmarks/motion.py [--pairs N].
 
 Frames of a furnished room, or of `optical` where the furniture has not been built, from a moving
 camera; medians on as many threads as there are processors.
@@ -11,12 +11,14 @@ import statistics
 import time
 from collections.abc import Callable
 
+import numpy as np
+
 from sailenv_ros import Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.frame import Frame
-from sailenv_ros.motion import motion
+from sailenv_ros.motion import SceneGeometry, motion, track
 
 
 def median_ms(work: Callable[[], object], rounds: int) -> float:
@@ -41,6 +43,36 @@ def two_frames(scene: str, width: int, height: int) -> list[Frame]:
         return frames
 
 
+def tracked(scene: str) -> tuple[list[Frame], SceneGeometry]:
+    """Return 100 frames of a scene, 1/30 s apart, and its geometry."""
+    lens = CameraIntrinsics(width=640, height=480)
+    spec = AgentSpec(name="eye", intrinsics=lens, rate_hz=0.0)
+    with Simulation(scene, mode="lockstep", agent=spec) as simulation:
+        frames = []
+        for _ in range(100):
+            simulation.step(8)
+            frames.append(simulation.capture(("depth",), agent="eye"))
+        return frames, SceneGeometry.of_contents(simulation.contents)
+
+
+def measure_tracks(scene: str) -> None:
+    """Follow 1,000 points through 100 frames, with and without building the trees."""
+    frames, geometry = tracked(scene)
+    rng = np.random.default_rng(0)
+    points = np.stack(
+        [rng.integers(0, 100, 1000), rng.uniform(0, 639, 1000), rng.uniform(0, 479, 1000)], axis=1
+    )
+    began = time.perf_counter()
+    tracks = track(points, frames, geometry)
+    first_s = time.perf_counter() - began
+    again_s = 1e-3 * median_ms(lambda: track(points, frames, geometry), 3)
+    share = tracks.visible.mean()
+    print(
+        f"1,000 tracks x 100 frames, {scene}: {again_s:.2f} s, the first time {first_s:.2f} s "
+        f"(visible {share:.0%})"
+    )
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -53,6 +85,7 @@ def main() -> None:
             one, other = two_frames("optical", width, height)
         taken = median_ms(lambda one=one, other=other: motion(one, other), args.pairs)  # type: ignore[misc]
         print(f"motion of a pair, {one.scene}, {width} x {height}: {taken:.2f} ms")
+    measure_tracks(one.scene)
 
 
 if __name__ == "__main__":

@@ -2,5 +2,17 @@
 
 from sailenv_ros.motion.between import Motion, motion
 from sailenv_ros.motion.forward import FORWARD_VIEWS, forward_views, with_forward_motion
+from sailenv_ros.motion.scene_geometry import SceneGeometry
+from sailenv_ros.motion.tracks import ObjectPoints, Tracks, track
 
-__all__ = ["FORWARD_VIEWS", "Motion", "forward_views", "motion", "with_forward_motion"]
+__all__ = [
+    "FORWARD_VIEWS",
+    "Motion",
+    "ObjectPoints",
+    "SceneGeometry",
+    "Tracks",
+    "forward_views",
+    "motion",
+    "track",
+    "with_forward_motion",
+]

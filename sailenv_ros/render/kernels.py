@@ -12,13 +12,16 @@ from sailenv_ros.native import (
     light_gathering,
     motion_kernels,
     picture_kernels,
+    ray_kernels,
     resolve,
 )
 from sailenv_ros.native.library import native_is_usable
-from sailenv_ros.render import reference_kernels, reference_motion
+from sailenv_ros.render import reference_kernels, reference_motion, reference_rays
 
 __all__ = [
     "annotate_pixels",
+    "build_tree",
+    "cast_rays",
     "find_ambient_visibility",
     "gather_light",
     "make_picture",
@@ -29,6 +32,8 @@ __all__ = [
 
 if native_is_usable():
     annotate_pixels = annotation.annotate_pixels
+    build_tree = ray_kernels.build_tree
+    cast_rays = ray_kernels.cast_rays
     find_ambient_visibility = ambient_visibility.find_ambient_visibility
     gather_light = light_gathering.gather_light
     make_picture = picture_kernels.make_picture
@@ -37,6 +42,8 @@ if native_is_usable():
     transform_points = motion_kernels.transform_points
 else:
     annotate_pixels = reference_kernels.annotate_pixels
+    build_tree = reference_rays.build_tree
+    cast_rays = reference_rays.cast_rays
     find_ambient_visibility = reference_kernels.find_ambient_visibility
     gather_light = reference_kernels.gather_light
     make_picture = reference_kernels.make_picture

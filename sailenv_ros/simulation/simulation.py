@@ -33,6 +33,7 @@ from sailenv_ros.simulation.model_workers import ModelWorkers
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.snapshot import SceneContents
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.world.world import World
 
@@ -181,6 +182,19 @@ class Simulation(Operations):
     def supported_views(self) -> tuple[str, ...]:
         """Views that the renderer can make, in the order of `frame.VIEWS`; never blocks."""
         return () if self._core is None else self._core.supported_views
+
+    @property
+    def contents(self) -> SceneContents:
+        """What the scene holds now apart from poses, the models too; never blocks.
+
+        Raises
+        ------
+        SimulationClosed
+            If the simulation has ended.
+        """
+        if self._core is None:
+            raise SimulationClosed("the simulation has ended")
+        return self._core.world.contents
 
     @property
     def skipped_frames(self) -> int:

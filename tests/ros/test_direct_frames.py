@@ -17,7 +17,7 @@ from sailenv_ros.agent.frame_client import FrameClient
 from sailenv_ros.agent.frame_topics import AgentTopics
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS as VIEWS
 from sailenv_ros.system.frame_memory import SEGMENTS
 from sailenv_ros.system.frame_socket import connect, receive, send
 from tests.support.ros_probe import Probe

@@ -26,7 +26,7 @@ from sailenv_msgs.srv import (
 from sailenv_msgs_py.services import AGENT_SERVICES, SERVICES, SIMULATOR_SERVICES, Service
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_msgs_py.transforms import pose_from_msg, pose_to_msg
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS, VIEWS
 from sailenv_ros.geometry import invert, look_at
 from sailenv_ros.operations import ALL_OPERATIONS
 from tests.support.ros_probe import BEST_EFFORT, LATCHED, Eye, Probe
@@ -188,7 +188,22 @@ def test_one_stamp_and_the_promised_encodings(probe: Probe) -> None:
     info = at["agent/frame_info"]
     assert (info.agent, info.scene) == ("agent", "optical")
     assert info.dt_ns in (33_333_333, 33_333_334)
-    assert list(info.views) == list(VIEWS)
+    assert list(info.views) == list(RENDERED_VIEWS)
+
+
+def test_the_motion_to_the_next_frame_comes_with_it(probe: Probe) -> None:
+    """One frame late, each once, with its own frame's stamp; where it ends is where flow began."""
+    late = probe.listen(Image, "agent/flow_forward")
+    flow = probe.listen(Image, "agent/flow")
+    step_until(probe, lambda: len(late.messages) > 2, "three motions")
+    first, second = late.stamps()[-2:]
+    assert second - first in (33_333_333, 33_333_334)
+    until(lambda: len(set(flow.stamps())) > 3, "the last frame's flow")
+    assert set(late.stamps()) < set(flow.stamps())
+    assert max(flow.stamps()) > max(late.stamps())
+    forward = np.frombuffer(late.last.data, np.float32)
+    assert np.isfinite(forward).mean() > 0.9
+    assert np.nanmax(np.abs(forward)) > 0.01
 
 
 def test_streamed_frames_come_at_the_agents_rate(probe: Probe) -> None:

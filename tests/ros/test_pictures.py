@@ -17,7 +17,7 @@ from sailenv_ros import Agent, Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, SimulationClosed, UnknownName
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS as VIEWS
 from sailenv_ros.picture_settings import NAMES, PictureSettings
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.writer import RecordingWriter

@@ -26,6 +26,7 @@ from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import move_points, transform_points
 from sailenv_ros.native.picture_kernels import make_picture
+from sailenv_ros.native.ray_kernels import RayModels, build_tree, cast_rays
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.picture_settings import PictureSettings
@@ -116,6 +117,30 @@ def drive_motion() -> None:
                         threads=THREADS[1],
                     )
             transform_points(depth, ids, rows, motions, lens, threads=THREADS[1])
+
+
+def drive_rays() -> None:
+    """Triangles without area, rays without direction, transforms that are no numbers."""
+    rng = np.random.default_rng(3)
+    huge = rng.choice(np.array((0.0, 1e300, -1e300, 1e-300, 1.0)), (5000, 3, 3))
+    for corners in (huge, huge[:1], np.zeros((9, 3, 3))):
+        tree = build_tree(corners)
+        models = RayModels(
+            corners=corners,
+            two_sided=np.ones(len(corners), np.bool_),
+            first_triangle=np.array([0, len(corners)]),
+            first_node=np.array([0, len(tree.bounds)]),
+            tree=tree,
+        )
+        wild = np.array(NUMBERS)
+        for count in (0, 1, 500):
+            rays = [rng.choice(wild, (count, 3)) for _ in range(2)]
+            transforms = rng.choice(wild, (3, 3, 4))
+            cast_rays(
+                *(models, transforms, np.zeros(3, np.int32), *rays),
+                rng.choice(wild, count),
+                threads=THREADS[1],
+            )
 
 
 def drive_ambient_visibility() -> None:
@@ -216,6 +241,7 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_annotate,
     drive_motion,
+    drive_rays,
     drive_ambient_visibility,
     drive_pictures,
     drive_client_views,

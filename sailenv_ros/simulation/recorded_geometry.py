@@ -1,0 +1,53 @@
+"""The geometry of a recorded scene: its scene file and catalogue once more, by a `SceneInfo`."""
+
+from __future__ import annotations
+
+from itertools import count
+
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.model import Model
+from sailenv_ros.motion.scene_geometry import SceneGeometry
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.scenes import SceneLibrary
+
+__all__ = ["recorded_geometry"]
+
+
+def recorded_geometry(info: SceneInfo, library: SceneLibrary | None = None) -> SceneGeometry:
+    """Return the geometry of a scene as it was when that was told of it.
+
+    What the scene's file names is built as it is now; what was spawned besides is taken from the
+    catalogue by its name there.
+
+    Parameters
+    ----------
+    info : SceneInfo
+        `Frame.info` of a recorded frame.
+    library : SceneLibrary or None
+        Where scenes and assets come from; None means what is installed.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such scene, or an asset is not in the catalogue: of models that were
+        uploaded to a simulator, `SceneGeometry` takes the geometry of that simulation.
+    SceneError, AssetError
+        If the scene cannot be built.
+    """
+    library = library or SceneLibrary()
+    numbers = count(1)
+    world = library.build(info.scene, 0, 1, lambda: next(numbers))
+    try:
+        own = {drawn.instance.name: drawn for drawn in world.contents.instances}
+    finally:
+        world.close()
+    models: dict[int, Model] = {}
+    for instance in info.instances:
+        drawn = own.get(instance.name)
+        if drawn is not None and drawn.instance.asset == instance.asset:
+            models[instance.id] = drawn.model
+        elif instance.asset in library.spawnables:
+            models[instance.id] = library.peek_asset(instance.asset).model
+        else:
+            raise UnknownName("asset", instance.asset, library.spawnables)
+    return SceneGeometry(models)
