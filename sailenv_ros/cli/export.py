@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["add_parser", "run"]
 
-_FORMATS = ("png", "coco", "kitti", "flo", "mp4")
+_FORMATS = ("png", "coco", "kitti", "sintel", "flo", "movi", "tapvid", "mp4")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -33,6 +33,12 @@ def add_parser(subparsers: Any) -> None:
         help="several get a folder each",
     )
     parser.add_argument("--agent", default="", metavar="NAME", help="default: the only one")
+    parser.add_argument(
+        "--flow",
+        choices=("forward", "backward", "both"),
+        default="forward",
+        help="of kitti and sintel: to the next frame (default), to the one before",
+    )
     parser.add_argument(
         "--split",
         nargs="+",
@@ -61,6 +67,7 @@ def run(args: argparse.Namespace) -> int:
         args.formats,
         agent=args.agent,
         splits=splits,
+        flow=args.flow,
         resume=args.resume,
         on_frame=tell,
     )

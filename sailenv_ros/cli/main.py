@@ -24,7 +24,7 @@ COMMANDS = {
     "bench": "measure flow's speed and accuracy, and frames per second",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
     "eval": "show a detector the rooms' objects and score what it sees",
-    "export": "write a recording as a data set: png, coco, kitti, flo, mp4",
+    "export": "write a recording as a data set: png, coco, kitti, sintel, flo, movi, tapvid, mp4",
     "play": "publish a recording on the topics it was recorded from",
     "record": "record what agents see in an MCAP bag",
     "report": "write one page of all results of bench and eval",

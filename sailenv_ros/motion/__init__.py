@@ -2,6 +2,7 @@
 
 from sailenv_ros.motion.between import Motion, motion
 from sailenv_ros.motion.forward import FORWARD_VIEWS, forward_views, with_forward_motion
+from sailenv_ros.motion.object_coordinates import object_coordinates
 from sailenv_ros.motion.scene_geometry import SceneGeometry
 from sailenv_ros.motion.tracks import ObjectPoints, Tracks, track
 
@@ -13,6 +14,7 @@ __all__ = [
     "Tracks",
     "forward_views",
     "motion",
+    "object_coordinates",
     "track",
     "with_forward_motion",
 ]

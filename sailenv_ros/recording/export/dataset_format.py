@@ -9,13 +9,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal, TypeAlias
 
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame
 from sailenv_ros.scene_info import SceneInfo
 
-__all__ = ["DatasetFormat", "Made", "Record", "Sample"]
+__all__ = ["DatasetFormat", "FlowDirection", "Made", "Record", "Sample"]
+
+FlowDirection: TypeAlias = Literal["forward", "backward", "both"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -29,11 +31,15 @@ class Sample:
     frame : Frame
     split : str
         ``train``, ``val`` or ``test``; empty if the data set is not split.
+    previous, following : Frame or None
+        The frames before and after it, for formats that need them; None at the ends.
     """
 
     number: int
     frame: Frame
     split: str = ""
+    previous: Frame | None = None
+    following: Frame | None = None
 
     @property
     def stem(self) -> str:
@@ -100,12 +106,18 @@ class DatasetFormat(ABC):
         True if its frames belong together, so that they cannot be split.
     resumable : bool
         False if it must be given all frames again after a break.
+    needs_neighbours : bool
+        True if its samples shall have the frames before and after theirs.
+    flow : {'forward', 'backward', 'both'}
+        Which flow it writes, if it writes one and there is a choice.
     """
 
     views: ClassVar[tuple[str, ...]] = ()
     any_of: ClassVar[tuple[str, ...]] = ()
     is_sequence: ClassVar[bool] = False
     resumable: ClassVar[bool] = True
+    needs_neighbours: ClassVar[bool] = False
+    flow: FlowDirection = "forward"
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

@@ -7,12 +7,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, get_args
 
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.frame import Frame
 from sailenv_ros.recording.export.data_files import finish, make_folder, write_json
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.recording.export.dataset_format import (
+    DatasetFormat,
+    FlowDirection,
+    Made,
+    Record,
+    Sample,
+)
 from sailenv_ros.recording.export.formats import FORMATS, check_views, format_class
 from sailenv_ros.recording.export.journal import JOURNAL, Journal
 from sailenv_ros.recording.export.splits import Splits
@@ -59,6 +65,8 @@ class DatasetWriter:
         Names in `FORMATS`.
     splits : Splits or None
         None does not split.
+    flow : {'forward', 'backward', 'both'}
+        Which flow those formats write that have the choice: to the next frame, to the one before.
     source : str
         What the frames come from, told in the summary.
     resume : bool
@@ -79,9 +87,12 @@ class DatasetWriter:
         formats: Sequence[str],
         *,
         splits: Splits | None = None,
+        flow: FlowDirection = "forward",
         source: str = "",
         resume: bool = False,
     ) -> None:
+        if flow not in get_args(FlowDirection):
+            raise InvalidRequest("flow", flow, f"one of: {', '.join(get_args(FlowDirection))}")
         names = list(dict.fromkeys(formats))
         if not names:
             raise InvalidRequest("formats", (), f"at least one of: {', '.join(FORMATS)}")
@@ -95,6 +106,7 @@ class DatasetWriter:
             "formats": names,
             "split": None if splits is None else list(splits.shares),
             "seed": 0 if splits is None else splits.seed,
+            "flow": flow,
             "source": source,
         }
         if not (resume and (self.folder / JOURNAL).is_file()):
@@ -104,9 +116,18 @@ class DatasetWriter:
             name: made(self.folder / name if len(names) > 1 else self.folder)
             for name, made in classes.items()
         }
+        for made_format in self._formats.values():
+            made_format.flow = flow
+        self._next = 0
         # Those that cannot go on begin anew, with frames that the others have already.
-        self._anew = 0 if all(made.resumable for made in classes.values()) else None
-        self._next = len(self._journal.entries) if self._anew is not None else 0
+        if all(made.resumable for made in classes.values()):
+            self._next = len(self._journal.entries)
+        # Then a frame is written when the one after it is there.
+        self._keeps_neighbours = any(made.needs_neighbours for made in classes.values())
+        if self._keeps_neighbours:
+            self._next = max(0, self._next - 1)
+        self._before: Frame | None = None
+        self._held: Frame | None = None
         self._summary: Summary | None = None
 
     @property
@@ -126,11 +147,23 @@ class DatasetWriter:
         """
         if self._summary is not None:
             raise InvalidState("the data set is finished; begin another one")
-        number, written = self._next, len(self._journal.entries)
         for name in self._formats:
             check_views(name, frame.views)
+        if self._keeps_neighbours:
+            held, self._held = self._held, frame
+            if held is not None:
+                self._write(self._next - 1, held, following=frame)
+                self._before = held
+        else:
+            self._write(self._next, frame)
+        self._next += 1
+
+    def _write(self, number: int, frame: Frame, following: Frame | None = None) -> None:
+        written = len(self._journal.entries)
         split = "" if self._splits is None else self._splits.of_frame(number)
-        sample = Sample(number=number, frame=frame, split=split)
+        sample = Sample(
+            number=number, frame=frame, split=split, previous=self._before, following=following
+        )
         if number < written:
             for made in self._formats.values():
                 if not made.resumable:
@@ -138,7 +171,6 @@ class DatasetWriter:
         else:
             entry = {name: made.add(sample) for name, made in self._formats.items()}
             self._journal.add(split, entry)
-        self._next = number + 1
 
     def finish(self) -> Summary:
         """Write what is written at the end; a second call returns the same.
@@ -150,6 +182,9 @@ class DatasetWriter:
         """
         if self._summary is not None:
             return self._summary
+        if self._held is not None:
+            self._write(self._next - 1, self._held)
+            self._held = None
         self._journal.flush()
         splits, entries = self._journal.splits, self._journal.entries
         for name, made in self._formats.items():

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
+from sailenv_ros.recording.export.dataset_format import FlowDirection
 from sailenv_ros.recording.export.dataset_writer import DatasetWriter, Summary
 from sailenv_ros.recording.export.formats import FORMATS, check_views
 from sailenv_ros.recording.export.splits import Splits
@@ -22,6 +23,7 @@ def export(
     *,
     agent: str = "",
     splits: Splits | None = None,
+    flow: FlowDirection = "forward",
     resume: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, of: None,
 ) -> Summary:
@@ -39,6 +41,8 @@ def export(
         Name of the agent; empty if there is only one.
     splits : Splits or None
         How frames are dealt out to train, val and test; None does not split.
+    flow : {'forward', 'backward', 'both'}
+        Which flow ``kitti`` and ``sintel`` write: to the next frame, to the one before.
     resume : bool
         True goes on with what an earlier call of the same arguments had to leave unfinished.
     on_frame : callable
@@ -66,7 +70,9 @@ def export(
         if not len(frames):
             raise RecordingError(f"{path} has no complete frame of agent {frames.agent!r}")
         source = f"{Path(path).resolve().name}, agent {frames.agent}"
-        with DatasetWriter(folder, names, splits=splits, source=source, resume=resume) as writer:
+        with DatasetWriter(
+            folder, names, splits=splits, flow=flow, source=source, resume=resume
+        ) as writer:
             for number in range(writer.done, len(frames)):
                 writer.add(frames[number])
                 on_frame(number + 1, len(frames))

