@@ -34,6 +34,14 @@ def add_parser(subparsers: Any) -> None:
     )
     add_common(accuracy)
     accuracy.add_argument("--pairs", type=int, default=20, metavar="N", help="of pictures")
+    accuracy.add_argument(
+        "--gaps",
+        nargs="+",
+        type=int,
+        default=[1],
+        metavar="N",
+        help="frames from one picture of a pair to the other",
+    )
     accuracy.add_argument("--size", default="640x480", metavar="WxH")
     accuracy.add_argument("--scenario", nargs="+", metavar="NAME", help="default: all")
     _add_networks(accuracy)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import itertools
 from functools import partial
 from typing import Any
 
@@ -78,29 +79,33 @@ def flow_accuracy(args: argparse.Namespace) -> int:
     if args.quick:
         width, height, pairs = min(width, 160), min(height, 120), min(pairs, 2)
     names = args.scenario or list(SCENARIOS)
+    gaps = list(dict.fromkeys(args.gaps))
+    for gap in gaps:
+        _check(args, "gaps", gap)
     methods = _methods(args)
     origin = provenance(command_line())
     evaluated, sheets = [], {}
     with (
-        progress_bar(len(names) * pairs) as tell,
+        progress_bar(len(names) * len(gaps) * pairs) as tell,
         flow_test_scene(width, height) as simulation,
     ):
-        for name in names:
+        for name, gap in itertools.product(names, gaps):
             scenario = SCENARIOS[name]
+            label = scenario.label if gap == 1 else f"{scenario.label}, {gap} frames"
             found = evaluate_scenario(
-                simulation, scenario, methods, pairs=pairs,
-                on_pair=partial(tell, scenario.label),
-            )  # fmt: skip
+                simulation, scenario, methods, pairs=pairs, gap=gap, on_pair=partial(tell, label)
+            )
             evaluated.append(
                 {
                     "name": name,
-                    "label": scenario.label,
+                    "label": label,
+                    "gap": gap,
                     "compared": found.compared,
                     "mean_motion_px": found.mean_motion_px,
                     "errors": found.errors,
                 }
             )
-            sheets[name] = found.pictures
+            sheets[name if gap == 1 else f"{name}_{gap}"] = found.pictures
         renderer = simulation.info.renderer
     pictures = _save_pictures(args, sheets)
     data = {

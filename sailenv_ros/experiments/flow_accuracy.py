@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -57,23 +57,26 @@ class FlowErrors:
     """Errors of one method, gathered over picture pairs."""
 
     errors_px: list[NDArray[np.float32]] = field(default_factory=list)
-    moving_px: list[NDArray[np.float32]] = field(default_factory=list)
+    of_part_px: dict[str, list[NDArray[np.float32]]] = field(default_factory=dict)
 
-    def add(self, error: NDArray[np.float64], moves: NDArray[np.bool_]) -> None:
-        """Add errors (N,) [px], and which of the points move."""
+    def add(self, error: NDArray[np.float64], parts: Mapping[str, NDArray[np.bool_]]) -> None:
+        """Add errors (N,) [px], and which of the points belong to each part."""
         self.errors_px.append(error.astype(np.float32))
-        self.moving_px.append(error[moves].astype(np.float32))
+        for name, chosen in parts.items():
+            self.of_part_px.setdefault(name, []).append(error[chosen].astype(np.float32))
 
     def summary(self) -> dict[str, float]:
-        """Return mean, 95th percentile and maximum [px per frame], and the mean of what moves."""
+        """Return mean, 95th percentile and maximum [px per pair], and the mean of each part."""
         errors = np.concatenate(self.errors_px).astype(np.float64)
-        moving = np.concatenate(self.moving_px).astype(np.float64)
-        return {
+        result = {
             "mean": float(errors.mean()),
             "p95": float(np.percentile(errors, 95)),
             "max": float(errors.max()),
-            "mean_moving": float(moving.mean()) if len(moving) else float("nan"),
         }
+        for name, gathered in self.of_part_px.items():
+            values = np.concatenate(gathered).astype(np.float64)
+            result[f"mean_{name}"] = float(values.mean()) if len(values) else float("nan")
+        return result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +86,8 @@ class Accuracy:
     Attributes
     ----------
     errors : dict of str to dict
-        By method, `OURS` first: what `FlowErrors.summary` gives.
+        By method, `OURS` first: what `FlowErrors.summary` gives; of the parts ``moving``,
+        ``visible`` in the earlier picture, ``hidden`` there, and ``leaving``: not within it.
     compared : float
         Share of the pictures' pixels that were compared, 0 to 1: those where arithmetic and
         renderer see the same object and its point was before the earlier camera.
@@ -121,9 +125,10 @@ def evaluate_scenario(
     methods: Sequence[FlowMethod],
     *,
     pairs: int,
+    gap: int = 1,
     on_pair: Callable[[], None] = lambda: None,
 ) -> Accuracy:
-    """Compare every method with the arithmetic over pairs of pictures 1/30 s apart.
+    """Compare every method with the arithmetic over pairs of pictures.
 
     Estimators are asked where each pixel of the present picture was in the earlier one, so that
     all methods answer for the same points; the answer's sign is turned.
@@ -134,6 +139,8 @@ def evaluate_scenario(
         A `flow_test_scene`.
     pairs : int
         At least 1.
+    gap : int
+        From one picture of a pair to the other, in frames of 1/30 s; at least 1.
     on_pair : callable
         Called after each.
     """
@@ -144,15 +151,21 @@ def evaluate_scenario(
     flows: dict[str, NDArray[Any]] = {}
     for _ in range(pairs):
         past_frame, past = frame, instant
-        simulation.step(STEPS)
+        simulation.step(STEPS * gap)
         frame, instant = _observed(simulation, boxes)
         truth = motion_field(boxes, instant, past)
         sure = _comparable(truth, frame)
         flows = _estimates(frame, past_frame, methods)
         speed = np.linalg.norm(truth.displacement_px[sure], axis=-1)
+        parts = {
+            "moving": speed > MOVES_PX,
+            "visible": ~(truth.hidden | truth.leaves)[sure],
+            "hidden": truth.hidden[sure],
+            "leaving": truth.leaves[sure],
+        }
         for name, flow in flows.items():
             error = np.linalg.norm(flow[sure] - truth.displacement_px[sure], axis=-1)
-            evaluated[name].add(error, speed > MOVES_PX)
+            evaluated[name].add(error, parts)
         motion_px.append(speed.mean())
         compared.append(sure.mean())
         on_pair()

@@ -102,11 +102,23 @@ def accuracy_tables(data: Data) -> list[Table]:
         )
         for entry in data["scenarios"]
     )
+    parts = {"visible": "visible", "hidden": "hidden", "leaving": "out of view"}
+    split = tuple(
+        (
+            entry["label"],
+            place,
+            *(_error(entry["errors"][method["name"]].get(f"mean_{part}")) for method in methods),
+        )
+        for entry in data["scenarios"]
+        for part, place in parts.items()
+        if entry["errors"]["sailenv"].get(f"mean_{part}") is not None
+    )
     worst = max(entry["errors"]["sailenv"]["max"] for entry in data["scenarios"])
     share = min(entry["compared"] for entry in data["scenarios"])
     note = (
-        f"{data['pairs']} pairs of pictures of {data['width']}×{data['height']}, 1/30 s apart. The "
-        "reference is computed from the poses by rays and rigid-body arithmetic in float64."
+        f"{data['pairs']} pairs of pictures of {data['width']}×{data['height']}, 1/30 s apart "
+        "unless the scenario names a number of frames. The reference is computed from the poses "
+        "by rays and rigid-body arithmetic in float64."
     )
     return [
         Table(
@@ -126,7 +138,12 @@ def accuracy_tables(data: Data) -> list[Table]:
             columns=("scenario", *columns[2:]),
             rows=moving,
         ),
-    ]
+        Table(
+            title="Mean end-point error by the point's place in the earlier picture [px per pair]",
+            columns=("scenario", "in the earlier picture", *columns[2:]),
+            rows=split,
+        ),
+    ][: 3 if split else 2]
 
 
 def _error(value: float | None) -> str:

@@ -34,6 +34,18 @@ def test_our_flow_is_the_arithmetics_in_every_scenario(lab: Simulation, name: st
     assert shapes == {(72, 96, 3)}
 
 
+def test_gaps_and_what_is_hidden_or_leaves_are_told_apart(lab: Simulation) -> None:
+    """Over eight frames things come out from behind others and into view; ours stays exact."""
+    found = evaluate_scenario(lab, SCENARIOS["both"], opencv_methods()[:1], pairs=2, gap=8)
+    near = evaluate_scenario(lab, SCENARIOS["both"], (), pairs=2)
+    assert found.mean_motion_px > 4 * near.mean_motion_px
+    ours, theirs = found.errors[OURS], found.errors["farneback"]
+    for part in ("visible", "hidden", "leaving"):
+        assert ours[f"mean_{part}"] < 1e-3
+        assert np.isfinite(theirs[f"mean_{part}"])
+    assert theirs["mean_hidden"] > theirs["mean_visible"]
+
+
 def test_the_uniform_cube_has_no_texture_and_the_other_has(lab: Simulation) -> None:
     """What the scenarios differ in is to be seen."""
     pictures = [

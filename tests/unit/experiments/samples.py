@@ -13,7 +13,8 @@ TOLD = {
 }  # fmt: skip
 
 TIME = {"total": summary_ms([0.010, 0.012]), "flow": summary_ms([0.0, 0.0])}
-ERROR = {"mean": 1e-7, "p95": 2e-7, "max": 3e-5, "mean_moving": 1e-7}
+ERROR = {"mean": 1e-7, "p95": 2e-7, "max": 3e-5, "mean_moving": 1e-7, "mean_visible": 1e-7,
+         "mean_hidden": 2e-7, "mean_leaving": None}  # fmt: skip
 CLASS = {
     "views": 5, "instances": 1, "hit_rate": 0.6, "box_iou": (0.5, 0.4),
     "pixel_iou": (float("nan"), float("nan")),
