@@ -6,7 +6,7 @@ two frames, and everything else about objects in space, is computed from.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -85,6 +85,15 @@ class InstanceStates:
 
     def __len__(self) -> int:
         return len(self.ids)
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether all numbers are the same."""
+        if not isinstance(other, InstanceStates):
+            return NotImplemented
+        names = [entry.name for entry in fields(self)]
+        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+
+    __hash__ = None  # type: ignore[assignment]  # arrays have none
 
     @cached_property
     def matrices(self) -> NDArray[np.float64]:

@@ -145,6 +145,30 @@ def test_the_example_of_simulation_runs(here: Path, capsys: pytest.CaptureFixtur
 
 
 @pytest.mark.gl
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("number", range(len(programs("docs/motion.md"))))
+def test_a_program_of_the_page_on_motion_runs(
+    number: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As it stands there; a track through its own coordinates is the same track."""
+    out = run(programs("docs/motion.md")[number], capsys)
+    assert out.startswith(("(480, 640, 2) (480, 640, 3) 0.267 s", "(3, 20, 2)"))
+    assert "False" not in out
+
+
+@pytest.mark.gl
+def test_the_example_of_tracks_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Points become hidden and leave; the picture of their trails is written."""
+    out = run((ROOT / "examples" / "12_tracks.py").read_text(), capsys)
+    seen = [[int(n) for n in row] for row in re.findall(r": (\d+) seen, (\d+) h.*?, (\d+) o", out)]
+    assert len(seen) == 4
+    assert seen[0][1:] == [0, 0]
+    assert min(seen[-1]) > 0
+    assert len({sum(row) for row in seen}) == 1
+    assert (here / "trails.png").stat().st_size > 20_000
+
+
+@pytest.mark.gl
 @pytest.mark.slow
 def test_the_notebook_runs_and_shows_frames(tmp_path: Path) -> None:
     """In a kernel of its own: no cell fails; the simulation and each frame display as HTML."""

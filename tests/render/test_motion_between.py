@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
 from sailenv_ros.experiments.flow_scenes import SCENARIOS
 from sailenv_ros.experiments.motion_field import Instant, MotionField, motion_field
 from sailenv_ros.frame import Frame
+from sailenv_ros.geometry import look_at
 from sailenv_ros.motion import motion
 from sailenv_ros.simulation import Simulation
 
@@ -109,6 +112,35 @@ def both_ways(one: Frame, other: Frame) -> None:
     one_point = one["object_coords"][rows, columns][on_same]
     same_point = other["object_coords"][to_row, to_column][on_same]
     assert np.median(np.linalg.norm(one_point - same_point, axis=1)) < 0.02
+
+
+@pytest.mark.gl
+def test_motion_between_two_cameras_of_different_lenses(simulation: Simulation) -> None:
+    """At one instant, in both directions: a stereo pair whose right eye zooms and sees less."""
+    boxes = begin_scenario(simulation, SCENARIOS["rotate_rigidbody"])
+    lens = CameraIntrinsics(width=100, height=90, vertical_fov_deg=35.0)
+    simulation.register_agent(
+        AgentSpec(name="right", intrinsics=lens, following=False, rate_hz=0.0)
+    )
+    try:
+        simulation.set_pose(look_at((-1.5, -0.6, 1.6), (0.3, 0.1, 1.4)), agent="right")
+        left = simulation.capture(VIEWS, agent=EYE)
+        right = simulation.capture(VIEWS, agent="right")
+    finally:
+        simulation.delete_agent("right")
+    poses = [simulation.get_object(box.instance_id).pose for box in boxes]
+    ends = [(frame, Instant(camera=frame.camera, poses=poses)) for frame in (left, right)]
+    for (one, now), (other, then) in (ends, ends[::-1]):
+        moved, truth = motion(one, other), motion_field(boxes, now, then)
+        assert moved.duration_s == 0.0
+        sure = (one["instance"] == truth.instance) & moved.valid
+        assert sure.mean() > 0.5
+        np.testing.assert_allclose(moved.flow[sure], -truth.displacement_px[sure], atol=0.01)
+        assert not moved.scene_flow[sure].any()
+        away = sure & ~near_edges(one["instance"])
+        assert (moved.out_of_view == truth.leaves)[away].all()
+        assert (moved.occluded == truth.hidden)[away].mean() > 0.97
+        assert moved.visible.any()
 
 
 @pytest.mark.gl

@@ -14,6 +14,8 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, NameTaken, SceneDiagnostic, SceneError, UnknownName
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame, checked_views
+from sailenv_ros.geometry import Pose
+from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import Category, CategoryTable, colour_instances, instance_colours
 from sailenv_ros.lights import Light
 
@@ -162,3 +164,54 @@ def test_a_light_that_becomes_brighter_does_not_turn(
     light = Light(name="sun", type="directional", direction=direction)
     assert replace(light, intensity=2.0).direction == light.direction
     np.testing.assert_allclose(light.direction, direction / np.linalg.norm(direction), atol=1e-12)
+
+
+def states(**fields: object) -> InstanceStates:
+    given: dict[str, object] = {
+        "ids": [3, 9],
+        "positions": np.zeros((2, 3)),
+        "orientations": [[0, 0, 0, 1], [0, 0.6, 0, 0.8]],
+        "linear_velocities": np.zeros((2, 3)),
+        "angular_velocities": np.ones((2, 3)),
+        **fields,
+    }
+    return InstanceStates(**given)  # type: ignore[arg-type]
+
+
+def test_states_are_frozen_copies_with_rows_by_id() -> None:
+    """What was given may change; matrices are those of `Pose`; equal numbers are equal states."""
+    places = np.zeros((2, 3))
+    made = states(positions=places)
+    places[:] = 7.0
+    assert not made.positions.any()
+    with pytest.raises(ValueError, match="read-only"):
+        made.positions[0] = 1.0
+    assert [made.row(9), made.row_of_id[3], made.row_of_id[4]] == [1, 0, -1]
+    expected = Pose((0, 0, 0), (0, 0.6, 0, 0.8)).matrix()
+    assert made.matrices[1].tobytes() == expected.tobytes()
+    assert made == states()
+    assert made != states(positions=np.ones((2, 3)))
+    assert (made.scales == 1.0).all()
+    assert len(made) == 2
+    for unknown in (4, -1, 70000):
+        with pytest.raises(InvalidRequest, match="an instance that there was"):
+            made.row(unknown)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("ids", [9, 3]),
+        ("ids", [0, 3]),
+        ("ids", [1, 2, 3]),
+        ("positions", np.zeros((2, 4))),
+        ("positions", np.full((2, 3), np.nan)),
+        ("orientations", np.zeros((2, 4))),
+        ("scales", np.ones(2)),
+        ("histories", [1]),
+    ],
+)
+def test_states_that_cannot_be_are_refused(field: str, value: object) -> None:
+    """With what is accepted."""
+    with pytest.raises(InvalidRequest, match="of instances"):
+        states(**{field: value})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -36,10 +35,7 @@ def same_frame(read: Frame, written: Frame) -> None:
         read.camera.world_from_camera, written.camera.world_from_camera, rtol=0, atol=1e-12
     )
     assert read.states is not None
-    assert written.states is not None
-    for field in dataclasses.fields(read.states):
-        one, other = (getattr(frame.states, field.name) for frame in (read, written))
-        assert (one.dtype, one.tobytes()) == (other.dtype, other.tobytes()), field.name
+    assert read.states == written.states
     assert list(read.views) == [view for view in VIEWS if view in written.views]
     for view, values in written.views.items():
         assert read[view].dtype == values.dtype
@@ -91,8 +87,7 @@ def test_a_recorded_agent_gives_the_live_agents_dict(tmp_path: Path) -> None:
                 read["world_from_camera"], expected["world_from_camera"], rtol=0, atol=1e-12
             )
             assert expected["camera"].intrinsics == read["camera"].intrinsics
-            assert expected["states"].matrices.tobytes() == read["states"].matrices.tobytes()
-            for name in ("world_from_camera", "camera", "states"):
+            for name in ("world_from_camera", "camera"):
                 expected[name] = read[name]
             same_dict(read, expected)
             read["main"][:] = 0  # the caller's own
