@@ -12,7 +12,7 @@ import types
 from typing import Any
 
 import numpy as np
-import tensorflow as tf  # type: ignore[import-not-found]
+import tensorflow as tf
 
 
 def from_quaternion(quaternion: Any) -> Any:

@@ -80,7 +80,7 @@ def sequence(width: int, height: int) -> tuple[list[Frame], SceneGeometry, list[
 def judge_tapnet(folder: Path) -> None:
     """Score our tracks and those of OpenCV's Lucas-Kanade by the benchmark's metrics."""
     source = (folder / "tapnet/tapvid/evaluation_datasets.py").read_text()
-    functions = [
+    functions: list[ast.stmt] = [
         node
         for node in ast.parse(source).body
         if isinstance(node, ast.FunctionDef) and node.name == "compute_tapvid_metrics"
@@ -116,7 +116,7 @@ def lucas_kanade(
     places = [points.astype(np.float32)]
     lost = [np.zeros(len(points), np.bool_)]
     for before, after in itertools.pairwise(greys):
-        found, status, _ = cv2.calcOpticalFlowPyrLK(before, after, places[-1][:, None], None)  # type: ignore[call-overload]
+        found, status, _ = cv2.calcOpticalFlowPyrLK(before, after, places[-1][:, None], None)
         places.append(found[:, 0])
         lost.append(lost[-1] | (status[:, 0] == 0))
     return np.stack(places, axis=1).astype(np.float64), np.stack(lost, axis=1)
@@ -128,7 +128,8 @@ def judge_kubric(folder: Path, python: Path) -> None:
     frames, geometry, boxes = sequence(size, size)
     with tempfile.TemporaryDirectory() as temporary:
         given, taken = Path(temporary) / "given.npz", Path(temporary) / "taken.npz"
-        np.savez(given, **kubric_arrays(frames, boxes))
+        arrays: Any = kubric_arrays(frames, boxes)
+        np.savez(given, **arrays)
         program = Path(__file__).with_name("kubric_judge.py")
         path = folder / "challenges/point_tracking/dataset.py"
         subprocess.run([python, program, path, given, taken], check=True)

@@ -28,7 +28,9 @@ def draw_trails(picture: np.ndarray, tracks: Tracks) -> np.ndarray:
         if not np.isfinite(pixels).all():
             continue
         hue = int(179 * pixels[0, 0] / WIDTH)
-        colour = cv2.cvtColor(np.uint8([[[hue, 200, 255]]]), cv2.COLOR_HSV2RGB)[0, 0].tolist()
+        colour = cv2.cvtColor(np.array([[[hue, 200, 255]]], np.uint8), cv2.COLOR_HSV2RGB)[
+            0, 0
+        ].tolist()
         places = np.rint(16 * pixels).astype(int)  # in sixteenths of a pixel
         for k in range(1, len(places)):
             seen = bool(visible[k - 1] and visible[k])
