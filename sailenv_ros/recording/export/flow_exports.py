@@ -47,38 +47,47 @@ def motions_of(sample: Sample, flow: str) -> tuple[dict[str, Motion], dict[str, 
 
 
 class KittiExport(DatasetFormat):
-    """KITTI's flow benchmark: a pair of pictures for each frame, and its flow.
+    """KITTI's flow benchmark: pairs of pictures and the flow between them.
 
-    ``image_2/N_10.png`` is the frame, ``N_11.png`` the next one; ``flow_occ/N_10.png`` is the flow
+    ``image_2/N_10.png`` is a frame, ``N_11.png`` the next one; ``flow_occ/N_10.png`` is the flow
     from the one to the other, ``flow_noc/N_10.png`` the same without what is occluded or leaves
-    the picture. Backward flow, from the frame to the one before, lies in ``flow_backward_occ`` and
-    ``flow_backward_noc``. ``depth/N_10.png`` is in steps of 1/256 m, 0 where there is none.
+    the picture. Backward flow, from the second picture to the first, lies in
+    ``flow_backward_occ/N_11.png`` and ``flow_backward_noc``. ``depth/N_10.png`` is in steps of
+    1/256 m, 0 where there is none. Readers match files by their order, so a frame without a next
+    one has no picture.
     """
 
     any_of: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
     needs_neighbours: ClassVar[bool] = True
 
     def add(self, sample: Sample) -> Made:
-        """Write a frame's files."""
-        folder, frame, name = self.folder / sample.split, sample.frame, f"{sample.stem}_10.png"
-        pictures = 0
-        if "rgb" in frame.views:
-            write_png(folder / "image_2" / name, frame["rgb"])
-            pictures += 1
-            following = sample.following
-            if following is not None and _have_one_past(frame, following):
-                write_png(folder / "image_2" / f"{sample.stem}_11.png", following["rgb"])
+        """Write the pair that begins with a frame."""
+        frame, following = sample.frame, sample.following
+        folder = self.folder / sample.split
+        first, second = (f"{sample.stem}_1{number}.png" for number in (0, 1))
+        written = {"pictures": 0, "depth maps": 0, "flow fields": 0}
         if "depth" in frame.views:
-            write_png(folder / "depth" / name, scaled_depth(frame["depth"], 256.0))
-            pictures += 1
-        motions, left_out = motions_of(sample, self.flow)
-        for direction, moved in motions.items():
-            begin = "flow" if direction == "forward" else "flow_backward"
-            visible = np.where(moved.visible[..., None], moved.flow, np.float32(np.nan))
-            write_png(folder / f"{begin}_occ" / name, kitti_from_backward(moved.flow))
-            write_png(folder / f"{begin}_noc" / name, kitti_from_backward(visible))
-        written = {"pictures": pictures, "flow fields": len(motions)}
-        return Made(written=written, left_out=left_out)
+            write_png(folder / "depth" / first, scaled_depth(frame["depth"], 256.0))
+            written["depth maps"] = 1
+        if following is None or not _have_one_past(frame, following):
+            return Made(written=written, left_out={NO_NEIGHBOUR: 1})
+        if "rgb" in frame.views:
+            write_png(folder / "image_2" / first, frame["rgb"])
+            write_png(folder / "image_2" / second, following["rgb"])
+            written["pictures"] = 2
+        if not (_is_complete(frame) and _is_complete(following)):
+            return Made(written=written, left_out={NO_STATES: 1})
+        for direction, begin, end, folder_name, name in (
+            ("forward", frame, following, "flow", first),
+            ("backward", following, frame, "flow_backward", second),
+        ):
+            if self.flow in (direction, "both"):
+                moved = motion(begin, end)
+                visible = np.where(moved.visible[..., None], moved.flow, np.float32(np.nan))
+                write_png(folder / f"{folder_name}_occ" / name, kitti_from_backward(moved.flow))
+                write_png(folder / f"{folder_name}_noc" / name, kitti_from_backward(visible))
+                written["flow fields"] += 1
+        return Made(written=written)
 
 
 class SintelExport(DatasetFormat):
