@@ -104,7 +104,7 @@ def _node(scene: str) -> Iterator[tuple[int, Round]]:
     with NodeProcess(namespace, scene=scene, **parameters) as node:
 
         def work(scene: str, number: int) -> None:
-            small = {"width": 160, "height": 120, "namespace": namespace}
+            small = {"width": 160, "height": 120, "namespace": namespace, "timeout_s": 60.0}
             with Agent(**small) as agent, Agent(**small) as other:
                 agent.change_scene(scene)
                 name = agent.spawn_object("cube", (0.0, 0.0, 1.0))
