@@ -101,7 +101,7 @@ def _node(scene: str) -> Iterator[tuple[int, Round]]:
 
     ports = _free_port(), _free_port()
     namespace = f"/soak_{os.getpid()}"
-    parameters = {"gateway__port": ports[0], "viewer__port": ports[1]}
+    parameters: dict[str, Any] = {"gateway__port": ports[0], "viewer__port": ports[1]}
     with NodeProcess(namespace, scene=scene, **parameters) as node:
 
         def work(scene: str, number: int) -> None:
