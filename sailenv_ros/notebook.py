@@ -26,11 +26,12 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.object_truth.object_table import ObjectTable
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.scene_info import SceneInfo
 
-__all__ = ["frame_html", "scene_html", "show"]
+__all__ = ["frame_html", "objects_html", "scene_html", "show"]
 
 TILE_WIDTH_PX = 320
 """Larger views are shown at this width."""
@@ -96,6 +97,42 @@ def scene_html(title: str, info: SceneInfo) -> str:
         for name, value in rows.items()
     )
     return f"<div><p><b>{html.escape(title)}</b></p><table>{cells}</table></div>"
+
+
+def objects_html(table: ObjectTable) -> str:
+    """Return a table of objects as HTML: those that are visible first, the largest first.
+
+    Parameters
+    ----------
+    table : ObjectTable
+    """
+    order = np.argsort(-table.visible_pixels, kind="stable").tolist()
+    shares, truncated = table.visible_share, table.truncated_share
+    heads = ("id", "name", "category", "pixels", "box", "visible", "truncated", "distance", "size")
+    rows = [
+        (
+            str(table.ids[row]),
+            table.names[row],
+            table.categories[row],
+            str(table.visible_pixels[row]) if table.visible_pixels[row] else "",
+            ", ".join(map(str, table.visible_boxes[row])) if table.visible_pixels[row] else "",
+            _percent(shares[row]),
+            _percent(truncated[row]),
+            "" if np.isnan(table.distances[row]) else f"{table.distances[row]:.2f} m",
+            " × ".join(f"{side:.2f}" for side in table.box_sizes[row]) + " m",
+        )
+        for row in order
+    ]
+    head = "".join(f'<th style="text-align:left">{name}</th>' for name in heads)
+    body = "".join(
+        "<tr>"
+        + "".join(f'<td style="text-align:left">{html.escape(value)}</td>' for value in row)
+        + "</tr>"
+        for row in rows
+    )
+    seen = int(table.visible.sum())
+    about = f"{len(table)} objects, {seen} of them visible"
+    return f"<div><p><b>{about}</b></p><table><tr>{head}</tr>{body}</table></div>"
 
 
 def show(
@@ -187,6 +224,10 @@ def _tile(name: str, picture: NDArray[np.uint8]) -> str:
         f'height="{image.height}" src="data:image/png;base64,{text}">'
         f"<figcaption>{label}</figcaption></figure>"
     )
+
+
+def _percent(share: float) -> str:
+    return "" if np.isnan(share) else f"{100.0 * share:.0f} %"
 
 
 def _listed(names: Iterable[str], most: int = 8) -> str:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.object_truth.visible_parts import VisibleParts, visible_parts
 from sailenv_ros.operations.operation import Caller
-from sailenv_ros.pictures.boxes import Boxes, instance_boxes
 from sailenv_ros.pictures.colours import colour_categories, colour_flow, view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 
@@ -83,7 +83,7 @@ class FramePictures(Caller):
         return _reversed(colour_flow(flow, full_px_s=full_px_s))
 
     @staticmethod
-    def boxes(frame: Mapping[str, Any]) -> Boxes:
+    def boxes(frame: Mapping[str, Any]) -> VisibleParts:
         """Return the box and the number of visible pixels of each instance that is seen.
 
         Raises
@@ -93,7 +93,7 @@ class FramePictures(Caller):
         """
         if "instance" not in frame:
             raise UnknownName("view of the frame", "instance", [k for k in frame if k != "sizes"])
-        return instance_boxes(frame["instance"])
+        return visible_parts(frame["instance"])
 
 
 def _reversed(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
