@@ -7,11 +7,11 @@ there and names none of its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ __all__ = [
     "ALWAYS_MADE",
     "FIVE_VIEWS",
     "VIEWS",
+    "DrawAlone",
     "Frame",
     "ImageCodec",
     "ViewDisplay",
@@ -300,6 +301,13 @@ def checked_views(
     return ordered
 
 
+class DrawAlone(Protocol):
+    """Draws the objects of a frame, each alone."""
+
+    def __call__(self, only: int = 0) -> AmodalMasks:
+        """Draw the object of that id, perhaps others too; 0 draws all."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frame:
     """All views of one camera at one instant.
@@ -346,7 +354,7 @@ class Frame:
     timings_s: Mapping[str, float] = field(default_factory=dict)
     info: SceneInfo | None = None
     states: InstanceStates | None = None
-    draw_alone: Callable[[], AmodalMasks] | None = None
+    draw_alone: DrawAlone | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width
@@ -410,6 +418,20 @@ class Frame:
                 "them, or record them"
             )
         return self.draw_alone()
+
+    def amodal_of(self, instance_id: int) -> AmodalMasks:
+        """Return what one object covers, perhaps among others; quicker than `amodal`.
+
+        Raises
+        ------
+        InvalidRequest
+            If there is no object of that id.
+        InvalidState, SimulationClosed
+            As `amodal`.
+        """
+        if self.draw_alone is None or "amodal" in self.__dict__:
+            return self.amodal
+        return self.draw_alone(instance_id)
 
     @property
     def objects_with_amodal(self) -> ObjectTable:

@@ -180,7 +180,7 @@ class FrameClient:
         draw = partial(self._amodal_masks, info.sequence)
         return frame_of_info(info, views, self._intrinsics(scene), scene, draw)
 
-    def _amodal_masks(self, sequence: int) -> AmodalMasks:
+    def _amodal_masks(self, sequence: int, only: int = 0) -> AmodalMasks:
         """Have the objects of a frame drawn alone, which must be the agent's last."""
         operation = Operations.get_amodal_masks
         arguments = operation.signature.bind(sequence=sequence, agent=self._spec.name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -13,8 +13,7 @@ from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
+from sailenv_ros.frame import VIEWS, DrawAlone, Frame
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.system.memory import keep_freed_memory
 
@@ -37,7 +36,7 @@ def frame_of_info(
     views: Mapping[str, NDArray[Any]],
     intrinsics: CameraIntrinsics,
     scene_info: SceneInfo | None,
-    draw_alone: Callable[[], AmodalMasks] | None = None,
+    draw_alone: DrawAlone | None = None,
 ) -> Frame:
     """Make one frame of its info and its arrays, which nobody else has.
 

@@ -11,6 +11,7 @@ import numpy as np
 from sailenv_ros.camera import Camera
 from sailenv_ros.cpu_render.cpu_renderer import native_view
 from sailenv_ros.cpu_render.part_table import PartTable
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.alone_drawing import AloneDrawing
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
@@ -39,15 +40,26 @@ class AloneRenderer:
         self._table = PartTable() if table is None else table
         self._drawing = AloneDrawing(thread_count() if threads is None else threads)
 
-    def draw(self, snapshot: WorldSnapshot, camera: Camera) -> AmodalMasks:
-        """Draw every object of a snapshot, each alone."""
+    def draw(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+        """Draw every object of a snapshot, each alone, or only the one of that id.
+
+        Raises
+        ------
+        InvalidRequest
+            If there is no object of that id.
+        """
         self._table.show(snapshot.contents)
         parts = self._table.opaque
         poses = np.ascontiguousarray(snapshot.world_from_body)
         ids = snapshot.contents.instance_ids
-        order = np.argsort(ids, kind="stable")
         # Parts lie in the order of the snapshot's rows.
         starts = np.searchsorted(parts["instance"], np.arange(len(ids) + 1)).astype(np.int64)
+        if only:
+            row = np.flatnonzero(ids == only)
+            if not len(row):
+                raise InvalidRequest("instance id", only, "the id of an object in the scene")
+            ids, starts = ids[row], starts[row[0] : row[0] + 2]
+        order = np.argsort(ids, kind="stable")
         lens = camera.intrinsics
         results, depths = self._drawing.draw(
             native_view(camera), lens.near_m, self._table.instances(poses, None), parts, starts

@@ -7,7 +7,7 @@ number; as for a live client, those recorded between two frames' infos belong to
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -23,7 +23,7 @@ from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.frame import VIEWS, DrawAlone, Frame
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.channels import (
     FRAME_INFO,
@@ -196,14 +196,14 @@ class RecordedFrames(Sequence[Frame]):
         info = self._entries[self.position(index)].info
         return self._intrinsics(info, self.scene_info(index))
 
-    def _amodal_reader(self, index: int) -> Callable[[], AmodalMasks] | None:
+    def _amodal_reader(self, index: int) -> DrawAlone | None:
         """Return what reads the amodal masks of a frame; None if they were not recorded."""
         info = self._entries[self.position(index)].info
         row = self._amodal_rows.get((ns_from_stamp(info.header.stamp), info.sequence))
         if row is None:
             return None
 
-        def read() -> AmodalMasks:
+        def read(only: int = 0) -> AmodalMasks:
             message = self._message(row)
             masks = (one.amodal for one in message.objects)
             return amodal_masks_from_msgs(masks, message.height, message.width)

@@ -278,11 +278,13 @@ class SimulationCore(WorldOperations):
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
             info=info,
             states=self.world.states(),
-            draw_alone=lambda: self.run_later(lambda: self.draw_alone(snapshot, camera)),
+            draw_alone=lambda only=0: self.run_later(
+                lambda: self.draw_alone(snapshot, camera, only)
+            ),
         )
 
-    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera) -> AmodalMasks:
-        """Draw each object of a snapshot alone, whatever is seen of it.
+    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+        """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
 
         Raises
         ------
@@ -293,7 +295,7 @@ class SimulationCore(WorldOperations):
             renderer = self._renderer
             table = renderer.part_table if isinstance(renderer, NativeRenderer) else None
             self._alone = AloneRenderer(table)
-        return self._alone.draw(snapshot, camera)
+        return self._alone.draw(snapshot, camera, only)
 
     def open_stream(
         self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]
