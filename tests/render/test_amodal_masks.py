@@ -10,6 +10,7 @@ import pytest
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.model import Mesh
 from sailenv_ros.native.library import load_library, using_instruction_set
@@ -247,3 +248,23 @@ def test_masks_do_not_depend_on_threads_or_instruction_set() -> None:
 def test_an_empty_scene_has_no_masks(alone: AloneRenderer) -> None:
     """And that is no error."""
     assert len(alone.draw(snapshot_of([]), camera_at())) == 0
+
+
+def test_points_of_a_cloud_lie_on_the_meshes(native: NativeRenderer) -> None:
+    """Within a tenth of a millimetre, by the distance to the nearest side of each box."""
+    snapshot, camera = snapshot_of(crowd()), camera_at(width=160, height=120)
+    views = native.render(snapshot, None, camera, ("depth", "instance")).views
+    frame = Frame(
+        agent="eye", scene="tiny", epoch=1, revision=1, sequence=1, stamp_ns=0, dt_ns=0,
+        camera=camera, views=views,
+    )  # fmt: skip
+    cloud = frame.points()
+    assert len(cloud) > 1000
+    for row, drawn in enumerate(snapshot.contents.instances):
+        own = cloud.xyz[cloud.instance == drawn.instance.id].astype(np.float64)
+        pose = snapshot.world_from_body[row]
+        places = np.abs((own - pose[:3, 3]) @ pose[:3, :3])
+        half = 0.5 * np.asarray(drawn.scale)
+        # Outside of no side by more than that, and on at least one of them.
+        assert (places - half).max(initial=0.0) <= 1e-4
+        assert np.abs(places - half).min(axis=1).max(initial=0.0) <= 1e-4
