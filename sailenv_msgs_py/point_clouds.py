@@ -47,11 +47,13 @@ def point_cloud_to_msg(frame: Frame, header: Header) -> PointCloud2:
     UnknownName
         If the frame has no depth.
     """
-    points = frame.camera.intrinsics.unproject(frame["depth"])
-    height, width = points.shape[:2]
+    lens, depth = frame.camera.intrinsics, frame["depth"]
+    height, width = depth.shape
     table = np.zeros((height, width), POINT)
-    for axis, name in enumerate("xyz"):
-        table[name] = points[..., axis]
+    z = np.where(np.isfinite(depth), depth, np.nan).astype(np.float64)
+    table["x"] = z * ((np.arange(width) - lens.cx) / lens.fx)
+    table["y"] = z * ((np.arange(height) - lens.cy) / lens.fy)[:, None]
+    table["z"] = z
     if "rgb" in frame.views:
         for channel, name in enumerate("rgb"):
             table[name] = frame["rgb"][..., channel]

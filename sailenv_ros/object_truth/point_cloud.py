@@ -83,13 +83,16 @@ def points_of(frame: Frame, *, in_world: bool = True) -> PointCloud:
     UnknownName
         If the frame has no depth.
     """
-    points = frame.camera.intrinsics.unproject(frame["depth"]).reshape(-1, 3)
-    pixels = np.flatnonzero(np.isfinite(points[:, 2]))
-    xyz = points[pixels]
-    if in_world:
-        pose = frame.camera.world_from_camera
-        xyz = xyz @ pose[:3, :3].T + pose[:3, 3]
+    lens, depth = frame.camera.intrinsics, frame["depth"].reshape(-1)
+    pixels = np.flatnonzero(np.isfinite(depth))
+    z = depth[pixels].astype(np.float64)
+    rows, columns = np.divmod(pixels, lens.width)
+    x, y = (columns - lens.cx) * z / lens.fx, (rows - lens.cy) * z / lens.fy
+    pose = frame.camera.world_from_camera if in_world else np.eye(4)
     count = len(pixels)
+    xyz = np.empty((count, 3), np.float32)
+    for axis, (a, b, c, shift) in enumerate(pose[:3].tolist()):
+        xyz[:, axis] = a * x + b * y + c * z + shift
     rgb = frame.views.get("rgb")
     category, instance = frame.views.get("category"), frame.views.get("instance")
 
@@ -99,7 +102,7 @@ def points_of(frame: Frame, *, in_world: bool = True) -> PointCloud:
         return view.reshape(-1)[pixels].astype(np.uint16)
 
     return PointCloud(
-        xyz=xyz.astype(np.float32),
+        xyz=xyz,
         rgb=np.zeros((count, 3), np.uint8) if rgb is None else rgb.reshape(-1, 3)[pixels],
         category=labels(category),
         instance=labels(instance),
