@@ -29,6 +29,7 @@ from sailenv_ros.frame import ALWAYS_MADE, Frame
 from sailenv_ros.nodes.derived_topics import DerivedTopics
 from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.nodes.late_topics import LateTopics
+from sailenv_ros.nodes.object_topics import ObjectTopics
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
 from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import FrameStream, Simulation
@@ -72,6 +73,7 @@ class AgentPublisher:
             categories=lambda: simulation.info.categories,
         )
         self._late = LateTopics(self._publisher)
+        self._objects = ObjectTopics(self._publisher)
         self._counter = FrameCounter()
         self._publishing = threading.Lock()
         self._closing = threading.Event()
@@ -154,6 +156,7 @@ class AgentPublisher:
                 *infos,
                 *self._derived.publishers,
                 *self._late.publishers,
+                *self._objects.publishers,
             ):
                 self._node.destroy_publisher(publisher)
 
@@ -181,6 +184,7 @@ class AgentPublisher:
 
     def _wanted_views(self) -> tuple[str, ...]:
         shown = self._derived.wanted_views() | self._late.wanted_views()
+        shown |= self._objects.wanted_views()
         wanted = tuple(
             view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
         )
@@ -239,6 +243,7 @@ class AgentPublisher:
         # Last, as they take time and nobody waits for them.
         self._derived.publish(frame, header)
         self._late.publish(frame)
+        self._objects.publish(frame, header)
         self._counter.add(frame, time.perf_counter() - began)
         return tuple(sent)
 

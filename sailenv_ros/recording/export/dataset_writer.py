@@ -23,7 +23,7 @@ from sailenv_ros.recording.export.formats import FORMATS, check_views, format_cl
 from sailenv_ros.recording.export.journal import JOURNAL, Journal
 from sailenv_ros.recording.export.splits import Splits
 
-__all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "Summary"]
+__all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "DatasetSummary"]
 
 SUMMARY_FILE = "export.json"
 """What was written and what was left out, in the folder of a finished data set."""
@@ -38,7 +38,7 @@ class FormatSummary:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Summary:
+class DatasetSummary:
     """What a data set holds.
 
     Attributes
@@ -128,7 +128,7 @@ class DatasetWriter:
             self._next = max(0, self._next - 1)
         self._before: Frame | None = None
         self._held: Frame | None = None
-        self._summary: Summary | None = None
+        self._summary: DatasetSummary | None = None
 
     @property
     def done(self) -> int:
@@ -172,7 +172,7 @@ class DatasetWriter:
             entry = {name: made.add(sample) for name, made in self._formats.items()}
             self._journal.add(split, entry)
 
-    def finish(self) -> Summary:
+    def finish(self) -> DatasetSummary:
         """Write what is written at the end; a second call returns the same.
 
         Raises
@@ -194,7 +194,7 @@ class DatasetWriter:
                     for number, (split, entry) in enumerate(zip(splits, entries, strict=True))
                 ]
             )
-        summary = Summary(
+        summary = DatasetSummary(
             frames=len(entries),
             splits=MappingProxyType(dict(Counter(split for split in splits if split))),
             formats=MappingProxyType(
@@ -231,7 +231,7 @@ def _totals(made: Sequence[Made]) -> FormatSummary:
     return FormatSummary(written=dict(written), left_out=dict(left_out))
 
 
-def _plain(summary: Summary) -> dict[str, Any]:
+def _plain(summary: DatasetSummary) -> dict[str, Any]:
     return {
         "frames": summary.frames,
         "splits": dict(summary.splits),

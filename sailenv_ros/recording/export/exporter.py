@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.recording.export.dataset_format import FlowDirection
-from sailenv_ros.recording.export.dataset_writer import DatasetWriter, Summary
+from sailenv_ros.recording.export.dataset_writer import DatasetSummary, DatasetWriter
 from sailenv_ros.recording.export.formats import FORMATS, check_views
 from sailenv_ros.recording.export.splits import Splits
 from sailenv_ros.recording.frames import RecordedFrames
@@ -26,7 +26,7 @@ def export(
     flow: FlowDirection = "forward",
     resume: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, of: None,
-) -> Summary:
+) -> DatasetSummary:
     """Write a recording as data sets.
 
     Parameters
@@ -50,7 +50,7 @@ def export(
 
     Returns
     -------
-    summary : Summary
+    summary : DatasetSummary
         What was written, and what was left out and why.
 
     Raises

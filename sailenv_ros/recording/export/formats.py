@@ -21,6 +21,11 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "movi": "movi_export.MoviExport",
         "tapvid": "tapvid_export.TapVidExport",
         "mp4": "video.VideoExport",
+        "bop": "bop_export.BopExport",
+        "mot": "mot_export.MotExport",
+        "yolo": "yolo_export.YoloExport",
+        "yolo_segments": "yolo_export.YoloSegmentsExport",
+        "voc": "voc_export.VocExport",
     }
 )
 """Module in this folder and class of each format, by its name."""
