@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import RayScene
-from sailenv_ros.bake.sampling import fibonacci_sphere
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.bake.direct import samples_of
 from sailenv_ros.bake.gather import BACK, Surroundings
+from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import RayScene
-from sailenv_ros.bake.sampling import fibonacci_sphere
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.bake.sky import sky_at
 from sailenv_ros.baked_light import ProbeGrid

@@ -27,11 +27,13 @@ from sailenv_ros.bake.light_probes import (
     probe_positions,
     straight_light,
 )
+from sailenv_ros.bake.ray_patterns import net
 from sailenv_ros.bake.rays import NEVER, RayScene, in_chunks
 from sailenv_ros.bake.reflectance import albedo_of, emission_of
-from sailenv_ros.bake.sampling import net, tile_shift
+from sailenv_ros.bake.sampling import tile_shift
 from sailenv_ros.bake.settings import BakeSettings
-from sailenv_ros.bake.sky import panes, sky_picture
+from sailenv_ros.bake.sky import panes
+from sailenv_ros.bake.sky_picture import sky_picture
 from sailenv_ros.bake.static_geometry import static_geometry_of
 from sailenv_ros.bake.texels import rasterised
 from sailenv_ros.bake.visibility import probe_visibility, visible_triangles

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.layout import Layout
+from sailenv_ros.bake.returned_light import returned
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 from sailenv_ros.colour import LINEAR_OF_SRGB8
@@ -19,15 +20,6 @@ __all__ = ["albedo_of", "emission_of", "returned"]
 
 BRIGHTEST = 0.95
 """No surface gives back more: bounces would not end."""
-
-BELOW = 0.9565
-"""Share of the light from everywhere that meets the colour of something that is no metal."""
-
-GLOSS = np.array(
-    [0.0857, 0.0854, 0.0810, 0.0730, 0.0632, 0.0531, 0.0442, 0.0366, 0.0296, 0.0238, 0.0191]
-)
-"""Share that its surface gives back before, for roughness 0, 0.1 … 1: both are the lobes of
-lighting.frag, integrated over the hemispheres of where light comes from and where it goes to."""
 
 
 def emission_of(geometry: StaticGeometry, texels: Texels) -> NDArray[np.float32]:
@@ -62,23 +54,6 @@ def albedo_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArr
             finish = finish * _sampled(shares, at, texel)
         albedo[chosen] = returned(base, *finish.T[:, :, None])
     return np.clip(albedo, 0.0, BRIGHTEST)
-
-
-def returned(
-    base: NDArray[np.floating], roughness: NDArray[np.floating], metallic: NDArray[np.floating]
-) -> NDArray[np.float64]:
-    """Return the share of the light from everywhere that a surface gives back to everywhere.
-
-    Parameters
-    ----------
-    base : (N, 3) float
-        Linear colour.
-    roughness, metallic : (N, 1) or (1, 1) float
-        Of a metal all microfacets together give back its colour.
-    """
-    gloss = np.interp(roughness, np.linspace(0.0, 1.0, len(GLOSS)), GLOSS)
-    plain: NDArray[np.float64] = gloss + BELOW * base
-    return plain + metallic * (base - plain)
 
 
 def _texture_texels(geometry: StaticGeometry, layout: Layout) -> NDArray[np.float64]:

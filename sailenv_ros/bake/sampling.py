@@ -1,4 +1,4 @@
-"""Evenly spread directions and points. Nothing in but how many; knows no scene.
+"""Patterns of rays for neighbouring texels. From `ray_patterns` to directions; knows no scene.
 
 Everything is deterministic: neighbouring texels of a tile of 4 by 4 take shifted copies of one
 pattern, which together are a pattern 16 times as fine, so that averaging over tiles leaves no
@@ -11,29 +11,12 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["fibonacci_sphere", "hemisphere_rays", "net", "shifted", "tile_shift"]
+__all__ = ["hemisphere_rays", "shifted", "tile_shift"]
 
 Floats = NDArray[np.float32]
 
 _ORDER = np.array([0, 2, 1, 3], dtype=np.float32)
 """Neighbours in a tile take places far from each other."""
-
-
-def net(count: int) -> Floats:
-    """Return (count, 2) float32: points of the unit square, one in each of its even parts.
-
-    Of a square of a power of two there is one in each of as many square cells.
-
-    The set of Hammersley (1960) in base 2, moved to the middles of its intervals.
-    """
-    index = np.arange(count, dtype=np.uint64)
-    bits = max(int(count - 1).bit_length(), 1)
-    mirrored = np.zeros(count, dtype=np.uint64)
-    for bit in range(bits):
-        mirrored |= ((index >> np.uint64(bit)) & np.uint64(1)) << np.uint64(bits - 1 - bit)
-    first = (index + 0.5) / count
-    second = (mirrored + 0.5) / 2.0**bits
-    return np.stack([first, second], axis=1).astype(np.float32)
 
 
 def tile_shift(rows: NDArray[np.int32], columns: NDArray[np.int32]) -> Floats:
@@ -52,15 +35,6 @@ def shifted(pattern: Floats, shifts: Floats) -> Floats:
     cell = np.floor(pattern * cells)
     inside = (pattern * cells - cell)[None] + shifts[:, None]
     return np.asarray((cell + inside - np.floor(inside)) / cells, dtype=np.float32)
-
-
-def fibonacci_sphere(count: int) -> Floats:
-    """Return (count, 3) float32: unit vectors spread evenly over the sphere."""
-    index = np.arange(count) + 0.5
-    z = 1.0 - 2.0 * index / count
-    radius = np.sqrt(1.0 - z * z)
-    turn = index * (np.pi * (3.0 - np.sqrt(5.0)))
-    return np.stack([radius * np.cos(turn), radius * np.sin(turn), z], axis=1).astype(np.float32)
 
 
 @numba.njit(cache=True, nogil=True)

@@ -25,6 +25,7 @@ from sailenv_ros.native.render_types import PART, VIEW, record
 from sailenv_ros.render import annotate as ground_truth
 from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.finishing import Finisher
+from sailenv_ros.render.flat_mirrors import FlatMirrors, Window
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
 __all__ = ["NativeRenderer", "native_view"]
@@ -55,6 +56,7 @@ class NativeRenderer:
         self._table = PartTable()
         self._light = FrameLight(self._drawing, self._threads)
         self._finisher = Finisher(self._threads)
+        self._mirrors = FlatMirrors()
         self._closed = False
 
     @property
@@ -168,8 +170,43 @@ class NativeRenderer:
                 surface=arrays.get("samples"),
                 radiance=arrays["rgb"],
             )
+        if light is not None:
+            self._reflect(snapshot, fine if sampled else camera, light, arrays)
         timings["draw"] = time.perf_counter() - marked
         return arrays
+
+    def _reflect(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        light: NDArray[np.void],
+        arrays: dict[str, NDArray[Any]],
+    ) -> None:
+        """Put into the picture what its flat mirrors show."""
+        mirrors = self._mirrors.seen(snapshot, camera)
+        if not mirrors:
+            return
+        poses = np.ascontiguousarray(snapshot.world_from_body)
+        at_baked_pose = self._table.at_baked_pose(snapshot)
+
+        def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
+            view = native_view(behind, window)
+            size = int(view["height"][0]), int(view["width"][0])
+            radiance = np.empty((*size, 4), np.float16)
+            instances = self._table.instances(poses, at_baked_pose, only)
+            opaque = self._table.opaque
+            self._drawing.picture(view, instances, opaque, _NO_GLASS, light, radiance=radiance)
+            return radiance
+
+        surface = arrays["samples" if "samples" in arrays else "surface"]
+        if surface.shape[:2] != arrays["rgb"].shape[:2]:
+            surface = np.empty((*arrays["rgb"].shape[:2], 2), np.float32)
+            instances = self._table.instances(poses, at_baked_pose)
+            opaque = self._table.opaque
+            self._drawing.picture(
+                native_view(camera), instances, opaque, _NO_GLASS, None, surface=surface
+            )
+        self._mirrors.reflect(mirrors, camera, arrays["rgb"], surface, look)
 
     def _radiance(
         self,
@@ -206,17 +243,18 @@ class NativeRenderer:
         return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
 
 
-def native_view(camera: Camera) -> NDArray[np.void]:
-    """Return (1,) VIEW of a camera, as the native kernels read it."""
+def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void]:
+    """Return (1,) VIEW of a camera or of a window of it, as the native kernels read it."""
     lens = camera.intrinsics
+    rows, columns = window or (slice(0, lens.height), slice(0, lens.width))
     return record(
         VIEW,
         camera_from_world=camera.camera_from_world.reshape(-1),
         world_from_camera=camera.world_from_camera.reshape(-1),
         focal=lens.fx,
-        cx=lens.cx,
-        cy=lens.cy,
+        cx=lens.cx - columns.start,
+        cy=lens.cy - rows.start,
         far_m=lens.far_m,
-        width=lens.width,
-        height=lens.height,
+        width=columns.stop - columns.start,
+        height=rows.stop - rows.start,
     )

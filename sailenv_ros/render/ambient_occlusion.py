@@ -3,8 +3,9 @@
 Depth and instance ids come in, the ambient visibility at half resolution goes out. Each sample
 looks at six points around it, within a radius on the surface: what rises above its tangent plane
 hides a part of the half space before it, the less the farther it is (after McGuire et al. 2011,
-"The alchemy screen-space ambient obscurance algorithm"). Which six differs from pixel to pixel in
-blocks of four by four; averaging over such a block on one surface removes the pattern.
+"The alchemy screen-space ambient obscurance algorithm"). With x hidden, 1 / (1 + x) of the light is
+left: what hides light gives some of it back, so nothing gets black. Which six differs from pixel to
+pixel in blocks of four by four; averaging over such a block on one surface removes the pattern.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ BIAS = 0.08
 """Sine of the angle above the tangent plane up to which nothing hides: surfaces are not flat, and
 slanted ones have coarse normals."""
 
-GAIN = 8.0
+GAIN = 16.0
 """A right-angled joint of two planes loses about half of the light at strength 1, as it should."""
 
 SAME_SURFACE = 0.03

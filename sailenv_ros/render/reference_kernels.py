@@ -207,7 +207,7 @@ def _raw_visibility(inverse: Floats, numbers: Floats, pattern: Floats) -> NDArra
             rise = height_m / np.sqrt(d2) - bias
             counts = inside & ((inverse > zero) | (other > zero))
             hidden += np.where(counts, np.fmax(rise, zero) * fall, zero)
-    share = F32(255.0) * np.maximum(zero, one - scale * hidden) + half
+    share = F32(255.0) / (one + scale * hidden) + half
     return np.where(reach >= least_reach_px, share.astype(np.uint8), np.uint8(255))
 
 

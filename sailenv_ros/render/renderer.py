@@ -26,6 +26,7 @@ from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.drawn_meshes import drawn_meshes
 from sailenv_ros.render.finishing import Finisher
+from sailenv_ros.render.flat_mirrors import FlatMirrors, SeenMirror, Window
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import GeometryPass, Targets, written_views
 from sailenv_ros.render.glass_pass import GlassPass
@@ -74,6 +75,7 @@ class Renderer:
         self._outputs = written_views()
         self._draws: DrawList | None = None
         self._finisher = Finisher()
+        self._mirrors = FlatMirrors()
         self._closed = False
         cluster_culling.warm_up()
 
@@ -193,12 +195,16 @@ class Renderer:
             )
             mark("lighting")
             arrays["rgb"] = self._pictures.read_picture(lit)
-            if sampled and camera.picture.occlusion_strength > 0.0:
+            mirrors = self._mirrors.seen(snapshot, seen)
+            if sampled and (mirrors or camera.picture.occlusion_strength > 0.0):
                 arrays["samples"] = self._pictures.read_surface(lit)
         arrays["surface"] = self._pictures.read_surface(targets)
         for view in outputs:
             arrays[view] = self._pictures.read_output(targets, view)
         mark("readback")
+        if illumination is not None and mirrors:
+            self._reflect(snapshot, mirrors, seen, illumination, arrays)
+            mark("lighting")
         for (_, start), (stage, end) in itertools.pairwise(marks):
             timings[stage] = timings.get(stage, 0.0) + end - start
         return arrays
@@ -223,6 +229,22 @@ class Renderer:
         self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
         return targets
 
+    def _reflect(
+        self,
+        snapshot: WorldSnapshot,
+        mirrors: list[SeenMirror],
+        camera: Camera,
+        illumination: Illumination,
+        arrays: dict[str, NDArray[Any]],
+    ) -> None:
+        """Put into the picture what its flat mirrors show."""
+
+        def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
+            return self._exposed(snapshot, behind, illumination, only)[window]
+
+        surface = arrays["samples" if "samples" in arrays else "surface"]
+        self._mirrors.reflect(mirrors, camera, arrays["rgb"], surface, look)
+
     def _radiance(
         self,
         snapshot: WorldSnapshot,
@@ -231,18 +253,31 @@ class Renderer:
         only: NDArray[np.bool_],
     ) -> NDArray[np.float32]:
         """Draw linear radiance of some instances, as an array (H, W, 3)."""
+        unexposed = replace(illumination.environment, exposure=0.0)
+        light = replace(illumination, environment=unexposed)
+        return self._exposed(snapshot, camera, light, only)[..., :3].astype(np.float32)
+
+    def _exposed(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        illumination: Illumination,
+        only: NDArray[np.bool_],
+    ) -> NDArray[np.float16]:
+        """Draw what some instances send out, without glass, as an array (H, W, 4)."""
         draws, intrinsics = self._draws_of(snapshot), camera.intrinsics
         clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
         draws.place(snapshot, clip_from_optical, camera.camera_from_world, only=only)
         targets = self._geometry_pass.make_targets(
-            intrinsics.width, intrinsics.height, shaded=True, baked=True
+            intrinsics.width,
+            intrinsics.height,
+            shaded=True,
+            baked=snapshot.contents.baked is not None,
         )
         try:
             self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
-            unexposed = replace(illumination.environment, exposure=0.0)
-            light = replace(illumination, environment=unexposed)
-            self._lighting_pass.draw(targets, camera, light)
-            return self._pictures.read_picture(targets)[..., :3].astype(np.float32)
+            self._lighting_pass.draw(targets, camera, illumination)
+            return self._pictures.read_picture(targets)
         finally:
             targets.close()
 

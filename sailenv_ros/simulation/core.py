@@ -22,6 +22,7 @@ from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import Operation, WorldOperations
+from sailenv_ros.relight.relighter import Relighter
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
@@ -113,6 +114,8 @@ class SimulationCore(WorldOperations):
         self._announced: SceneInfo | None = None
         self.world: World = library.build(scene, seed, self.epoch, self._next_revision)
         self.world.frustum_planes = self._frustum_planes
+        self._relighter = Relighter()
+        self._relighter.watch(self.world.snapshot())
         for spec in library.agents_of(self.world.scene):
             self.agents.add(spec, self.world)
 
@@ -189,6 +192,7 @@ class SimulationCore(WorldOperations):
         self.world.close()
         world.frustum_planes = self._frustum_planes
         self.world, self.seed, self.more_objects = world, seed, more
+        self._relighter.watch(world.snapshot())
         self.epoch += 1
         self.agents.begin_epoch(world, as_registered=as_registered)
         self.agents.add_missing(brought, world)
@@ -202,6 +206,7 @@ class SimulationCore(WorldOperations):
         """Take up furniture and light that were built meanwhile, in the present world too."""
         self.library.refresh()
         self.library.load_light(self.world)
+        self._relighter.watch(self.world.snapshot())
         self.announce()
 
     # -- time ------------------------------------------------------------------------------
@@ -257,7 +262,11 @@ class SimulationCore(WorldOperations):
         """
         wanted = checked_views(views, supported=self.supported_views)
         began = time.perf_counter()
-        snapshot = self.world.snapshot()
+        snapshot = self._relighter.lit(
+            self.world.snapshot(),
+            wanted="rgb" in wanted,
+            lockstep=self.clock.mode == "lockstep",
+        )
         camera = self.agents.camera(record, self.world)
         past = record.past(snapshot.sim_time_ns)
         rendered = self._renderer.render(snapshot, past, camera, wanted)
@@ -314,6 +323,7 @@ class SimulationCore(WorldOperations):
             for stream in record.streams:
                 stream.end(f"the simulation has ended: {why}")
         self.world.close()
+        self._relighter.close()
         if self._alone is not None:
             self._alone.close()
         self._renderer.close()

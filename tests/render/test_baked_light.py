@@ -113,7 +113,10 @@ def test_a_mirror_shows_the_room(render: Render) -> None:
 
 def test_where_less_light_arrives_less_of_the_room_is_mirrored(render: Render) -> None:
     """In proportion to the light of the room's middle; where more arrives, the room as it is."""
-    mirror = model_of(wall_mesh(8.0, 8.0), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0)
+    # As thick as this it is no flat mirror, which would show what stands before it.
+    mirror = model_of(
+        box_mesh((0.5, 8.0, 8.0)), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0
+    )
     back = Pose.from_rpy_deg((-4.0, 0.0, 0.0), (0.0, 0.0, 180.0))
     glowing = model_of(wall_mesh(40.0, 40.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
     things = [Thing(mirror, AHEAD), Thing(glowing, back)]

@@ -149,7 +149,7 @@ def test_corners_are_dark_and_what_is_free_is_not() -> None:
     away = np.hypot(points[..., 1] - 1.0, points[..., 2] - 3.0)
     # Averaging over a block carries it a little farther.
     assert (share[away > 0.55] == 255).all()
-    assert share[away < 0.06].mean() < 175
+    assert share[away < 0.06].mean() < 180
     # The sides of the picture lack neighbours.
     inner = slice(10, -10)
     profile = [

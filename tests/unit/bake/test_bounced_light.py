@@ -11,7 +11,7 @@ import pytest
 
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.bake.rays import through_glass
-from sailenv_ros.bake.reflectance import BELOW, GLOSS, returned
+from sailenv_ros.bake.returned_light import BELOW, GLOSS, returned
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light, SkyMap
 from tests.support.bake_scenes import COARSE, DARK, ground, hollow, read, still

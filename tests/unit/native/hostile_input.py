@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.geometry import Pose
+from sailenv_ros.lights import Light
 from sailenv_ros.native.ambient_visibility import find_ambient_visibility
 from sailenv_ros.native.annotation import annotate_pixels
 from sailenv_ros.native.client_views import convert_views
@@ -29,10 +30,16 @@ from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import move_points, transform_points
 from sailenv_ros.native.picture_kernels import make_picture
 from sailenv_ros.native.ray_kernels import RayModels, build_tree, cast_rays
+from sailenv_ros.native.ray_tracing import build_box_tree, cover_texels
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.relight.baked_scene import BakedScene
+from sailenv_ros.relight.quality import QUICK
+from sailenv_ros.relight.relighting import relit
+from sailenv_ros.relight.scene_changes import Change
 from sailenv_ros.render.ambient_occlusion import PATTERN
+from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
 
@@ -239,6 +246,37 @@ def drive_sensor() -> None:
         gather_light(halves, 1.0, 0.0, 0.0, 0, None, threads=2)
 
 
+def drive_relighting() -> None:
+    """Things at places that are no places, triangles without area, lights within walls."""
+    for boxes in (1, 5, 17, 300):
+        build_box_tree(np.zeros((boxes, 6), np.float32))
+    rng = np.random.default_rng(4)
+    for side in (1, 8, 65):
+        wild = rng.choice(np.array(NUMBERS, np.float32), (40, 3, 2))
+        cover_texels(wild, side, 1.5)
+    model = model_of(box_mesh(2.0))
+    sun = Light(name="sun", type="directional", direction=(0, 0, -1))
+    panel = Light(name="panel", type="area", position_m=(1.0, 0.0, 0.0))
+    spot = Light(name="spot", type="spot", inner_cone_deg=10, outer_cone_deg=10)
+    light = baked(
+        {1: chart(model, Pose()), 2: chart(model, Pose())},
+        [layer(sun, visible=0.5), layer(panel), layer(spot)],
+    )
+    things = [Thing(model), Thing(model, Pose((0.5, 0.0, 0.0)))]
+    scene = BakedScene(light, snapshot_of(things, baked=light).contents, 1)
+    quality = replace(QUICK, first_rays=4, rays=4, probe_rays=4)
+    for x in (0.0, 1e-30, 1e6, 1e30):
+        pose = np.eye(4)
+        pose[0, 3] = x
+        for change in (
+            Change(id=2, before=np.eye(4), after=pose),
+            Change(id=2, before=np.eye(4), after=None),
+            Change(id=3, before=None, after=pose, came=(model, (1e-9, 1.0, -1.0))),
+        ):
+            for threads in THREADS:
+                relit(scene, [change], quality, threads=threads)
+
+
 def drive_alone() -> None:
     """Hostile scenes, each object alone, and one that is larger than the canvas."""
     for threads in THREADS:
@@ -275,6 +313,7 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_drawing,
     drive_light_maps,
     drive_sensor,
+    drive_relighting,
     drive_alone,
     drive_instance_measures,
 )

@@ -166,7 +166,8 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             const i8 counts = inside & ((own > zero) | (other > zero));
             hidden = hidden + select8(counts, max8(rise, zero) * fall, zero);
         }
-        const f8 share = 255.0f * max8(zero, one - set.scale * hidden) + 0.5f;
+        // What hides light gives some of it back: no place is black.
+        const f8 share = 255.0f / (one + set.scale * hidden) + 0.5f;
         store_bytes(out + u, active ? truncated(share) : splat(255), count);
     }
 }

@@ -1,0 +1,283 @@
+"""What moved things change of baked light, by src/kernels/relight.cpp; see `relight.relighting`.
+
+Arrays of structures hold addresses; whoever calls keeps what they point to alive.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.library import Kernel, checked
+from sailenv_ros.native.render_types import address
+
+__all__ = [
+    "gather_change",
+    "gather_probe_change",
+    "light_of_probes",
+    "shine_change",
+    "smooth_change",
+    "spread_change",
+]
+
+Floats = NDArray[np.float32]
+
+_GATHER = Kernel(
+    "gather_change",
+    *("integer", "array", "integer", "array", "array", "array", "integer", "array", "integer"),
+    *("array", "integer", "array", "number", "array", "array", "array", "array"),
+)
+_SMOOTH = Kernel(
+    "smooth_change",
+    *("integer", "integer", "integer", "integer", "array", "array", "array", "array", "array"),
+    *("array", "array", "integer", "array", "array", "array"),
+)
+_PROBES = Kernel(
+    "gather_probe_change",
+    *("integer", "array", "integer", "array", "integer", "array", "array", "array"),
+)
+_SHINE = Kernel(
+    "shine_change",
+    *("integer", "array", "array", "integer", "array", "array", "array", "array", "integer"),
+    *("array", "array", "array", "array"),
+)
+_INTERPOLATE = Kernel(
+    "light_of_probes",
+    *("integer", "integer", "integer", "integer", "integer", "array", "array", "array"),
+    *("integer", "array", "array", "array"),
+)
+_SPREAD = Kernel(
+    "spread_change",
+    *("integer", "integer", "integer", "array", "array", "array", "array", "integer", "array"),
+    *("array", "array", "array", "array", "array", "integer", "integer", "array", "array"),
+)
+
+
+def gather_change(
+    scene: NDArray[np.void],
+    positions: Floats,
+    normals: Floats,
+    wanted: NDArray[np.uint8],
+    pattern: Floats,
+    area_lights: NDArray[np.void],
+    shot_pattern: Floats,
+    least: float,
+    *,
+    threads: int,
+) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
+    """Gather what arrives at patches by way of others, and straight from area lights.
+
+    Parameters
+    ----------
+    scene : (1,) RAY_SCENE
+    positions, normals : (P, 3) float32
+        World frame [m].
+    wanted : (P,) uint8
+        0 nothing, 1 the change, 2 all of the light.
+    pattern, shot_pattern : (M, 2) float32
+        Points of the unit square, for rays to everywhere and to each light.
+    area_lights : (A,) RAY_LIGHT
+    least : float
+        Patches of whose view changed things may take less than this share are passed over.
+
+    Returns
+    -------
+    found : (P,) uint8
+        0 nothing has changed, 1 the change was found, 2 all of the light, 3 nothing can be known
+        because the patch lies inside of something.
+    change : (P, C) float32
+        Irradiance / pi.
+    direct : (P, A) float32
+        The same from each area light, for white light of radiance 1.
+    nearness : (P,) float32
+        Harmonic mean of the distances of what was looked at [m].
+    """
+    count, channels = len(positions), int(scene["channels"][0])
+    checked("positions", positions, np.float32, (None, 3))
+    checked("normals", normals, np.float32, (count, 3))
+    checked("wanted", wanted, np.uint8, (count,))
+    found = np.zeros(count, np.uint8)
+    change = np.zeros((count, channels), np.float32)
+    direct = np.zeros((count, len(area_lights)), np.float32)
+    nearness = np.zeros(count, np.float32)
+    _GATHER(
+        threads, scene, count, positions, normals, wanted, len(pattern), pattern,
+        len(area_lights), area_lights, len(shot_pattern), shot_pattern, least,
+        found, change, direct, nearness,
+    )  # fmt: skip
+    return found, change, direct, nearness
+
+
+def smooth_change(
+    patch_of_texel: NDArray[np.int32],
+    patches: tuple[Floats, Floats, Floats, NDArray[np.int32]],
+    radius: int,
+    found: NDArray[np.uint8],
+    nearness: Floats,
+    change: Floats,
+    *,
+    threads: int,
+) -> tuple[NDArray[np.uint8], Floats]:
+    """Average what was found over neighbouring patches, up to `radius` of them to each side.
+
+    Parameters
+    ----------
+    patch_of_texel : (side, side) int32
+    patches : (P, 2), (P, 3), (P, 3) float32, (P,) int32
+        As in `spread_change`.
+    found : (P,) uint8
+    nearness : (P,) float32
+    change : (P, C) float32
+
+    Returns
+    -------
+    found : (P,) uint8
+    change : (P, C) float32
+    """
+    side, count = len(patch_of_texel), len(found)
+    checked("patches of texels", patch_of_texel, np.int32, (side, side))
+    for array, width in zip(patches[:3], (2, 3, 3), strict=True):
+        checked("patches", array, np.float32, (count, width))
+    checked("owners of patches", patches[3], np.int32, (count,))
+    checked("found", found, np.uint8, (count,))
+    checked("nearness", nearness, np.float32, (count,))
+    checked("change", change, np.float32, (count, None))
+    smooth_found, smooth = np.zeros_like(found), np.zeros_like(change)
+    if change.size:
+        _SMOOTH(
+            threads, side, radius, count, patch_of_texel, *patches, found, nearness,
+            change.shape[1], change, smooth_found, smooth,
+        )  # fmt: skip
+    return smooth_found, smooth
+
+
+def gather_probe_change(
+    scene: NDArray[np.void], positions: Floats, directions: Floats, *, threads: int
+) -> tuple[Floats, Floats]:
+    """Gather the change of light at points in the air.
+
+    Returns
+    -------
+    far, near : (N, 4, C) float32
+        As in `LightLayer.probe_bounced`: by rays that meet the same surface before and after, and
+        by the others.
+    """
+    count, channels = len(positions), int(scene["channels"][0])
+    checked("positions", positions, np.float32, (None, 3))
+    checked("directions", directions, np.float32, (None, 3))
+    far = np.zeros((count, 4, channels), np.float32)
+    near = np.zeros_like(far)
+    _PROBES(threads, scene, count, positions, len(directions), directions, far, near)
+    return far, near
+
+
+def shine_change(
+    scene: NDArray[np.void],
+    light: NDArray[np.void],
+    positions: Floats,
+    normals: Floats,
+    patch_of_texel: NDArray[np.int32],
+    found: NDArray[np.uint8],
+    pattern: Floats,
+    *,
+    threads: int,
+) -> tuple[NDArray[np.uint8], Floats, Floats]:
+    """Find what changes of one light's direct part at texels.
+
+    Returns
+    -------
+    state : (N,) uint8
+        0 nothing, 1 the numbers are to be added, 2 they are all of it.
+    direct : (N,) float32
+        Irradiance / pi.
+    share : (N,) float32
+        Of the light's rays that arrive.
+    """
+    count = len(positions)
+    checked("positions", positions, np.float32, (None, 3))
+    checked("normals", normals, np.float32, (count, 3))
+    checked("patches of texels", patch_of_texel, np.int32, (count,))
+    checked("found", found, np.uint8, (int(scene["patch_count"][0]),))
+    state = np.zeros(count, np.uint8)
+    direct, share = np.zeros(count, np.float32), np.zeros(count, np.float32)
+    _SHINE(
+        threads, scene, light, count, positions, normals, patch_of_texel, found,
+        len(pattern), pattern, state, direct, share,
+    )  # fmt: skip
+    return state, direct, share
+
+
+def light_of_probes(
+    probes: Floats,
+    origin_m: tuple[float, float, float],
+    spacing_m: tuple[float, float, float],
+    positions: Floats,
+    normals: Floats,
+    *,
+    threads: int,
+) -> Floats:
+    """Return (N, C) float32: what (Z, Y, X, 4, C) probes say of surfaces; may be below 0."""
+    depth, rows, columns, four, channels = probes.shape
+    checked("probes", probes, np.float32, (depth, rows, columns, 4, channels))
+    checked("positions", positions, np.float32, (None, 3))
+    checked("normals", normals, np.float32, (len(positions), 3))
+    assert four == 4
+    result = np.zeros((len(positions), channels), np.float32)
+    _INTERPOLATE(
+        threads, depth, rows, columns, channels, probes, np.array(origin_m, np.float32),
+        np.array(spacing_m, np.float32), len(positions), positions, normals, result,
+    )  # fmt: skip
+    return result
+
+
+def spread_change(
+    side: int,
+    texels: tuple[NDArray[np.int32], Floats, Floats, NDArray[np.int32]],
+    patch_of_texel: NDArray[np.int32],
+    patches: tuple[Floats, Floats, Floats, NDArray[np.int32]],
+    found: NDArray[np.uint8],
+    change: Floats,
+    layers: list[NDArray[np.float16]],
+    *,
+    threads: int,
+) -> None:
+    """Bring the texels of layers up to date with what was found at patches.
+
+    Parameters
+    ----------
+    side : int
+        Of the map [texels].
+    texels : (N,) int32, (N, 3) float32, (N, 3) float32, (N,) int32
+        Place in the map, position, normal and instance of each texel in use.
+    patch_of_texel : (side, side) int32
+    patches : (P, 2), (P, 3), (P, 3) float32, (P,) int32
+        Column and row of each patch's texel, position, normal, instance.
+    found : (P,) uint8
+    change : (P, C) float32
+        What was found: the layers' channels in their order.
+    layers : list of (side, side, 3) or (side, side) float16
+        At least one, all of one shape; written to.
+    """
+    count, patch_count = len(texels[0]), len(found)
+    each = 3 if layers[0].ndim == 3 else 1
+    channels = each * len(layers)
+    for what, array, dtype, width in (
+        ("places", texels[0], np.int32, None),
+        ("positions", texels[1], np.float32, 3),
+        ("normals", texels[2], np.float32, 3),
+        ("owners", texels[3], np.int32, None),
+    ):
+        checked(what, array, dtype, (count,) if width is None else (count, width))
+    checked("patches of texels", patch_of_texel, np.int32, (side, side))
+    for array, width in zip(patches[:3], (2, 3, 3), strict=True):
+        checked("patches", array, np.float32, (patch_count, width))
+    checked("owners of patches", patches[3], np.int32, (patch_count,))
+    checked("found", found, np.uint8, (patch_count,))
+    checked("change", change, np.float32, (patch_count, channels))
+    for layer in layers:
+        checked("layer", layer, np.float16, (side, side, 3)[: layer.ndim])
+    addresses = np.array([address(layer) for layer in layers], np.uint64)
+    _SPREAD(
+        threads, side, count, *texels, patch_count, patch_of_texel, *patches, found,
+        each, channels, change, addresses,
+    )  # fmt: skip

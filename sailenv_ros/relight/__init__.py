@@ -1,0 +1,1 @@
+"""Keeps baked light right while what was baked moves."""

@@ -1,0 +1,46 @@
+"""How many rays are followed when light is brought up to date. Knows no scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["FINE", "QUICK", "Quality"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quality:
+    """How many rays are followed.
+
+    Attributes
+    ----------
+    first_rays, rays : int
+        From each patch: to find what was hidden, and to find its light; the first pass is left out
+        if there are none.
+    area_rays, light_rays : int
+        From each patch to each area light, from each texel to each other light.
+    probe_rays : int
+        From each probe.
+    smoothing : int
+        How many patches to each side are averaged over at most.
+    least : float
+        Objects that may take less of a patch's view than this share change nothing there.
+    """
+
+    first_rays: int
+    rays: int
+    area_rays: int
+    light_rays: int
+    probe_rays: int
+    smoothing: int
+    least: float
+
+
+QUICK = Quality(
+    first_rays=0, rays=8, area_rays=4, light_rays=4, probe_rays=32, smoothing=3, least=0.01
+)
+"""For the frame in which something moves."""
+
+FINE = Quality(
+    first_rays=16, rays=64, area_rays=16, light_rays=16, probe_rays=128, smoothing=2, least=0.002
+)
+"""For what follows."""

@@ -1,0 +1,315 @@
+"""Baked light as it would be if some objects stood elsewhere. From `BakedScene` to `BakedLight`.
+
+Only rays that meet what moved, before or after, are followed: the difference between what they
+met and what they meet now is added to what was baked. A surface that was hidden, and what moved
+itself, gets its light anew. Results do not depend on the number of threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.bake.ray_patterns import fibonacci_sphere, net
+from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid
+from sailenv_ros.geometry import invert
+from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.relight_kernels import (
+    gather_change,
+    gather_probe_change,
+    light_of_probes,
+    shine_change,
+    smooth_change,
+    spread_change,
+)
+from sailenv_ros.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.relight.quality import Quality
+from sailenv_ros.relight.ray_world import ray_light, ray_world
+from sailenv_ros.relight.scene_changes import Change
+
+__all__ = ["relit"]
+
+Floats = NDArray[np.float32]
+
+LEAST_FAR = 0.004
+"""Changes of less than this share of what most patches get are not seen."""
+
+
+def relit(
+    scene: BakedScene, changes: Sequence[Change], quality: Quality, *, threads: int
+) -> BakedLight:
+    """Return the light of a scene in which some objects stand elsewhere.
+
+    Parameters
+    ----------
+    scene : BakedScene
+        As it was baked.
+    changes : sequence of Change
+        All that is different now.
+    quality : Quality
+    """
+    return _Relighting(scene, changes, quality, threads).run()
+
+
+class _Relighting:
+    """One set of changes; what the steps share."""
+
+    def __init__(
+        self, scene: BakedScene, changes: Sequence[Change], quality: Quality, threads: int
+    ) -> None:
+        self._scene, self._changes, self._threads = scene, changes, threads
+        self._quality = quality
+        self._layers = scene.baked.layers
+        self._lights = [layer.light for layer in self._layers]
+        area = [(n, one) for n, one in enumerate(self._lights) if one and one.type == "area"]
+        self._area, self._area_lights = [n for n, _ in area], [light for _, light in area]
+        self._move()
+        self._before = scene.radiance(scene.irradiance, scene.direct)
+        self._after = self._before.copy()
+        self._world = ray_world(scene, changes, self._before, self._after, self._radiance_of_new)
+        self._rays = self._world.record
+
+    def run(self) -> BakedLight:
+        """Do everything."""
+        quality = self._quality
+        found, change, area = self._gather(self._wanted, quality.first_rays or quality.rays)
+        # Where surfaces were hidden, direct light is worked out anew, too.
+        irradiance, direct = self._scene.irradiance.copy(), self._scene.direct.copy()
+        _take(irradiance, found, change)
+        self._take_area(direct, found, area)
+        shone = self._shine(found, direct)
+        self._after[:] = self._scene.radiance(np.maximum(irradiance, 0.0), direct)
+        if quality.first_rays:
+            wanted = np.where(found == 2, 2, self._wanted)
+            found, change, area = self._gather(wanted, quality.rays)
+        far, near = self._probe_change()
+        self._add_far(found, change, far)
+        layers = self._spread(found, change, area)
+        layers = [
+            self._with_direct(layer, shone.get(number)) for number, layer in enumerate(layers)
+        ]
+        layers = self._with_probes(layers, far, near)
+        return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
+
+    # -- what is there -----------------------------------------------------------------------
+
+    def _move(self) -> None:
+        """Put the texels and patches of what moved to where they are now."""
+        scene, patches = self._scene, self._scene.patches
+        self._positions, self._normals = scene.positions, scene.normals
+        self._patch_positions, self._patch_normals = patches.positions, patches.normals
+        self._wanted = np.ones(len(patches.size), np.uint8)
+        moved = [change for change in self._changes if change.came is None]
+        if moved:
+            self._positions, self._normals = scene.positions.copy(), scene.normals.copy()
+            self._patch_positions = patches.positions.copy()
+            self._patch_normals = patches.normals.copy()
+        for change in moved:
+            own, own_patches = scene.owners == change.id, patches.owners == change.id
+            self._wanted[own_patches] = 0 if change.after is None else 2
+            if change.after is None:
+                continue
+            motion = change.after @ invert(scene.baked.charts[change.id].world_from_body)
+            for points, directions, chosen in (
+                (self._positions, self._normals, own),
+                (self._patch_positions, self._patch_normals, own_patches),
+            ):
+                points[chosen] = points[chosen] @ motion[:3, :3].T + motion[:3, 3]
+                directions[chosen] = directions[chosen] @ motion[:3, :3].T
+
+    def _radiance_of_new(self, change: Change) -> Floats | None:
+        """Return (C,) float32: what an object sends out that has no texels, by its colour."""
+        if change.came is None or change.after is None:
+            return None
+        point = change.after[None, :3, 3].astype(np.float32)
+        up = np.array([[0.0, 0.0, 1.0]], np.float32)
+        probes = np.concatenate(
+            [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in self._layers],
+            axis=-1,
+        )
+        light = np.maximum(self._of_probes(probes, point, up)[0], 0.0).reshape(-1, 3)
+        return np.ascontiguousarray((light * albedo_of_model(change.came[0])).reshape(-1))
+
+    def _charts(self) -> dict[int, LightChart]:
+        charts = dict(self._scene.baked.charts)
+        for change in self._changes:
+            if change.came is not None:
+                continue
+            if change.after is None:
+                charts.pop(change.id, None)
+            else:
+                charts[change.id] = replace(charts[change.id], world_from_body=change.after)
+        return charts
+
+    # -- light ---------------------------------------------------------------------------------
+
+    def _gather(
+        self, wanted: NDArray[np.integer], rays: int
+    ) -> tuple[NDArray[np.uint8], Floats, Floats]:
+        """Gather at all patches, and smooth what was found."""
+        lights = np.concatenate(
+            [np.zeros(0, RAY_LIGHT), *(ray_light(light) for light in self._area_lights)]
+        )
+        found, change, area, nearness = gather_change(
+            self._rays, self._patch_positions, self._patch_normals, wanted.astype(np.uint8),
+            net(rays), lights, net(self._quality.area_rays), self._quality.least,
+            threads=self._threads,
+        )  # fmt: skip
+        # Both in one go: they share their neighbours.
+        smooth_found, both = smooth_change(
+            self._scene.patches.of_map, self._patches(), self._quality.smoothing, found, nearness,
+            np.concatenate([change, area], axis=1), threads=self._threads,
+        )  # fmt: skip
+        channels = change.shape[1]
+        change, area = (np.ascontiguousarray(part) for part in np.split(both, [channels], axis=1))
+        return smooth_found, change, area
+
+    def _patches(self) -> tuple[Floats, Floats, Floats, NDArray[np.int32]]:
+        patches = self._scene.patches
+        return patches.places, self._patch_positions, self._patch_normals, patches.owners
+
+    def _take_area(self, direct: Floats, found: NDArray[np.uint8], area: Floats) -> None:
+        for place, number in enumerate(self._area):
+            column = direct[:, number : number + 1]
+            _take(column, found, area[:, place : place + 1])
+            np.maximum(column, 0.0, out=column)
+
+    def _shine(
+        self, found: NDArray[np.uint8], direct: Floats
+    ) -> dict[int, tuple[NDArray[np.uint8], Floats, Floats]]:
+        """Find what changes of lamps and sun at texels, and bring means of patches up to date."""
+        patches, shone = self._scene.patches, {}
+        for number, light in enumerate(self._lights):
+            if light is None or light.type == "area":
+                continue
+            state, value, share = shine_change(
+                self._rays, ray_light(light), self._positions, self._normals, patches.of_texel,
+                found, net(self._quality.light_rays), threads=self._threads,
+            )  # fmt: skip
+            old = self._layers[number].direct.reshape(-1)[self._scene.places].astype(np.float32)
+            new = np.where(state == 2, value, old + value)
+            difference = np.where(state > 0, np.maximum(new, 0.0) - old, 0.0)
+            direct[:, number] = np.maximum(direct[:, number] + patches.means(difference), 0.0)
+            shone[number] = state, value, share
+        return shone
+
+    def _probe_change(self) -> tuple[Floats, Floats]:
+        """Return (Z, Y, X, 4, C) float32 twice: see `gather_probe_change`."""
+        grid = self._scene.baked.probes
+        points = _probe_points(grid)
+        far, near = gather_probe_change(
+            self._rays, points, fibonacci_sphere(self._quality.probe_rays), threads=self._threads
+        )
+        near[self._inside(points)] = 0.0
+        shape = (*grid.shape, 4, far.shape[-1])
+        return far.reshape(shape), near.reshape(shape)
+
+    def _inside(self, points: Floats) -> NDArray[np.bool_]:
+        """Tell which points lie in the box of something that changes: nothing is known there."""
+        inside = np.zeros(len(points), bool)
+        for thing in self._world.changed:
+            if not thing.shape.kept:
+                continue
+            root = thing.shape.kept[0][0]
+            inverse = invert(thing.pose)
+            own = points @ inverse[:3, :3].T + inverse[:3, 3]
+            inside |= ((own > root["low"]) & (own < root["high"])).all(axis=1)
+        return inside
+
+    def _of_probes(self, probes: Floats, points: Floats, normals: Floats) -> Floats:
+        grid = self._scene.baked.probes
+        return light_of_probes(
+            np.ascontiguousarray(probes), grid.origin_m, grid.spacing_m, points, normals,
+            threads=self._threads,
+        )  # fmt: skip
+
+    def _add_far(self, found: NDArray[np.uint8], change: Floats, far: Floats) -> None:
+        """Add what comes from surfaces whose own light has changed, where it is seen."""
+        light = self._of_probes(far, self._patch_positions, self._patch_normals)
+        brightest = float(np.percentile(self._scene.irradiance.sum(axis=1), 90))
+        seen = np.abs(light).sum(axis=1) > LEAST_FAR * brightest
+        chosen = seen & (found < 2) & (self._wanted == 1)
+        change[chosen] += light[chosen]
+        found[chosen] = 1
+
+    # -- results -------------------------------------------------------------------------------
+
+    def _spread(self, found: NDArray[np.uint8], change: Floats, area: Floats) -> list[LightLayer]:
+        bounced = [layer.bounced.copy() for layer in self._layers]
+        self._spread_over(found, change, bounced)
+        layers = [
+            replace(layer, bounced=texels)
+            for layer, texels in zip(self._layers, bounced, strict=True)
+        ]
+        if self._area:
+            direct = [self._layers[n].direct.copy() for n in self._area]
+            self._spread_over(found, area, direct)
+            for number, texels in zip(self._area, direct, strict=True):
+                layers[number] = replace(layers[number], direct=texels)
+        return layers
+
+    def _spread_over(
+        self,
+        found: NDArray[np.uint8],
+        change: Floats,
+        layers: list[NDArray[np.float16]],
+    ) -> None:
+        scene, patches = self._scene, self._scene.patches
+        spread_change(
+            scene.side, (scene.places, self._positions, self._normals, scene.owners),
+            patches.of_map,
+            self._patches(), found, change, layers, threads=self._threads,
+        )  # fmt: skip
+
+    def _with_direct(
+        self, layer: LightLayer, shone: tuple[NDArray[np.uint8], Floats, Floats] | None
+    ) -> LightLayer:
+        if shone is None:
+            return layer
+        state, value, share = shone
+        direct = layer.direct.copy()
+        _put(direct, self._scene.places, state, value, 6e4)
+        if layer.visibility is None:
+            return replace(layer, direct=direct)
+        visibility = layer.visibility.copy()
+        _put(visibility, self._scene.places, state, 255.0 * share, 255.0)
+        return replace(layer, direct=direct, visibility=visibility)
+
+    def _with_probes(self, layers: list[LightLayer], far: Floats, near: Floats) -> list[LightLayer]:
+        result = []
+        for number, layer in enumerate(layers):
+            own = slice(3 * number, 3 * number + 3)
+            probes = layer.probe_bounced + far[..., own] + near[..., own]
+            probes[..., 0, :] = np.maximum(probes[..., 0, :], 0.0)
+            result.append(replace(layer, probe_bounced=probes.astype(np.float16)))
+        return result
+
+
+def _take(values: Floats, found: NDArray[np.uint8], change: Floats) -> None:
+    """Add what has changed, and replace what was worked out anew."""
+    values[found == 1] += change[found == 1]
+    values[found == 2] = change[found == 2]
+
+
+def _put(
+    layer: NDArray[np.generic],
+    places: NDArray[np.int32],
+    state: NDArray[np.uint8],
+    value: Floats,
+    most: float,
+) -> None:
+    flat = layer.reshape(-1)
+    chosen = np.flatnonzero(state)
+    at = places[chosen]
+    kept = np.where(state[chosen] == 1, flat[at].astype(np.float32), 0.0)
+    new = np.clip(kept + value[chosen], 0.0, most)
+    flat[at] = np.rint(new) if layer.dtype == np.uint8 else new
+
+
+def _probe_points(grid: ProbeGrid) -> Floats:
+    z, y, x = np.indices(grid.shape).reshape(3, -1)
+    points = np.stack([x, y, z], axis=1) * np.asarray(grid.spacing_m) + np.asarray(grid.origin_m)
+    return np.ascontiguousarray(points, np.float32)
