@@ -125,6 +125,14 @@ class App {
     $("clock").textContent = `${fixed(stats.time_s)} s`;
     $("pace").textContent = `× ${fixed(stats.real_time_factor)}`;
     $("building").textContent = stats.building;
+    this.#history(stats.undo, stats.redo);
+  }
+
+  #history(undo, redo) {
+    for (const [id, words, what, key] of [["undo", "Undo", undo, "Z"], ["redo", "Do again", redo, "Shift+Z"]]) {
+      $(id).disabled = !what || !this.control;
+      $(id).title = `${words}${what ? `: ${what}` : ""} (${key})`;
+    }
   }
 
   #lost(why) {
@@ -174,7 +182,7 @@ class App {
   }
 
   #bar() {
-    for (const [id, name] of [["play", "pause"], ["step", "step"], ["reset", "reset"], ["layout", "one"], ["screenshot", "camera"], ["sheet", "sheet"]]) {
+    for (const [id, name] of [["play", "pause"], ["step", "step"], ["reset", "reset"], ["undo", "undo"], ["redo", "redo"], ["layout", "one"], ["screenshot", "camera"], ["sheet", "sheet"]]) {
       glyph($(id), name);
     }
     $("walk").append(icon("eye"), "Walk");
@@ -186,6 +194,8 @@ class App {
     click("play", () => this.try(this.scene.paused ? "resume" : "pause"));
     click("step", () => this.try("step", { count: 8 }));
     click("reset", () => this.try("reset"));
+    click("undo", () => this.goBack("undo"));
+    click("redo", () => this.goBack("redo"));
     click("layout", () => {
       this.stage.toggleAll();
       glyph($("layout"), this.stage.all ? "one" : "grid");
@@ -239,6 +249,15 @@ class App {
     if (!id) return;
     this.select(0);
     await this.try("despawn", { object: id });
+  }
+
+  /** Undo the last change, or do it again; what has come back is selected. */
+  async goBack(which) {
+    const step = await this.try(which);
+    if (!step) return;
+    toast(`${which === "undo" ? "Undone" : "Done again"}: ${step.what}`);
+    if (step.id) this.select(step.id);
+    else if (this.selected && !this.instances.has(this.selected)) this.select(0);
   }
 
   placeNext() {
@@ -296,6 +315,10 @@ class App {
       if (isTyping(event.target)) {
         if (event.code === "Escape") event.target.blur();
         return;
+      }
+      if (event.key.toLowerCase() === "z" && this.control) {
+        event.preventDefault();
+        this.goBack(event.shiftKey ? "redo" : "undo");
       }
       if (event.code === "Delete" || event.code === "Backspace") this.deleteSelected();
       if (event.code === "Escape") {
