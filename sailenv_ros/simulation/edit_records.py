@@ -17,11 +17,16 @@ from sailenv_ros.lights import Environment, Light
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.scene.spec import EnvironmentSpec
+from sailenv_ros.world.support import overlap_m, standing_place
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["EditOperations", "ObjectRecord", "SurroundingsRecord"]
+
+
+PUSHED_M = 0.004
+"""Deeper within another's hull, physics would push an object away rather than settle it [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,6 +132,39 @@ class EditOperations(Caller):
         if wanted.pose != present.pose:
             core.world.put_body(number, wanted.pose, teleport=True)
         return number
+
+    @operation(obj=check.object_reference, pose=check.pose)
+    @staticmethod
+    def set_down(core: SimulationCore, obj: int | str, pose: Pose) -> bool:
+        """Stand an object on what is drawn there; tell if it is held there.
+
+        Parameters
+        ----------
+        obj : int or str
+        pose : Pose
+            Where its lowest point is on or just below what shall carry it.
+
+        Returns
+        -------
+        held : bool
+            True if it was made static: hulls are coarser than what is drawn, and physics would
+            have pushed it out of that of its carrier, a shelf for example.
+        """
+        number = core.world.find(obj)
+        x, y, _ = pose.position_m
+        height, carrier = standing_place(core.world, number, pose)
+        core.world.put_body(number, Pose((x, y, height), pose.orientation_xyzw), teleport=True)
+        body = core.world.body(number)
+        held = (
+            not body.placement.static
+            and body.placement.entry is not None
+            and not body.behaviours
+            and carrier is not None
+            and overlap_m(core.world, body, carrier) > PUSHED_M
+        )
+        if held:
+            core.editor.change_object(number, {"static": True})
+        return held
 
     @operation()
     @staticmethod

@@ -16,6 +16,7 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import Operations
+from sailenv_ros.simulation.edit_records import EditOperations
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
@@ -296,9 +297,9 @@ def _pose(given: Arguments) -> Pose:
 
 
 async def _set_down(context: CommandContext, number: int, point: tuple[float, float, float]) -> Any:
-    """Move an object so that it stands on a point, whatever its origin is."""
+    """Stand an object on what is seen at a point, whatever its origin is."""
     state = await context.run(Operations.get_object, number)
     x, y, z = point
     pose = Pose((x, y, z - state.bottom_m), state.pose.orientation_xyzw)
-    await context.run(Operations.move_object, number, pose=pose, teleport=True)
-    return object_to_json(await context.run(Operations.get_object, number))
+    held = await context.run(EditOperations.set_down, number, pose)
+    return {**object_to_json(await context.run(Operations.get_object, number)), "held": held}

@@ -49,11 +49,12 @@ def by_name(simulation: Simulation) -> dict[str, tuple[Any, ...]]:
 
 
 @pytest.fixture
-def still(simulation: Simulation) -> Simulation:
+def still(simulation: Simulation) -> Iterator[Simulation]:
     """The scene at its start, with time held, so that nothing but the editor changes anything."""
     simulation.change_scene("object_view")
     simulation.pause()
-    return simulation
+    yield simulation
+    simulation.resume()
 
 
 @in_a_loop

@@ -241,7 +241,9 @@ class App {
     if (!head) return;
     const middle = { frame: head.number, u: Math.floor(head.width / 2), v: Math.floor(0.62 * head.height) };
     const made = await this.try("spawn", { asset, ...(at ?? middle) });
-    if (made) this.select(made.id);
+    if (!made) return;
+    this.#tellHeld(made);
+    this.select(made.id);
   }
 
   async deleteSelected() {
@@ -258,6 +260,10 @@ class App {
     toast(`${which === "undo" ? "Undone" : "Done again"}: ${step.what}`);
     if (step.id) this.select(step.id);
     else if (this.selected && !this.instances.has(this.selected)) this.select(0);
+  }
+
+  #tellHeld({ name, held }) {
+    if (held) toast(`${name} is held where it stands: physics knows only the hull of what is around it.`);
   }
 
   placeNext() {
@@ -338,7 +344,8 @@ class App {
   async #click({ view, frame, u, v }) {
     if (this.#placing && this.selected) {
       this.#endPlacing();
-      await this.try("place", { object: this.selected, frame, u, v });
+      const placed = await this.try("place", { object: this.selected, frame, u, v });
+      if (placed) this.#tellHeld(placed);
       this.object.show(this.selected);
       return;
     }
