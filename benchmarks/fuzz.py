@@ -1,6 +1,6 @@
 """Feed every reader of what strangers send with changed samples, for as long as one likes.
 
-    python benchmarks/fuzz.py [--seconds S] [--seed N] [TARGET ...]
+    python benchmarks/fuzz.py [--seconds S | --inputs N] [--seed N] [TARGET ...]
 
 Each input is accepted or refused with an error of the package's own; anything else ends the run
 with the input. The inputs of a seed are always the same. Prints inputs and accepted ones of each
@@ -28,7 +28,9 @@ def main() -> None:
     """Run the targets one after the other."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("targets", nargs="*", metavar="TARGET", choices=[*TARGETS, []])
-    parser.add_argument("--seconds", type=float, default=60.0, help="of each target [s]")
+    length = parser.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=float, default=60.0, help="of each target [s]")
+    length.add_argument("--inputs", type=int, help="of each target, however long that takes")
     parser.add_argument("--seed", type=int, default=1000)
     options = parser.parse_args()
     logging.disable(logging.WARNING)
@@ -37,7 +39,7 @@ def main() -> None:
             os.environ["SAILENV_CACHE"] = folder
             inputs = accepted = 0
             until = time.monotonic() + options.seconds
-            while time.monotonic() < until:
+            while inputs < options.inputs if options.inputs else time.monotonic() < until:
                 seed = options.seed + inputs // BATCH
                 accepted += run_target(name, seed=seed, count=BATCH, folder=Path(folder))
                 inputs += BATCH

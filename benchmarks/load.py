@@ -1,9 +1,11 @@
 """How much stalled, idle and working clients cost those who work: frames per second beside them.
 
     python benchmarks/load.py [--seconds S] [--rounds N] [--agents N] [--peers N] [--pages N]
+                              [--realtime HZ]
 
-Agents stream in process all the time. In each round they do so alone, then beside stalled clients,
-then beside clients half of which are stalled. The clients are a process of their own:
+Agents stream in process all the time: as fast as the machine can, in lockstep, or with `--realtime`
+so many frames a second each, in real time. In each round they do so alone, then beside stalled
+clients, then beside clients half of which are stalled. The clients are a process of their own:
 
 - peers at the gateway: all connect, as many as fit register (16 agents are the most). A stalled one
   asks for frames and never reads, a working one reads `--peer-hz` frames a second.
@@ -30,13 +32,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import aiohttp
 
 from sailenv_ros import Simulation
 from sailenv_ros.agents import MAX_AGENTS, AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.frame import FIVE_VIEWS
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
@@ -62,6 +65,7 @@ def main() -> None:
     parser.add_argument("--peers", type=int, default=64)
     parser.add_argument("--pages", type=int, default=20)
     parser.add_argument("--peer-hz", type=float, default=5.0)
+    parser.add_argument("--realtime", type=float, default=0.0, metavar="HZ")
     parser.add_argument("--clients-of", nargs=2, type=int, help=argparse.SUPPRESS)
     parser.add_argument("--working", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
@@ -76,23 +80,26 @@ def main() -> None:
 
 @dataclass
 class _Rate:
-    frames_per_s: list[float]
-    cpu_ms_per_frame: list[float]
+    frames_per_s: list[float] = field(default_factory=list)
+    cpu_ms_per_frame: list[float] = field(default_factory=list)
+    simulated_s_per_s: list[float] = field(default_factory=list)
 
 
 def _measure(options: argparse.Namespace) -> None:
     logging.disable(logging.WARNING)
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    rates = {what: _Rate([], []) for what in ("alone", "stalled", "half stalled")}
+    rates = {what: _Rate() for what in ("alone", "stalled", "half stalled")}
     with (
-        Simulation("optical", mode="lockstep") as simulation,
+        Simulation("optical", mode="realtime" if options.realtime else "lockstep") as simulation,
         GatewayServer(simulation, port=0) as gateway,
         ViewerServer(simulation, port=0, limits=ViewerLimits(clients=options.pages)) as viewer,
     ):
         names = [f"load_{number}" for number in range(options.agents)]
         lens = CameraIntrinsics(width=SIZE[0], height=SIZE[1])
         for name in names:
-            simulation.register_agent(AgentSpec(name=name, intrinsics=lens))
+            simulation.register_agent(
+                AgentSpec(name=name, intrinsics=lens, rate_hz=options.realtime)
+            )
         _run(simulation, names, 1.0)
         ports = (gateway.port, viewer.port)
         for _ in range(options.rounds):
@@ -107,16 +114,37 @@ def _measure(options: argparse.Namespace) -> None:
 def _run(
     simulation: Simulation, names: list[str], seconds: float, rate: _Rate | None = None
 ) -> None:
-    """Step and capture for so long; take the rate down."""
-    began, cpu, count = time.monotonic(), time.process_time(), 0
+    """Have frames made for so long; take the rates down."""
+    realtime = simulation.info.mode == "realtime"
+    cpu = time.process_time()
+    count, took_s, simulated_s = (_stream if realtime else _step)(simulation, names, seconds)
+    if rate is not None:
+        rate.frames_per_s.append(count / took_s)
+        rate.cpu_ms_per_frame.append(1e3 * (time.process_time() - cpu) / count)
+        rate.simulated_s_per_s.append(simulated_s / took_s)
+
+
+def _step(simulation: Simulation, names: list[str], seconds: float) -> tuple[int, float, float]:
+    """Step and capture as fast as it goes; return frames, time taken and simulated time [s]."""
+    began, count = time.monotonic(), 0
+    began_ns = now_ns = simulation.step(1)
     while time.monotonic() - began < seconds:
-        simulation.step(8)
+        now_ns = simulation.step(8)
         for name in names:
             simulation.capture(agent=name)
             count += 1
-    if rate is not None:
-        rate.frames_per_s.append(count / (time.monotonic() - began))
-        rate.cpu_ms_per_frame.append(1e3 * (time.process_time() - cpu) / count)
+    return count, time.monotonic() - began, (now_ns - began_ns) * 1e-9
+
+
+def _stream(simulation: Simulation, names: list[str], seconds: float) -> tuple[int, float, float]:
+    """Let frames be made at their rate, and count them by their numbers."""
+    with contextlib.ExitStack() as opened:
+        streams = [opened.enter_context(simulation.stream(name, FIVE_VIEWS)) for name in names]
+        first, began = [stream.get(10.0) for stream in streams], time.monotonic()
+        time.sleep(seconds)
+        last, took_s = [stream.get(10.0) for stream in streams], time.monotonic() - began
+    count = sum(end.sequence - start.sequence for start, end in zip(first, last, strict=True))
+    return count, took_s, (last[0].stamp_ns - first[0].stamp_ns) * 1e-9
 
 
 def _print(options: argparse.Namespace, rates: dict[str, _Rate]) -> None:
@@ -129,7 +157,8 @@ def _print(options: argparse.Namespace, rates: dict[str, _Rate]) -> None:
         now, ms = statistics.median(rate.frames_per_s), statistics.median(rate.cpu_ms_per_frame)
         print(
             f"{what:<13} {now:6.1f} frames/s, ratio {now / speed:.3f}; "
-            f"{ms:5.2f} ms of processor time per frame, ratio {ms / cost:.3f}"
+            f"{ms:5.2f} ms of processor time per frame, ratio {ms / cost:.3f}; "
+            f"{statistics.median(rate.simulated_s_per_s):.3f} s simulated per second"
         )
 
 

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable
+from typing import Any
 
+import numpy as np
 from std_msgs.msg import Header
 
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import optical_pose_to_msg, pose_from_msg
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import QUAT_BODY_FROM_OPTICAL
+from sailenv_ros.instance_states import InstanceStates
 
 __all__ = [
     "WORLD_FRAME_ID",
@@ -19,7 +24,11 @@ __all__ = [
     "frame_info_to_msg",
     "header_of_frame",
     "optical_frame_id",
+    "states_of_frame_info",
 ]
+
+_NUMBERS = 16
+"""Of each instance in `FrameInfo.instance_states`."""
 
 WORLD_FRAME_ID = "world"
 """Name of the coordinate frame that everything is placed in."""
@@ -54,6 +63,8 @@ def frame_info_to_msg(
         far_m=float(intrinsics.far_m),
         depth_range_m=float(depth_range_m),
         render_s=float(frame.timings_s.get("render", 0.0)),
+        has_states=frame.states is not None,
+        **_states_fields(frame.states),
     )
 
 
@@ -68,3 +79,44 @@ def camera_of_frame_info(msg: FrameInfo, intrinsics: CameraIntrinsics) -> Camera
     x, y, z, w = QUAT_BODY_FROM_OPTICAL
     pose = pose_from_msg(msg.camera_pose).turned((-x, -y, -z, w))
     return Camera(intrinsics=intrinsics, pose=pose)
+
+
+def states_of_frame_info(msg: FrameInfo) -> InstanceStates | None:
+    """Read where the instances were and how they moved; None if the message does not tell.
+
+    Raises
+    ------
+    InvalidRequest
+        If the arrays do not fit each other or hold what no state can be.
+    """
+    if not msg.has_states:
+        return None
+    flat = np.asarray(msg.instance_states, np.float64)
+    if flat.size % _NUMBERS:
+        accepted = f"{_NUMBERS} an instance"
+        raise InvalidRequest("instance_states", f"{flat.size} numbers", accepted)
+    rows = flat.reshape(-1, _NUMBERS)
+    return InstanceStates(
+        ids=np.asarray(msg.instance_ids, np.uint16),
+        positions=rows[:, :3],
+        orientations=rows[:, 3:7],
+        linear_velocities=rows[:, 7:10],
+        angular_velocities=rows[:, 10:13],
+        scales=rows[:, 13:],
+        histories=np.asarray(msg.instance_histories, np.int64),
+    )
+
+
+def _states_fields(states: InstanceStates | None) -> dict[str, array[Any]]:
+    """Return the flat arrays of the message; arrays of Python are taken without a look at each."""
+    if states is None:
+        return {}
+    columns = (
+        *(states.positions, states.orientations),
+        *(states.linear_velocities, states.angular_velocities, states.scales),
+    )
+    return {
+        "instance_ids": array("H", states.ids.tobytes()),
+        "instance_histories": array("I", states.histories.astype(np.uint32).tobytes()),
+        "instance_states": array("d", np.concatenate(columns, axis=1).tobytes()),
+    }

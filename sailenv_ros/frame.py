@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.instance_states import InstanceStates
 
 if TYPE_CHECKING:
     from sailenv_ros.scene_info import SceneInfo, SceneObject  # which knows what agents see
@@ -306,6 +307,9 @@ class Frame:
         Wall time of each stage of making it [s]; ``render`` is the whole.
     info : SceneInfo or None
         The scene at the frame's own instant; None if that is not known (it was not recorded).
+    states : InstanceStates or None
+        Poses and velocities of all instances at the frame's own instant; None if they were not
+        recorded.
     """
 
     agent: str
@@ -320,6 +324,7 @@ class Frame:
     views: Mapping[str, NDArray[Any]]
     timings_s: Mapping[str, float] = field(default_factory=dict)
     info: SceneInfo | None = None
+    states: InstanceStates | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width

@@ -99,9 +99,16 @@ class Light:
             raise InvalidRequest(f"direction of light {self.name!r}", (x, y, z), "not all zero")
         position = vector(f"position of light {self.name!r}", self.position_m, limit=1e4)
         object.__setattr__(self, "colour", colour)
-        object.__setattr__(self, "direction", (x / length, y / length, z / length))
+        if abs(length - 1.0) > UNIT_TOLERANCE:
+            x, y, z = x / length, y / length, z / length
+        object.__setattr__(self, "direction", (x, y, z))
         object.__setattr__(self, "position_m", position)
 
+
+UNIT_TOLERANCE = 1e-12
+"""A direction whose length differs from 1 by no more stays as it is: dividing a unit vector by its
+length again changes last bits, and a light that only became brighter must not seem to have turned.
+"""
 
 LIGHT_ATTRIBUTES: tuple[str, ...] = tuple(f.name for f in fields(Light) if f.name != "name")
 """Names of everything that can be changed of a light, in their order."""

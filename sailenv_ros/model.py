@@ -131,6 +131,13 @@ class Model:
         return self._bounds
 
     @cached_property
+    def middle(self) -> NDArray[np.float64]:
+        """(3,) float64 read-only: the middle of the bounds [m]."""
+        result: NDArray[np.float64] = self._bounds.mean(axis=0)
+        result.flags.writeable = False
+        return result
+
+    @cached_property
     def _bounds(self) -> NDArray[np.float64]:
         result = np.zeros((2, 3))
         if self.parts:

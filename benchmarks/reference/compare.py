@@ -1,7 +1,8 @@
 """Compare the renderer's pictures with those of a path tracer: same scene, same cameras.
 
     python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
-        [--size W H] [--supersampling N] [--trace-only | --no-trace | --last] [--output FOLDER]
+        [--size W H] [--supersampling N] [--renderer native|opengl]
+        [--trace-only | --no-trace | --last] [--output FOLDER]
 
 Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
 (ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
@@ -14,7 +15,7 @@ import itertools
 import json
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +29,16 @@ from benchmarks.reference.parts import Parts
 from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.geometry import look_at
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.render.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
+
+RENDERERS: dict[str, Callable[[], RenderBackend]] = {"native": NativeRenderer, "opengl": Renderer}
 
 VIEWS = Path(__file__).with_name("views.yaml")
 
@@ -66,6 +71,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument(
         "--supersampling", type=int, default=1, metavar="N", help="of ours; 1: as by default"
     )
+    parser.add_argument("--renderer", choices=RENDERERS, default="native", help="that draws ours")
     parser.add_argument("--output", type=Path, default=Path("build/reference"), metavar="FOLDER")
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--trace-only", action="store_true", help="do not render ours")
@@ -124,13 +130,16 @@ def _compared(
         print(f"{scene}/{name}: no traced picture of this scene in the cache", file=sys.stderr)
     if arguments.trace_only or not references:
         return []
-    ours = _rendered(snapshot, {name: cameras[name] for name in references})
+    drawn = {name: cameras[name] for name in references}
+    ours = _rendered(snapshot, drawn, RENDERERS[arguments.renderer])
     stops = snapshot.contents.environment.exposure
     return _measured(scene, ours, references, stops, arguments.output)
 
 
-def _rendered(snapshot: WorldSnapshot, cameras: Mapping[str, Camera]) -> dict[str, Picture]:
-    renderer = Renderer()
+def _rendered(
+    snapshot: WorldSnapshot, cameras: Mapping[str, Camera], make: Callable[[], RenderBackend]
+) -> dict[str, Picture]:
+    renderer = make()
     try:
         return {
             name: renderer.render(snapshot, None, camera, ("rgb",)).views["rgb"].copy()

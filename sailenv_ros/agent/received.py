@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from sailenv_msgs_py.frame_info import camera_of_frame_info
+from sailenv_msgs_py.frame_info import camera_of_frame_info, states_of_frame_info
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.agent.frame_sync import Bundle
@@ -63,6 +63,7 @@ def frame_of_info(
         views={view: views[view] for view in VIEWS if view in views},
         timings_s={"render": info.render_s},
         info=scene_info,
+        states=states_of_frame_info(info),
     )
 
 

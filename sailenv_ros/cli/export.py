@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sailenv_ros.recording.export import Summary
 
 __all__ = ["add_parser", "run"]
 
@@ -15,7 +19,7 @@ _FORMATS = ("png", "coco", "kitti", "flo", "mp4")
 def add_parser(subparsers: Any) -> None:
     """Add the command to those of `sailenv`."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "export", help="write a recording as a data set: png, coco, kitti, flo, mp4"
+        "export", help=f"write a recording as a data set: {', '.join(_FORMATS)}"
     )
     parser.set_defaults(run=run)
     parser.add_argument("path", type=Path, metavar="BAG", help="a bag's folder or an MCAP file")
@@ -29,16 +33,53 @@ def add_parser(subparsers: Any) -> None:
         help="several get a folder each",
     )
     parser.add_argument("--agent", default="", metavar="NAME", help="default: the only one")
+    parser.add_argument(
+        "--split",
+        nargs="+",
+        type=float,
+        metavar="SHARE",
+        help="shares of train, val and test, e.g. 0.8 0.1 0.1; default: no splits",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the split; default: 0")
+    parser.add_argument(
+        "--resume", action="store_true", help="go on with an export that was broken off"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the data sets; 0 if all is well."""
-    from sailenv_ros.recording.export import export
+    from sailenv_ros.recording.export import Splits, export
 
     def tell(done: int, of: int) -> None:
         if sys.stderr.isatty():
             print(f"\r{done} of {of} frames", end="", file=sys.stderr, flush=True)
 
-    count = export(args.path, args.output, args.formats, agent=args.agent, on_frame=tell)
-    print(f"{args.output}: {count} frames as {', '.join(args.formats)}")
+    splits = None if args.split is None else Splits(tuple(args.split), args.seed)
+    summary = export(
+        args.path,
+        args.output,
+        args.formats,
+        agent=args.agent,
+        splits=splits,
+        resume=args.resume,
+        on_frame=tell,
+    )
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    print(f"{args.output}: {_text_of(summary)}")
     return 0
+
+
+def _text_of(summary: Summary) -> str:
+    lines = [f"{summary.frames} frames as {', '.join(summary.formats)}"]
+    if summary.splits:
+        lines[0] += f" ({_counts(summary.splits)})"
+    for name, one in summary.formats.items():
+        lines.append(f"  {name}: {_counts(one.written)}")
+        if one.left_out:
+            lines[-1] += f"; left out: {_counts(one.left_out)}"
+    return "\n".join(lines)
+
+
+def _counts(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{count} {what}" for what, count in counts.items()) or "nothing"

@@ -75,6 +75,11 @@ class ShadowMap:
         if redraw is None:
             return
         poses = np.ascontiguousarray(redraw.poses)
+        if redraw.keep:
+            before = self._resting
+            self._resting = self.nearness
+            self.nearness = _empty_map() if before is None else before
+            self._changed[:] = 1
         if redraw.resting is not None:
             if self._resting is None:
                 self._resting = _empty_map()

@@ -24,7 +24,7 @@ from sailenv_ros.native.render_types import (
     address,
     record,
 )
-from sailenv_ros.render.drawn_meshes import DrawnMesh, chart_table, drawn_meshes
+from sailenv_ros.render.drawn_meshes import DrawnMesh, chart_table, meshes_of, unwrappings
 from sailenv_ros.render.material_factors import material_factors
 from sailenv_ros.render.shadow_plan import casts
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
@@ -82,19 +82,24 @@ class PartTable:
         models: dict[tuple[int, int], _ModelParts] = {}
         casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
         shown: list[tuple[_ModelParts, int, bool]] = []
-        for row, (drawn, meshes) in enumerate(
-            zip(contents.instances, drawn_meshes(contents), strict=True)
+        is_new = False
+        for row, (drawn, flat) in enumerate(
+            zip(contents.instances, unwrappings(contents), strict=True)
         ):
-            if not meshes:
+            if not drawn.model.parts:
                 continue
-            key = (id(drawn.model), id(meshes[0].unwrapping))
-            made = models.get(key) or self._models.get(key) or self._make(drawn.model, meshes)
+            key = (id(drawn.model), id(flat))
+            made = models.get(key) or self._models.get(key)
+            if made is None:
+                made, is_new = self._make(drawn.model, meshes_of(drawn.model, flat)), True
             models[key] = made
             shape = (id(drawn.model), drawn.scale)
             if shape not in casting_of:
                 known = self._casting.get(shape)
                 casting_of[shape] = casts(drawn) if known is None else known
             shown.append((made, row, casting_of[shape]))
+        # Looking for what is not needed takes longer than all else when one object comes or goes.
+        trim = is_new or 2 * len(models) < len(self._models)
         self._models, self._casting = models, casting_of
         counts = np.array([len(made.parts) for made, _, _ in shown], np.intp)
         rows = np.repeat(np.array([row for _, row, _ in shown], np.intp), counts)
@@ -111,8 +116,11 @@ class PartTable:
         casting = np.repeat(np.array([cast for _, _, cast in shown], bool), counts)
         self.opaque, self.glass = table[~glass], table[glass]
         self.casters = table[~glass & casting]
-        self._meshes.trim(mesh for made in models.values() for mesh in made.meshes)
-        self._textures.trim(part.material for made in models.values() for part in made.model.parts)
+        if trim:
+            self._meshes.trim(mesh for made in models.values() for mesh in made.meshes)
+            self._textures.trim(
+                part.material for made in models.values() for part in made.model.parts
+            )
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         """Tell which instances have baked light: those that stand where they stood for it."""

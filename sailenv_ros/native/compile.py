@@ -5,7 +5,7 @@ is compiled once for each instruction set, the rest once; the loader (`library.p
 functions of the best set that the processor has. setup.py runs this file by its path, before
 anything is installed, and so does scripts/build-native: it imports nothing of the project.
 
-    python sailenv_ros/native/compile.py [--if-changed]
+    python sailenv_ros/native/compile.py [--if-changed] [--output FILE]
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import hashlib
 import os
-import platform
 import re
 import shlex
 import shutil
@@ -106,7 +105,9 @@ def compile_library(
         kept.mkdir(parents=True, exist_ok=True)
         jobs: list[tuple[str, Path, tuple[str, ...]]] = []
         flags_of = {
-            name: own for name, own in instruction_sets().items() if sets is None or name in sets
+            name: own
+            for name, own in instruction_sets(compiler).items()
+            if sets is None or name in sets
         }
         for path in sorted(sources.glob("*.cpp")):
             define = (f'-DSAILENV_SOURCE_HASH="{source_hash(sources)}"',)
@@ -123,7 +124,7 @@ def compile_library(
         for isa in flags_of:
             of_set = [path for job, path in zip(jobs, made, strict=True) if job[0] == isa]
             if of_set:
-                linked.append(_closed(isa, of_set, folder))
+                linked.append(_closed(compiler, isa, of_set, folder))
         library = folder / LIBRARY_NAME
         exports = folder / "exports.map"
         exports.write_text("{ global: sailenv_*; local: *; };\n")
@@ -158,9 +159,13 @@ def find_compiler() -> list[str]:
     )
 
 
-def instruction_sets() -> dict[str, tuple[str, ...]]:
-    """Return the flags of each instruction set that is compiled for this machine."""
-    return INSTRUCTION_SETS.get(platform.machine(), {"portable": ()})
+def instruction_sets(compiler: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """Return the flags of each instruction set that is compiled for the compiler's machine.
+
+    That may be another than this one: ``CXX=aarch64-linux-gnu-g++`` compiles for ARM.
+    """
+    machine = _told(compiler, "-dumpmachine").partition("-")[0]
+    return INSTRUCTION_SETS.get(machine, {"portable": ()})
 
 
 def source_hash(sources: Path = SOURCES) -> str:
@@ -177,16 +182,22 @@ def compiled_hash(library: Path) -> str:
     return found[1].decode() if found else ""
 
 
-def _closed(isa: str, objects: Sequence[Path], folder: Path) -> Path:
+def _told(compiler: Sequence[str], option: str) -> str:
+    """Return the line that the compiler prints."""
+    return _run([*compiler, option], "the compiler").strip()
+
+
+def _closed(compiler: Sequence[str], isa: str, objects: Sequence[Path], folder: Path) -> Path:
     """Join the objects of one instruction set and hide all their functions but the kernels.
 
     The linker keeps one copy of each inline function of the standard library. Without this the
     copy with AVX-512 instructions could be the one that a processor without them runs.
     """
     joined, closed = folder / f"{isa}.joined.o", folder / f"{isa}.o"
-    _run(["ld", "-r", "--force-group-allocation", "-o", joined, *objects], "the linker")
+    ld, objcopy = (_told(compiler, f"-print-prog-name={name}") for name in ("ld", "objcopy"))
+    _run([ld, "-r", "--force-group-allocation", "-o", joined, *objects], "the linker")
     keep = f"--keep-global-symbol=sailenv_*_{isa}"
-    _run(["objcopy", "--wildcard", keep, joined, closed], "objcopy")
+    _run([objcopy, "--wildcard", keep, joined, closed], "objcopy")
     return closed
 
 
@@ -207,7 +218,8 @@ def _compile(
     return target
 
 
-def _run(command: Iterable[str | Path], what: str) -> None:
+def _run(command: Iterable[str | Path], what: str) -> str:
+    """Run a program and return what it printed."""
     words = [str(word) for word in command]
     try:
         done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -215,6 +227,7 @@ def _run(command: Iterable[str | Path], what: str) -> None:
         raise CompilerError(f"{what} could not be started: {problem}") from problem
     if done.returncode != 0:
         raise CompilerError(f"{what} failed: {shlex.join(words)}\n{done.stdout}")
+    return done.stdout
 
 
 def _hash_of(paths: Iterable[Path]) -> str:
@@ -230,8 +243,11 @@ def main() -> int:
     parser.add_argument(
         "--if-changed", action="store_true", help="do nothing where it fits the sources"
     )
+    parser.add_argument(
+        "--output", type=Path, default=SOURCES.parent / LIBRARY_NAME, help="beside the sources"
+    )
     arguments = parser.parse_args()
-    output = SOURCES.parent / LIBRARY_NAME
+    output = arguments.output
     if arguments.if_changed and compiled_hash(output) == source_hash():
         return 0
     try:

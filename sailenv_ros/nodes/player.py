@@ -27,7 +27,7 @@ from sailenv_ros.nodes.parameter_table import Parameter
 from sailenv_ros.nodes.parameters import declare_table
 from sailenv_ros.nodes.qos import clock_qos, no_events
 from sailenv_ros.nodes.running import run_node
-from sailenv_ros.recording.channels import CLOCK, clock_message, stamp_of
+from sailenv_ros.recording.channels import CLOCK, clock_message, present_form, stamp_of
 from sailenv_ros.recording.playback import PlaybackClock, Programme, programme
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.schemas import message_class
@@ -149,7 +149,7 @@ class Player:
         publisher = self._publishers.get(topic.name)
         if publisher is None:
             return
-        data = bytes(raw.data)
+        data = bytes(present_form(topic, raw.data))
         if self._own_clock is not None:
             self._tell_time(topic, data, raw.log_ns)
         publisher.publish(data)

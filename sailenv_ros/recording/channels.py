@@ -38,6 +38,7 @@ __all__ = [
     "clock_message",
     "frame_messages",
     "message_of",
+    "present_form",
     "scene_info_message",
     "stamp_of",
     "topic",
@@ -66,6 +67,12 @@ _STAMPED = frozenset(AGENT_TOPICS.values())
 """Types that begin with a header, and so with their stamp."""
 
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
+
+_NEWER_FIELD = "has_states"
+"""What the definition of `FrameInfo` did not have in version 0.2.0."""
+
+_LONGEST_APPENDIX = 64
+"""Bytes that all newer fields take where they are empty, and more [B]."""
 
 Parts = tuple[Buffer, ...]
 
@@ -128,6 +135,17 @@ def message_of(type_name: str, data: Buffer) -> Any:
         return _deserialize(type_name, data)
     except (struct.error, ValueError, UnicodeDecodeError) as problem:
         raise RecordingError(f"a message of {type_name} cannot be read: {problem}") from None
+
+
+def present_form(topic: RecordedTopic, data: Buffer) -> Buffer:
+    """Return a recorded message as its type is now.
+
+    Fields are only ever appended to `FrameInfo`; in the recordings of a version that did not know
+    them they are 0 and empty, which is zeros in CDR.
+    """
+    if topic.type == FRAME_INFO and _NEWER_FIELD not in topic.schema:
+        return bytes(data) + bytes(_LONGEST_APPENDIX)
+    return data
 
 
 def _deserialize(type_name: str, data: Buffer) -> Any:

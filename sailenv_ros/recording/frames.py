@@ -14,14 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_msgs_py.camera_info import intrinsics_from_camera_info
-from sailenv_msgs_py.frame_info import camera_of_frame_info
+from sailenv_msgs_py.frame_info import camera_of_frame_info, states_of_frame_info
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.recording.channels import FRAME_INFO, IMAGE, SCENE_INFO, message_of
+from sailenv_ros.recording.channels import (
+    FRAME_INFO,
+    IMAGE,
+    SCENE_INFO,
+    message_of,
+    present_form,
+)
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.validation import is_integer
@@ -150,6 +156,7 @@ class RecordedFrames(Sequence[Frame]):
             views={view: view_from_image(view, image) for view, image in images.items()},
             timings_s={"render": info.render_s},
             info=scene_info,
+            states=states_of_frame_info(info),
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -196,7 +203,7 @@ class RecordedFrames(Sequence[Frame]):
 
     def _message(self, row: int) -> Any:
         topic, raw = self._reader.message(row)
-        return message_of(topic.type, raw.data)
+        return message_of(topic.type, present_form(topic, raw.data))
 
     def _scene_infos(self) -> list[tuple[int, SceneInfo]]:
         name = f"{self._prefix.rpartition('/')[0]}/scene_info"

@@ -89,6 +89,7 @@ class BakedState:
 def _middles(contents: SceneContents) -> NDArray[np.float64]:
     """Return (N, 4): the homogeneous middle of each instance in its body frame."""
     middles = np.ones((len(contents.instances), 4))
-    for row, drawn in enumerate(contents.instances):
-        middles[row, :3] = drawn.model.bounds().mean(axis=0) * np.asarray(drawn.scale)
+    if contents.instances:
+        middles[:, :3] = [drawn.model.middle for drawn in contents.instances]
+        middles[:, :3] *= [drawn.scale for drawn in contents.instances]
     return middles

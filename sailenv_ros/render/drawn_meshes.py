@@ -12,10 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import Unwrapping
-from sailenv_ros.model import Mesh
+from sailenv_ros.model import Mesh, Model
 from sailenv_ros.snapshot import SceneContents
 
-__all__ = ["VERTEX", "DrawnMesh", "chart_table", "corners_of", "drawn_meshes"]
+__all__ = [
+    "VERTEX",
+    "DrawnMesh",
+    "chart_table",
+    "corners_of",
+    "drawn_meshes",
+    "meshes_of",
+    "unwrappings",
+]
 
 VERTEX = np.dtype(
     [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("light_uv", "<f4", 2)]
@@ -73,15 +81,22 @@ class DrawnMesh:
 
 def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
     """Return the meshes of each instance's parts, in their order."""
+    return [
+        meshes_of(drawn.model, flat)
+        for drawn, flat in zip(contents.instances, unwrappings(contents), strict=True)
+    ]
+
+
+def meshes_of(model: Model, unwrapping: Unwrapping | None) -> list[DrawnMesh]:
+    """Return the meshes of a model's parts, in their order."""
+    return [DrawnMesh(part.mesh, unwrapping, place) for place, part in enumerate(model.parts)]
+
+
+def unwrappings(contents: SceneContents) -> list[Unwrapping | None]:
+    """Return how each instance is unwrapped into the light map; None for those that are not."""
     charts = contents.baked.charts if contents.baked is not None else {}
-    result = []
-    for drawn in contents.instances:
-        chart = charts.get(drawn.instance.id)
-        flat = chart.unwrapping if chart is not None else None
-        result.append(
-            [DrawnMesh(part.mesh, flat, place) for place, part in enumerate(drawn.model.parts)]
-        )
-    return result
+    found = (charts.get(drawn.instance.id) for drawn in contents.instances)
+    return [None if chart is None else chart.unwrapping for chart in found]
 
 
 def chart_table(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -62,6 +62,8 @@ class ShadowPass:
             return
         moved = replace(snapshot, world_from_body=redraw.poses)
         draws.place(moved, self.plan.clip_from_light, self.plan.light_from_world)
+        if redraw.keep:
+            self._context.copy_framebuffer(self._resting, self._framebuffer)
         if redraw.resting is not None:
             self._resting.use()
             self._resting.clear(depth=1.0)

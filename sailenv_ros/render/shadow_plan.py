@@ -60,6 +60,8 @@ class ShadowRedraw:
     ----------
     poses : (N, 4, 4) float64
         Poses of the instances [m], as they count for the map.
+    keep : bool
+        True if the map as it is becomes the second one first.
     resting : (N,) bool or None
         What is to be drawn into the second map first, which is cleared; None if nothing is.
     from_resting : bool
@@ -69,9 +71,10 @@ class ShadowRedraw:
     """
 
     poses: NDArray[np.float64]
-    resting: NDArray[np.bool_] | None
-    from_resting: bool
     casters: NDArray[np.bool_]
+    keep: bool = False
+    resting: NDArray[np.bool_] | None = None
+    from_resting: bool = False
 
 
 class ShadowPlan:
@@ -95,7 +98,7 @@ class ShadowPlan:
         self._poses = np.zeros((0, 4, 4))
         self._casting = self._framed = self._at_rest = np.zeros(0, bool)
         self._rest_poses = np.zeros((0, 4, 4))
-        self._rest_drawn = False
+        self._rest_drawn = self._shows_rest = False
         self._frame: tuple[object, ...] = ()
         self.clip_from_light: NDArray[np.float64] = np.eye(4)
         self.light_from_world: NDArray[np.float64] = np.eye(4)
@@ -140,10 +143,12 @@ class ShadowPlan:
         if self._is_stale(casting):
             # Drawn apart only when it is needed a second time: what goes on moving never is.
             self._at_rest, self._rest_poses, self._rest_drawn = casting & ~moved, poses, False
-            return ShadowRedraw(poses, None, False, casting)
-        resting = None if self._rest_drawn else self._at_rest
-        self._rest_drawn = True
-        return ShadowRedraw(poses, resting, True, casting & ~self._at_rest)
+            self._shows_rest = not (casting & moved).any()
+            return ShadowRedraw(poses, casting)
+        keep = not self._rest_drawn and self._shows_rest
+        resting = None if self._rest_drawn or keep else self._at_rest
+        self._rest_drawn, self._shows_rest = True, False
+        return ShadowRedraw(poses, casting & ~self._at_rest, keep, resting, from_resting=True)
 
     def _follow(self, contents: SceneContents) -> None:
         """Find the instances of before among the rows of other contents."""

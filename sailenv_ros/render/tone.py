@@ -55,7 +55,8 @@ def code_table(settings: PictureSettings) -> NDArray[np.uint8]:
 
 @lru_cache(maxsize=32)
 def _code_table(curve: ToneCurve, exposure: float) -> NDArray[np.uint8]:
-    halves = np.arange(65536, dtype=np.uint16).view(np.float16).astype(np.float64)
+    with np.errstate(invalid="ignore"):  # some processors report bits that are no number
+        halves = np.arange(65536, dtype=np.uint16).view(np.float16).astype(np.float64)
     lit = np.where(halves > 0.0, halves, 0.0)
     table = np.floor(tone_mapped(lit, curve, exposure) * 255.0 + 0.5).astype(np.uint8)
     table.flags.writeable = False

@@ -268,6 +268,7 @@ class SimulationCore(WorldOperations):
             views=rendered.views,
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
             info=info,
+            states=self.world.states(),
         )
 
     def open_stream(

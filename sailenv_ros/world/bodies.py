@@ -71,6 +71,7 @@ class Body:
         if not placement.static:
             self._inertia = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
         self._static_pose = placement.pose
+        self._quat = placement.pose.orientation_xyzw
         self._matrix = placement.pose.matrix()
         # PyBullet has no per-body gravity; the weight of those it must not pull is given back.
         self._floats = not placement.static and not placement.gravity
@@ -125,6 +126,27 @@ class Body:
     def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
         return actuation.velocity(self._client, self._id)
+
+    def orientation_of_matrix(self) -> tuple[float, float, float, float]:
+        """Return the quaternion x, y, z, w that the last `world_from_body` was made of."""
+        return self._static_pose.orientation_xyzw if self.placement.static else self._quat
+
+    def origin_velocity(self, world_from_body: NDArray[np.float64]) -> tuple[Vector3, Vector3]:
+        """Return the velocity of the body frame's origin [m/s] and the angular one [rad/s].
+
+        Parameters
+        ----------
+        world_from_body : (4, 4) float64
+            As it is now.
+        """
+        if self.placement.static:
+            return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        (vx, vy, vz), (wx, wy, wz) = self._client.getBaseVelocity(self._id)
+        if any(self._centre):
+            # The engine knows the velocity of the centre of mass.
+            x, y, z = world_from_body[:3, :3].dot(self._centre).tolist()
+            vx, vy, vz = vx - (wy * z - wz * y), vy - (wz * x - wx * z), vz - (wx * y - wy * x)
+        return (vx, vy, vz), (wx, wy, wz)
 
     def state(self, instance: Instance, sim_time_ns: int) -> ObjectState:
         """Return all that clients may know of it now."""
@@ -310,7 +332,9 @@ class Body:
 
     def _matrix_of(self, position: Any, quat: Any) -> NDArray[np.float64]:
         self._require_finite(position, quat)
-        matrix = Pose((0.0, 0.0, 0.0), quat).matrix()
+        pose = Pose((0.0, 0.0, 0.0), quat)
+        self._quat = pose.orientation_xyzw
+        matrix = pose.matrix()
         matrix[:3, 3] = np.asarray(position) - matrix[:3, :3] @ np.asarray(self._centre)
         return matrix
 

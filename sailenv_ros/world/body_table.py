@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, UnknownName
+from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import MAX_INSTANCE_ID
 from sailenv_ros.validation import is_integer
 from sailenv_ros.world.bodies import Body
@@ -102,6 +103,23 @@ class BodyTable:
         """Return the (N, 4, 4) poses now."""
         rows = [body.world_from_body() for body in self]
         return np.stack(rows) if rows else np.zeros((0, 4, 4))
+
+    def states(self, world_from_body: NDArray[np.float64]) -> InstanceStates:
+        """Return where the bodies are and how they move, at poses (N, 4, 4) that were just read."""
+        quats = [body.orientation_of_matrix() for body in self]
+        moving = [
+            body.origin_velocity(matrix) for body, matrix in zip(self, world_from_body, strict=True)
+        ]
+        velocities = np.array(moving, np.float64).reshape(-1, 2, 3)
+        return InstanceStates(
+            ids=np.array(list(self._bodies), np.uint16),
+            positions=world_from_body[:, :3, 3],
+            orientations=np.array(quats, np.float64).reshape(-1, 4),
+            linear_velocities=velocities[:, 0],
+            angular_velocities=velocities[:, 1],
+            scales=np.array([body.placement.scale for body in self], np.float64).reshape(-1, 3),
+            histories=self.histories(),
+        )
 
     def histories(self) -> NDArray[np.int64]:
         """Return (N,) numbers; a body's past before its number changed has been cut off."""

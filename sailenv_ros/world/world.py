@@ -17,6 +17,7 @@ import numpy as np
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.geometry import Pose
+from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
@@ -84,6 +85,7 @@ class World:
         self._proxies: dict[str, CollisionProxy] = {}
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
+        self._states: InstanceStates | None = None
         self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
@@ -120,7 +122,7 @@ class World:
                 proxy.after_step(self.sim_time_ns)
             self._step += 1
         if count:
-            self._snapshot = None
+            self._snapshot = self._states = None
 
     # -- what is read ----------------------------------------------------------------------
 
@@ -170,6 +172,13 @@ class World:
                 histories=self._bodies.histories(),
             )
         return self._snapshot
+
+    def states(self) -> InstanceStates:
+        """Return poses and velocities of all instances; the same object until something changes."""
+        snapshot = self.snapshot()
+        if self._states is None:
+            self._states = self._bodies.states(snapshot.world_from_body)
+        return self._states
 
     def mover(self, name: str) -> Mover:
         """Find a mover; the empty name means the scene's first.
@@ -261,7 +270,7 @@ class World:
         moved.put(pose)
         if teleport:
             self._bodies.cut_off_past(instance_id)
-        self._snapshot = None
+        self._snapshot = self._states = None
 
     def drive(
         self,
@@ -328,7 +337,7 @@ class World:
 
     def _changed(self) -> None:
         self._contents = self._make_contents()
-        self._snapshot = None
+        self._snapshot = self._states = None
 
     def _make_contents(self) -> SceneContents:
         return SceneContents(

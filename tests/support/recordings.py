@@ -13,6 +13,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose
+from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import Category, CategoryTable, Instance
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.topics import RecordingOptions
@@ -50,6 +51,21 @@ def noise_frame(
         views=arrays,
         timings_s={"render": 0.25},
         info=noise_info(epoch=epoch),
+        states=noise_states(sequence),
+    )
+
+
+def noise_states(sequence: int) -> InstanceStates:
+    """Return where the two objects of `noise_info` are in the frame of that number."""
+    poses = [Pose.from_rpy_deg((1.0, 2.0, k), (0.0, k * 9.0, 5.0)) for k in (0, sequence)]
+    return InstanceStates(
+        ids=np.array([1, 2], np.uint16),
+        positions=np.array([pose.position_m for pose in poses]),
+        orientations=np.array([pose.orientation_xyzw for pose in poses]),
+        linear_velocities=np.array([[0.0, 0.0, 0.0], [0.0, 0.0, sequence / 3.0]]),
+        angular_velocities=np.array([[0.0, 0.0, 0.0], [0.1, 0.2, 0.3]]),
+        scales=np.array([[1.0, 1.0, 1.0], [2.0, 1.0, 0.5]]),
+        histories=np.array([1, 2]),
     )
 
 

@@ -24,13 +24,30 @@ constexpr int64_t MOST_WORKERS = 255;
 // must not depend on the thread that makes it.
 class FloatEnvironment {
 public:
-#if defined(__x86_64__)
-    FloatEnvironment() : before_(_mm_getcsr()) { _mm_setcsr(0x1f80); }
-    ~FloatEnvironment() { _mm_setcsr(before_); }
+    FloatEnvironment() : before_(control()) { set_control(PLAIN); }
+    ~FloatEnvironment() { set_control(before_); }
+    FloatEnvironment(const FloatEnvironment&) = delete;
+    FloatEnvironment& operator=(const FloatEnvironment&) = delete;
 
 private:
-    unsigned before_;
+#if defined(__x86_64__)
+    static constexpr uint64_t PLAIN = 0x1f80;  // MXCSR: all exceptions masked
+    static uint64_t control() { return _mm_getcsr(); }
+    static void set_control(uint64_t value) { _mm_setcsr(static_cast<unsigned>(value)); }
+#elif defined(__aarch64__)
+    static constexpr uint64_t PLAIN = 0;  // FPCR: no traps, no flush to zero
+    static uint64_t control() {
+        uint64_t value;
+        __asm__ volatile("mrs %0, fpcr" : "=r"(value));
+        return value;
+    }
+    static void set_control(uint64_t value) { __asm__ volatile("msr fpcr, %0" : : "r"(value)); }
+#else
+    static constexpr uint64_t PLAIN = 0;  // what a program begins with
+    static uint64_t control() { return PLAIN; }
+    static void set_control(uint64_t) {}
 #endif
+    uint64_t before_;
 };
 
 struct Job {

@@ -1,11 +1,14 @@
-"""Recorded frames → data sets: one module for each format, and the table of them.
+"""Frames → data sets: one module for each format, and the table of them.
 
-Each format is a class with `add(number, frame, info)` and `finish()`; `export` goes through the
-frames of an agent. Knows no ROS.
+`DatasetWriter` writes frames as they come, `export` those of a recording. Each format is a class
+with `add(sample)` and `finish(records)`. Knows no ROS.
 """
 
 from __future__ import annotations
 
-from sailenv_ros.recording.export.exporter import FORMATS, export
+from sailenv_ros.recording.export.dataset_writer import DatasetWriter, FormatSummary, Summary
+from sailenv_ros.recording.export.exporter import export
+from sailenv_ros.recording.export.formats import FORMATS
+from sailenv_ros.recording.export.splits import Splits
 
-__all__ = ["FORMATS", "export"]
+__all__ = ["FORMATS", "DatasetWriter", "FormatSummary", "Splits", "Summary", "export"]

@@ -4,44 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import ClassVar, Protocol
 
-from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import Frame
-from sailenv_ros.recording.export.coco_export import CocoExport
-from sailenv_ros.recording.export.data_files import finish, make_folder
-from sailenv_ros.recording.export.image_formats import FloExport, KittiExport, PngExport
-from sailenv_ros.recording.export.video import VideoExport
+from sailenv_ros.errors import InvalidRequest, RecordingError
+from sailenv_ros.recording.export.dataset_writer import DatasetWriter, Summary
+from sailenv_ros.recording.export.formats import FORMATS, check_views
+from sailenv_ros.recording.export.splits import Splits
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.scene_info import SceneInfo
 
-__all__ = ["FORMATS", "Export", "export"]
-
-
-class Export(Protocol):
-    """One format."""
-
-    views: ClassVar[tuple[str, ...]]
-    """Views that it is made of; none means whatever there is."""
-
-    def __init__(self, folder: Path) -> None: ...
-
-    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
-        """Take a frame."""
-
-    def finish(self) -> None:
-        """Write what is written once all frames were taken."""
-
-
-FORMATS: dict[str, type[Export]] = {
-    "png": PngExport,
-    "coco": CocoExport,
-    "kitti": KittiExport,
-    "flo": FloExport,
-    "mp4": VideoExport,
-}
-"""Each format by its name."""
+__all__ = ["export"]
 
 
 def export(
@@ -50,8 +21,10 @@ def export(
     formats: Sequence[str],
     *,
     agent: str = "",
+    splits: Splits | None = None,
+    resume: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, of: None,
-) -> int:
+) -> Summary:
     """Write a recording as data sets.
 
     Parameters
@@ -64,13 +37,17 @@ def export(
         Names in `FORMATS`.
     agent : str
         Name of the agent; empty if there is only one.
+    splits : Splits or None
+        How frames are dealt out to train, val and test; None does not split.
+    resume : bool
+        True goes on with what an earlier call of the same arguments had to leave unfinished.
     on_frame : callable
         Called with the number of frames that are done and of those there are.
 
     Returns
     -------
-    count : int
-        Frames that were written.
+    summary : Summary
+        What was written, and what was left out and why.
 
     Raises
     ------
@@ -80,35 +57,17 @@ def export(
         If the recording cannot be read or a file not written.
     """
     names = list(dict.fromkeys(formats))
-    for name in names:
-        if name not in FORMATS:
-            raise UnknownName("format", name, FORMATS)
     if not names:
         raise InvalidRequest("formats", (), f"at least one of: {', '.join(FORMATS)}")
     with RecordingReader(path) as reader:
         frames = RecordedFrames(reader, agent)
         for name in names:
-            _check_views(name, frames.views)
+            check_views(name, frames.views)
         if not len(frames):
             raise RecordingError(f"{path} has no complete frame of agent {frames.agent!r}")
-        target = Path(folder)
-        make_folder(target)
-        exports = [FORMATS[n](target / n if len(names) > 1 else target) for n in names]
-        for number, frame in enumerate(frames):
-            info = frames.scene_info(number)
-            for made in exports:
-                made.add(number, frame, info)
-            on_frame(number + 1, len(frames))
-        for made in exports:
-            made.finish()
-        finish(target)
-        return len(frames)
-
-
-def _check_views(name: str, views: Sequence[str]) -> None:
-    needed = FORMATS[name].views
-    # KITTI has a folder for each view, which may be missing; the others need all of theirs.
-    lacking = [view for view in needed if view not in views]
-    if lacking and (name != "kitti" or len(lacking) == len(needed)):
-        accepted = f"recorded with the views that {name} needs: {', '.join(needed)}"
-        raise InvalidRequest("recording", f"the views {', '.join(views)}", accepted)
+        source = f"{Path(path).resolve().name}, agent {frames.agent}"
+        with DatasetWriter(folder, names, splits=splits, source=source, resume=resume) as writer:
+            for number in range(writer.done, len(frames)):
+                writer.add(frames[number])
+                on_frame(number + 1, len(frames))
+            return writer.finish()

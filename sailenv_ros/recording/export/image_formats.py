@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,12 +12,12 @@ from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.recording.export.data_files import write_bytes, write_json, write_png
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.recording.flow_formats import (
     backward_px,
     flo_from_backward,
     kitti_from_backward,
 )
-from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["FloExport", "KittiExport", "PngExport", "frame_record"]
 
@@ -45,28 +45,26 @@ def _scaled(values: NDArray[np.float32], per_unit: float) -> NDArray[np.uint16]:
     return result
 
 
-class PngExport:
+class PngExport(DatasetFormat):
     """One folder for each view, one PNG for each frame, and `frames.json`.
 
     Integers as they are; depth 16 bits [mm], 0 where nothing was hit or it is beyond 65.535 m;
     truth values 0 and 255; other real numbers (flow, normals) as pictures in colour.
     """
 
-    views: ClassVar[tuple[str, ...]] = ()
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._records: list[dict[str, Any]] = []
-
-    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+    def add(self, sample: Sample) -> Made:
         """Write a frame's files."""
+        frame, folder = sample.frame, self.folder / sample.split
         for view, values in frame.views.items():
-            write_png(self._folder / view / f"{number:06d}.png", _png(view, values))
-        self._records.append(frame_record(number, frame))
+            write_png(folder / view / f"{sample.stem}.png", _png(view, values))
+        record = frame_record(sample.number, frame)
+        return Made(record=record, written={"pictures": len(frame.views)})
 
-    def finish(self) -> None:
-        """Write the table of frames."""
-        write_json(self._folder / "frames.json", self._records)
+    def finish(self, records: Sequence[Record]) -> None:
+        """Write the table of frames of each split."""
+        for split in sorted({record.split for record in records}):
+            table = [record.value for record in records if record.split == split]
+            write_json(self.folder / split / "frames.json", table)
 
 
 def _png(view: str, values: NDArray[Any]) -> NDArray[Any]:
@@ -80,45 +78,37 @@ def _png(view: str, values: NDArray[Any]) -> NDArray[Any]:
     return values
 
 
-class KittiExport:
+class KittiExport(DatasetFormat):
     """`image_2`, `flow` and `depth` as KITTI's development kits read them.
 
     The flow of a picture is the displacement to the one before, p_{t-1} - p_t [px]; depth is in
     steps of 1/256 m, 0 where there is none.
     """
 
-    views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "flow")
+    any_of: ClassVar[tuple[str, ...]] = ("rgb", "depth", "flow")
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-
-    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+    def add(self, sample: Sample) -> Made:
         """Write a frame's files."""
-        name = f"{number:06d}.png"
+        frame, folder = sample.frame, self.folder / sample.split
+        name = f"{sample.stem}.png"
         if "rgb" in frame.views:
-            write_png(self._folder / "image_2" / name, frame["rgb"])
+            write_png(folder / "image_2" / name, frame["rgb"])
         if "depth" in frame.views:
-            write_png(self._folder / "depth" / name, _scaled(frame["depth"], 256.0))
+            write_png(folder / "depth" / name, _scaled(frame["depth"], 256.0))
         if "flow" in frame.views:
             backward = backward_px(frame["flow"], frame.dt_s)
-            write_png(self._folder / "flow" / name, kitti_from_backward(backward))
-
-    def finish(self) -> None:
-        """All is written."""
+            write_png(folder / "flow" / name, kitti_from_backward(backward))
+        return Made(written={"pictures": len({*self.any_of} & frame.views.keys())})
 
 
-class FloExport:
+class FloExport(DatasetFormat):
     """One .flo file for each frame: the displacement to the one before, p_{t-1} - p_t [px]."""
 
     views: ClassVar[tuple[str, ...]] = ("flow",)
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-
-    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+    def add(self, sample: Sample) -> Made:
         """Write a frame's file."""
-        backward = backward_px(frame["flow"], frame.dt_s)
-        write_bytes(self._folder / f"{number:06d}.flo", flo_from_backward(backward))
-
-    def finish(self) -> None:
-        """All is written."""
+        backward = backward_px(sample.frame["flow"], sample.frame.dt_s)
+        path = self.folder / sample.split / f"{sample.stem}.flo"
+        write_bytes(path, flo_from_backward(backward))
+        return Made(written={"fields": 1})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -14,7 +15,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.system.files import make_folder
 
 __all__ = ["VideoExport"]
@@ -24,12 +25,14 @@ LARGEST_PX = 1920
 """Greatest width of the video; larger pictures are made smaller."""
 
 
-class VideoExport:
+class VideoExport(DatasetFormat):
     """`preview.mp4`, at the rate of the frames."""
 
-    views: ClassVar[tuple[str, ...]] = ()
+    is_sequence: ClassVar[bool] = True
+    resumable: ClassVar[bool] = False
 
     def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
         self._path = folder / "preview.mp4"
         self._draft = folder / ".preview.unfinished.mp4"
         self._waiting: list[NDArray[np.uint8]] = []
@@ -37,8 +40,9 @@ class VideoExport:
         self._writer: cv2.VideoWriter | None = None
         self._shape: tuple[int, ...] = ()
 
-    def add(self, number: int, frame: Frame, info: SceneInfo | None) -> None:
+    def add(self, sample: Sample) -> Made:
         """Add a picture."""
+        frame, info = sample.frame, sample.frame.info
         picture = _sheet(frame, info.categories if info else CategoryTable([]))
         if self._writer is None:
             self._waiting.append(picture)
@@ -47,8 +51,9 @@ class VideoExport:
             self._first_ns = frame.stamp_ns
         else:
             self._write(picture)
+        return Made(written={"pictures": 1})
 
-    def finish(self) -> None:
+    def finish(self, records: Sequence[Record]) -> None:
         """Finish the file."""
         if self._writer is None and self._waiting:
             self._begin(1.0)

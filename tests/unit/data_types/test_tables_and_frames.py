@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import sailenv_ros.errors as errors
 from sailenv_ros.agents import AgentSpec
@@ -149,3 +153,12 @@ def test_all_errors_are_ours_and_named_in_the_tree() -> None:
         if isinstance(thing, type) and issubclass(thing, Exception):
             assert issubclass(thing, errors.SailenvError)
             assert name in (errors.__doc__ or "")
+
+
+@given(st.tuples(*[st.floats(-9.0, 9.0)] * 3).filter(lambda d: np.linalg.norm(d) > 1e-3))
+def test_a_light_that_becomes_brighter_does_not_turn(
+    direction: tuple[float, float, float],
+) -> None:
+    light = Light(name="sun", type="directional", direction=direction)
+    assert replace(light, intensity=2.0).direction == light.direction
+    np.testing.assert_allclose(light.direction, direction / np.linalg.norm(direction), atol=1e-12)

@@ -20,7 +20,12 @@ import sailenv_msgs.msg as msgs
 from sailenv_msgs.srv import GetObject
 from sailenv_msgs_py.agent_msgs import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.changes import changes_from_msg, changes_to_msg
-from sailenv_msgs_py.frame_info import camera_of_frame_info, frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.frame_info import (
+    camera_of_frame_info,
+    frame_info_to_msg,
+    header_of_frame,
+    states_of_frame_info,
+)
 from sailenv_msgs_py.object_msgs import (
     behaviour_from_msg,
     behaviour_to_msg,
@@ -40,6 +45,7 @@ from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.geometry import Pose
+from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import Category, CategoryTable, Instance
 from sailenv_ros.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
 from sailenv_ros.objects import ObjectState
@@ -200,6 +206,26 @@ def scene_infos(draw: st.DrawFn) -> SceneInfo:
 
 
 @st.composite
+def instance_states(draw: st.DrawFn) -> InstanceStates:
+    """Return states of up to three instances."""
+    ids = sorted(draw(st.sets(st.integers(1, 65535), max_size=3)))
+    poses = [draw(POSES) for _ in ids]
+
+    def column(values: st.SearchStrategy[Any], width: int) -> Any:
+        return np.array([draw(values) for _ in ids]).reshape(-1, width)
+
+    return InstanceStates(
+        ids=np.array(ids, np.uint16),
+        positions=np.array([pose.position_m for pose in poses]).reshape(-1, 3),
+        orientations=np.array([pose.orientation_xyzw for pose in poses]).reshape(-1, 4),
+        linear_velocities=column(TRIPLES, 3),
+        angular_velocities=column(TRIPLES, 3),
+        scales=column(TRIPLES, 3),
+        histories=np.array([draw(st.integers(0, 2**32 - 1)) for _ in ids], np.int64),
+    )
+
+
+@st.composite
 def frames(draw: st.DrawFn) -> Frame:
     """Return frames of a few pixels."""
     camera = Camera(intrinsics=draw(INTRINSICS), pose=draw(POSES))
@@ -214,6 +240,7 @@ def frames(draw: st.DrawFn) -> Frame:
         camera=camera,
         views={},
         timings_s={"render": draw(st.floats(0.0, 1e3))},
+        states=draw(st.none() | instance_states()),
     )
 
 
@@ -304,6 +331,29 @@ def test_scenes(info: SceneInfo) -> None:
             assert one == other, field.name
 
 
+def same_states(read: InstanceStates | None, written: InstanceStates | None) -> None:
+    """Every array has the same bytes."""
+    assert (read is None) == (written is None)
+    for name in () if read is None else [entry.name for entry in dataclasses.fields(read)]:
+        one, other = getattr(read, name), getattr(written, name)
+        assert (one.dtype, one.shape, one.tobytes()) == (other.dtype, other.shape, other.tobytes())
+
+
+@pytest.mark.parametrize("field", ["instance_ids", "instance_histories", "instance_states"])
+def test_states_that_do_not_fit_are_refused(field: str) -> None:
+    """An array of another length than the others is an error, not a wrong pose."""
+    msg = msgs.FrameInfo(
+        has_states=True,
+        instance_ids=[1, 2],
+        instance_histories=[1, 2],
+        instance_states=[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, *[0.5] * 9] * 2,
+    )
+    assert states_of_frame_info(msg) is not None
+    setattr(msg, field, getattr(msg, field)[:-1])
+    with pytest.raises(InvalidRequest, match="instance"):
+        states_of_frame_info(msg)
+
+
 def frame_info_of(frame: Frame) -> msgs.FrameInfo:
     views = tuple(VIEWS)[: 1 + frame.sequence % len(VIEWS)]
     return frame_info_to_msg(
@@ -319,6 +369,9 @@ def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float)
     told = {name: getattr(msg, name) for name in msg.get_fields_and_field_types()}
     told.pop("camera_pose")
     assert ns_from_stamp(told.pop("header").stamp) == frame.stamp_ns
+    same_states(states_of_frame_info(msg), frame.states)
+    for name in [name for name in told if name.startswith(("instance_", "has_"))]:
+        told.pop(name)
     assert told == {
         "agent": frame.agent,
         "scene": frame.scene,

@@ -20,7 +20,7 @@ from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.recording.export import FORMATS, export
-from sailenv_ros.recording.export.coco_export import run_lengths, run_lengths_text
+from sailenv_ros.recording.export.coco_rle import run_lengths, run_lengths_text
 from tests.support.recordings import write_noise
 
 pytestmark = pytest.mark.ros
@@ -44,7 +44,7 @@ def read(path: Path) -> np.ndarray:
 def test_png_views_are_the_frames_values(bag: tuple[Path, list[Frame]], tmp_path: Path) -> None:
     """Colours and ids exactly, depth to half a millimetre, 0 where there is none."""
     path, frames = bag
-    assert export(path, tmp_path / "out", ["png"]) == COUNT
+    assert export(path, tmp_path / "out", ["png"]).frames == COUNT
     for number, frame in enumerate(frames):
         name = f"{number:06d}.png"
         assert (read(tmp_path / "out/rgb" / name)[..., ::-1] == frame["rgb"]).all()
@@ -162,7 +162,7 @@ def test_the_command_exports_several_formats(
     words = ["export", str(path), "-o", str(out), "--format"]
     assert main([*words, *FORMATS]) == 0
     assert f"{COUNT} frames as {', '.join(FORMATS)}" in capsys.readouterr().out
-    assert sorted(folder.name for folder in out.iterdir()) == sorted(FORMATS)
+    assert sorted(path.name for path in out.iterdir()) == sorted(["export.json", *FORMATS])
     assert main([*words, "png"]) == 2
     assert "is not empty; nothing is overwritten" in capsys.readouterr().err
 

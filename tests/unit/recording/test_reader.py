@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +35,11 @@ def same_frame(read: Frame, written: Frame) -> None:
     np.testing.assert_allclose(
         read.camera.world_from_camera, written.camera.world_from_camera, rtol=0, atol=1e-12
     )
+    assert read.states is not None
+    assert written.states is not None
+    for field in dataclasses.fields(read.states):
+        one, other = (getattr(frame.states, field.name) for frame in (read, written))
+        assert (one.dtype, one.tobytes()) == (other.dtype, other.tobytes()), field.name
     assert list(read.views) == [view for view in VIEWS if view in written.views]
     for view, values in written.views.items():
         assert read[view].dtype == values.dtype
@@ -256,3 +263,43 @@ def test_a_flipped_bit_is_never_read_as_data(tmp_path: Path) -> None:
         except RecordingError:
             refused += 1
     assert refused > 300
+
+
+def test_recordings_without_states_are_read(tmp_path: Path) -> None:
+    """Version 0.2.0 knew no states: its frames have none, and are complete otherwise."""
+    frames = [replace(noise_frame(number), states=None) for number in (1, 2)]
+    with RecordingWriter(tmp_path / "bag") as writer:
+        recorder = FrameRecorder(_WithoutStates(writer))  # type: ignore[arg-type]
+        recorder.write_info(noise_info())
+        for frame in frames:
+            recorder.write_frame(frame, 10.0)
+    with RecordingReader(tmp_path / "bag") as reader:
+        assert "has_states" not in reader.topic("/sailenv/eye/frame_info").schema
+        read = list(RecordedFrames(reader))
+    assert [frame.states for frame in read] == [None, None]
+    assert [frame.sequence for frame in read] == [1, 2]
+    assert read[1]["flow"].tobytes() == frames[1]["flow"].tobytes()
+    assert read[1].timings_s["render"] == frames[1].timings_s["render"]
+
+
+class _WithoutStates:
+    """Writes definition and bytes of `FrameInfo` as they were before it had states."""
+
+    def __init__(self, writer: RecordingWriter) -> None:
+        self._writer = writer
+
+    def add_topic(self, topic: Any) -> None:
+        if topic.type.endswith("FrameInfo"):
+            first, _, rest = topic.schema.partition("bool has_states")
+            old = first + rest[rest.index("=" * 10) :]
+            topic = replace(topic, schema=old)
+        self._writer.add_topic(topic)
+
+    def write(self, topic: str, parts: Any, log_ns: int) -> None:
+        if topic.endswith("frame_info"):
+            # A false, three bytes that fill up, and three empty arrays.
+            (data,) = parts
+            assert data[-16] == 0
+            assert not any(data[-12:])
+            parts = (data[:-16],)
+        self._writer.write(topic, parts, log_ns)

@@ -1,6 +1,7 @@
 """The world: physics against closed forms, ids, snapshots, histories, determinism."""
 
 import itertools
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,38 @@ def test_a_displaced_centre_of_mass_leaves_the_body_frame_alone() -> None:
     moved = Pose.from_rpy_deg((-1, 0, 2), (0, 80, 10))
     world.put_body(1, moved)
     np.testing.assert_allclose(world.snapshot().world_from_body[0], moved.matrix(), atol=1e-12)
+
+
+def test_states_are_those_of_the_snapshot_and_velocities_their_differences() -> None:
+    """The same matrices bit for bit; the origin's velocity is not that of the centre of mass."""
+    asset = solid(
+        BoxShape(half_extents_m=(0.5, 0.5, 1.0), centre_m=(0, 0, 1)), centre_of_mass_m=(0, 0, 1)
+    )
+    pose = Pose.from_rpy_deg((1, 2, 3), (20, 30, 40))
+    spin = {"linear_velocity": (0.5, -1.0, 2.0), "angular_velocity": (0.3, 2.0, -1.0)}
+    thrown = replace(placed("post", asset=asset, pose=pose, gravity=False), **spin)
+    slab = replace(placed("slab", (5, 0, 0), static=True), scale=(2.0, 2.0, 2.0))
+    world = make_world(thrown, slab)
+    world.step(3)
+    before = world.states()
+    assert before is world.states()
+    assert before.matrices.tobytes() == world.snapshot().world_from_body.tobytes()
+    assert before.ids.tolist() == [1, 2]
+    assert before.scales.tolist() == [[1.0, 1.0, 1.0], [2.0, 2.0, 2.0]]
+    assert before.histories.tolist() == world.snapshot().histories.tolist()
+    assert not before.linear_velocities[1].any()
+    assert not before.angular_velocities[1].any()
+    np.testing.assert_allclose(before.angular_velocities[0], (0.3, 2.0, -1.0), atol=0.02)
+    world.step(1)
+    after = world.states()
+    speed = (after.positions[0] - before.positions[0]) * 240
+    mean = 0.5 * (before.linear_velocities[0] + after.linear_velocities[0])
+    np.testing.assert_allclose(speed, mean, atol=2e-3)
+    world.put_body(1, Pose((0, 0, 1)), teleport=True)
+    put = world.states()
+    assert put.histories[0] != after.histories[0]
+    assert put.positions[0].tolist() == [0.0, 0.0, 1.0]
+    assert not put.linear_velocities.any()
 
 
 def test_a_rotating_body_turns_at_the_rate_asked() -> None:

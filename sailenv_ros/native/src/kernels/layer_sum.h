@@ -50,6 +50,17 @@ static inline void add_layers(const LayerSum& s, int64_t first, int64_t last) {
     }
 }
 
+// Has the memory of a run's texels fetched that are not made yet.
+static inline void fetch_run(const LayerSum& s, int64_t run) {
+    if (__atomic_load_n(s.states + run, __ATOMIC_RELAXED) != STATE_MISSING) return;
+    const int64_t first = run * LAYER_RUN;
+    for (int64_t t = 0; t < s.terms; t++) {
+        __builtin_prefetch(s.layers[t] + s.channels[t] * first);
+    }
+    __builtin_prefetch(s.shown + first);
+    __builtin_prefetch(s.texels + 4 * first, 1);
+}
+
 // Makes the run of texels number `run`, or waits for the thread that makes it.
 static inline void make_run(const LayerSum& s, int64_t run) {
     uint8_t* state = s.states + run;
@@ -73,6 +84,11 @@ LANES_INLINE void need_texels(const LayerSum& s, const int32_t* at, int32_t widt
         }
     }
     if (__builtin_expect(made == STATE_MADE, 1)) return;
+    // Layers lie far apart in memory: what is missing is fetched all at once, then added up.
+    for (int k = 0; k < 8; k++) {
+        fetch_run(s, at[k] / LAYER_RUN);
+        fetch_run(s, (at[k] + width) / LAYER_RUN);
+    }
     for (int k = 0; k < 8; k++) {
         for (const int32_t way : ways) make_run(s, (at[k] + way) / LAYER_RUN);
     }

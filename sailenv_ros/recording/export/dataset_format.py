@@ -1,0 +1,124 @@
+"""What a format of data sets is: frames go in one by one, files and records come out.
+
+A new format is one module with a subclass of `DatasetFormat`, and a line in `formats.FORMATS`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from sailenv_ros.errors import RecordingError
+from sailenv_ros.frame import Frame
+from sailenv_ros.scene_info import SceneInfo
+
+__all__ = ["DatasetFormat", "Made", "Record", "Sample"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Sample:
+    """One frame of a data set.
+
+    Attributes
+    ----------
+    number : int
+        Of the frame in the data set, from 0.
+    frame : Frame
+    split : str
+        ``train``, ``val`` or ``test``; empty if the data set is not split.
+    """
+
+    number: int
+    frame: Frame
+    split: str = ""
+
+    @property
+    def stem(self) -> str:
+        """Name of the frame's files, without an ending."""
+        return f"{self.number:06d}"
+
+    def scene_info(self, format_name: str) -> SceneInfo:
+        """Return what was known of the scene.
+
+        Raises
+        ------
+        RecordingError
+            If nothing was: a format of that name cannot do without.
+        """
+        if self.frame.info is None:
+            raise RecordingError(f"{format_name} needs the scene_info, which was not recorded")
+        return self.frame.info
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Made:
+    """What a format made of one frame.
+
+    Attributes
+    ----------
+    record : JSON value
+        What `DatasetFormat.finish` needs of the frame; None for nothing. It is kept in a file, so
+        that a writer that was killed goes on where it was.
+    written : mapping of str to int
+        How many of what was written: ``{"annotations": 12}``.
+    left_out : mapping of str to int
+        How many were not, by the reason: ``{"no pixel is visible": 3}``.
+    """
+
+    record: Any = None
+    written: Mapping[str, int] = field(default_factory=dict)
+    left_out: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Record:
+    """The record of a frame, with its number and split."""
+
+    number: int
+    split: str
+    value: Any
+
+
+class DatasetFormat(ABC):
+    """One format; keeps nothing of the frames that it was given.
+
+    Parameters
+    ----------
+    folder : Path
+        Its own.
+
+    Attributes
+    ----------
+    views : tuple of str
+        Views that a frame must have; none means whatever there is.
+    any_of : tuple of str
+        Views of which a frame must have at least one; none means no such demand.
+    is_sequence : bool
+        True if its frames belong together, so that they cannot be split.
+    resumable : bool
+        False if it must be given all frames again after a break.
+    """
+
+    views: ClassVar[tuple[str, ...]] = ()
+    any_of: ClassVar[tuple[str, ...]] = ()
+    is_sequence: ClassVar[bool] = False
+    resumable: ClassVar[bool] = True
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    @abstractmethod
+    def add(self, sample: Sample) -> Made:
+        """Write a frame's files. The same frame may be given again: it writes the same files."""
+
+    def finish(self, records: Sequence[Record]) -> None:  # noqa: B027 - often nothing is left
+        """Write what is written once all frames were given.
+
+        Parameters
+        ----------
+        records : sequence of Record
+            One for each frame, in the order of their numbers.
+        """
