@@ -1,6 +1,6 @@
 """Prints pip's settings as lines for a shell that set them for uv, so that both ask the same index.
 
-    eval "$(.venv/bin/python scripts/uv_settings.py)"
+eval "$(.venv/bin/python scripts/uv_settings.py)"
 """
 
 import ast
