@@ -17,6 +17,7 @@ from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -292,6 +293,10 @@ class Connection:
                 self._executor.spin()
             except ExternalShutdownException:
                 return
+            except InvalidHandle:
+                # Another thread destroyed a subscription while this one got ready to wait for it;
+                # rclpy catches that for all but the subscription's events.
+                continue
             except Exception:
                 # A message that cannot be read must not end the thread that reads all others.
                 if not self._closed:

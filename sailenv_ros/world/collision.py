@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+import os
+import shutil
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.model import (
@@ -28,6 +34,12 @@ NO_COLLISION = -1
 Vector3 = tuple[float, float, float]
 
 _UNTURNED = (0.0, 0.0, 0.0, 1.0)
+
+_LISTS: dict[tuple[str, tuple[int, ...], bytes], list[Any]] = {}
+
+_HULL_LOCK = threading.Lock()
+_HULL_FOLDERS: dict[tuple[int, str], Path] = {}
+"""By process, so that a forked one takes its own."""
 
 
 def build_collision(
@@ -70,8 +82,8 @@ def build_collision(
         part["collisionFrameOrientation"] = part.pop("orientation", _UNTURNED)
         part["shapeType"] = part.pop("type")
         return int(client.createCollisionShape(**part))
-    with TemporaryDirectory(prefix="sailenv-hulls-") as folder:
-        files = [_hull_file(Path(folder), number, part, name) for number, part in enumerate(parts)]
+    with _hull_folder() as folder:
+        files = [_hull_file(folder, part, name) for part in parts]
         return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
 
 
@@ -104,7 +116,7 @@ def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str
             "position": _scaled(shape.centre_m, scale),
         }
     if isinstance(shape, ConvexShape):
-        points = (shape.points * np.asarray(scale)).tolist()
+        points = _lists(shape.points * np.asarray(scale))
         return {"type": constants.GEOM_MESH, "vertices": points, "position": [0.0, 0.0, 0.0]}
     return _triangles(constants, shape, scale)
 
@@ -112,14 +124,50 @@ def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str
 def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str, Any]:
     return {
         "type": constants.GEOM_MESH,
-        "vertices": (shape.positions * np.asarray(scale)).tolist(),
-        "indices": shape.triangles.reshape(-1).tolist(),
+        "vertices": _lists(shape.positions * np.asarray(scale)),
+        "indices": _lists(shape.triangles.reshape(-1)),
         "flags": constants.GEOM_FORCE_CONCAVE_TRIMESH,
         "position": [0.0, 0.0, 0.0],
     }
 
 
-def _hull_file(folder: Path, number: int, part: dict[str, Any], name: str) -> str:
+def _lists(values: NDArray[Any]) -> list[Any]:
+    """Return an array as lists; the same lists for the same values.
+
+    PyBullet never gives back its references to what it reads, so lists that are made anew for each
+    scene would stay for ever.
+    """
+    data = hashlib.sha256(np.ascontiguousarray(values).tobytes()).digest()
+    key = values.dtype.str, values.shape, data
+    if key not in _LISTS:
+        _LISTS[key] = values.tolist()
+    return _LISTS[key]
+
+
+@contextmanager
+def _hull_folder() -> Iterator[Path]:
+    """Yield an empty folder that is gone afterwards; always the same one in a process.
+
+    PyBullet keeps every mesh that it has read by the name of its file, until the process ends: a
+    hull that comes again must have the name that it had before.
+    """
+    key = os.getpid(), tempfile.gettempdir()
+    with _HULL_LOCK:
+        folder = _HULL_FOLDERS.get(key)
+        try:
+            if folder is not None:
+                folder.mkdir(mode=0o700)
+        except FileExistsError:
+            folder = None  # somebody else's: it may hold anything
+        if folder is None:
+            folder = _HULL_FOLDERS[key] = Path(tempfile.mkdtemp(prefix="sailenv-hulls-"))
+        try:
+            yield folder
+        finally:
+            shutil.rmtree(folder)
+
+
+def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:
     """Write a hull's points as OBJ: inside a compound PyBullet takes meshes from files alone.
 
     Returns
@@ -137,9 +185,9 @@ def _hull_file(folder: Path, number: int, part: dict[str, Any], name: str) -> st
     lines = ["v " + " ".join(f"{coordinate:.9g}" for coordinate in point) for point in points]
     # A hull needs no faces, but the reader keeps only points that faces name.
     lines += [f"f 1 {corner} {corner + 1}" for corner in range(2, len(points))]
-    # Bullet remembers files by name: the folder's name is never used again.
-    path = folder / f"{number}.obj"
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    text = ("\n".join(lines) + "\n").encode("ascii")
+    path = folder / f"{hashlib.sha256(text).hexdigest()}.obj"
+    path.write_bytes(text)
     return str(path)
 
 
