@@ -21,6 +21,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import aiohttp
 import numpy as np
@@ -100,11 +101,16 @@ def _node(scene: str) -> Iterator[tuple[int, Round]]:
 
     ports = _free_port(), _free_port()
     namespace = f"/soak_{os.getpid()}"
-    parameters = {"gateway__port": ports[0], "viewer__port": ports[1]}
+    parameters: dict[str, Any] = {"gateway__port": ports[0], "viewer__port": ports[1]}
     with NodeProcess(namespace, scene=scene, **parameters) as node:
 
         def work(scene: str, number: int) -> None:
-            small = {"width": 160, "height": 120, "namespace": namespace}
+            small: dict[str, Any] = {
+                "width": 160,
+                "height": 120,
+                "namespace": namespace,
+                "timeout_s": 60.0,
+            }
             with Agent(**small) as agent, Agent(**small) as other:
                 agent.change_scene(scene)
                 name = agent.spawn_object("cube", (0.0, 0.0, 1.0))
