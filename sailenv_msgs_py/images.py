@@ -53,12 +53,14 @@ def image_from_view(view: str, values: NDArray[Any], header: Header, *, copy: bo
     """
     spec = view_spec(view)
     fits = values.ndim >= 2 and values.shape == spec.shape(*values.shape[:2])
-    if values.dtype != spec.dtype or not fits:
-        wanted = f"an array {_shape_of(spec)} of {spec.dtype}"
+    if values.dtype not in spec.dtypes or not fits:
+        types = " or ".join(map(str, spec.dtypes))
+        wanted = f"an array {_shape_of(spec)} of {types}"
         raise InvalidRequest(f"view {view}", f"{values.shape} of {values.dtype}", wanted)
     if spec.dtype == np.bool_:
         values = values.view(np.uint8) * np.uint8(_TRUE)
-    return _image(values, spec.encoding, header, copy=copy)
+    encoding = spec.encoding if spec.dtype == np.bool_ else spec.encoding_of(values.dtype)
+    return _image(values, encoding, header, copy=copy)
 
 
 def picture_to_image(rgb: NDArray[np.uint8], header: Header) -> Image:
@@ -85,9 +87,12 @@ def view_from_image(view: str, image: Image) -> NDArray[Any]:
         If encoding, byte order, step or size do not fit.
     """
     spec = view_spec(view)
-    stored = np.dtype(np.uint8) if spec.dtype == np.bool_ else spec.dtype
+    is_wide = spec.wide_dtype is not None and image.encoding == spec.wide_encoding
+    held = spec.dtype if spec.wide_dtype is None or not is_wide else spec.wide_dtype
+    stored = np.dtype(np.uint8) if spec.dtype == np.bool_ else held
     row_bytes = image.width * spec.channels * stored.itemsize
-    _require(view, "encoding", image.encoding, spec.encoding)
+    if not is_wide:
+        _require(view, "encoding", image.encoding, spec.encoding)
     if stored.itemsize > 1:
         _require(view, "is_bigendian", int(image.is_bigendian), int(sys.byteorder == "big"))
     if image.step < row_bytes:

@@ -21,7 +21,7 @@ from sailenv_msgs_py.transforms import (
     vector_to_msg,
     xyz_from_msg,
 )
-from sailenv_ros.labels import Category, CategoryTable, Instance
+from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import LIGHT_LIMITS, Environment, Light, LightType
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 
@@ -94,6 +94,13 @@ def instance_to_msg(instance: Instance, *, moving: bool) -> msgs.Instance:
         category=instance.category,
         is_static=instance.static,
         moving=moving,
+        low=point_to_msg(instance.low_m),
+        high=point_to_msg(instance.high_m),
+        parent=instance.parent,
+        keypoints=[
+            msgs.Keypoint(name=point.name, position=point_to_msg(point.position_m))
+            for point in instance.keypoints
+        ],
     )
 
 
@@ -194,4 +201,11 @@ def _instance_from_msg(msg: msgs.Instance) -> Instance:
         category_id=msg.category_id,
         category=msg.category,
         static=msg.is_static,
+        low_m=xyz_from_msg(msg.low),
+        high_m=xyz_from_msg(msg.high),
+        parent=msg.parent,
+        keypoints=tuple(
+            Keypoint(name=point.name, position_m=xyz_from_msg(point.position))
+            for point in msg.keypoints
+        ),
     )

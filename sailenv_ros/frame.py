@@ -9,23 +9,26 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.instance_states import InstanceStates
 
 if TYPE_CHECKING:
+    from sailenv_ros.object_truth import AmodalMasks, Keypoints, ObjectTable, PointCloud
     from sailenv_ros.scene_info import SceneInfo, SceneObject  # which knows what agents see
 
 __all__ = [
     "ALWAYS_MADE",
     "FIVE_VIEWS",
     "VIEWS",
+    "DrawAlone",
     "Frame",
     "ImageCodec",
     "ViewDisplay",
@@ -75,6 +78,10 @@ class ViewSpec:
         True if the depth of that earlier frame is needed too.
     by_default : bool
         True if an agent gets it without asking.
+    wide_dtype : numpy dtype or None
+        Type of its values where they are too large for `dtype`; None if they never are.
+    wide_encoding : str
+        Encoding on a ROS topic of these.
     display : str
         How it is shown as a picture.
     color_topic : bool
@@ -105,6 +112,17 @@ class ViewSpec:
     compressed_topic: ImageCodec | None = None
     png_per_unit: float | None = None
     validity_of: str = ""
+    wide_dtype: np.dtype[Any] | None = None
+    wide_encoding: str = ""
+
+    @property
+    def dtypes(self) -> tuple[np.dtype[Any], ...]:
+        """Types that its array may have."""
+        return (self.dtype,) if self.wide_dtype is None else (self.dtype, self.wide_dtype)
+
+    def encoding_of(self, dtype: np.dtype[Any]) -> str:
+        """Return the encoding on a ROS topic of an array of one of `dtypes`."""
+        return self.wide_encoding if dtype == self.wide_dtype else self.encoding
 
     @property
     def is_label(self) -> bool:
@@ -145,6 +163,8 @@ _SPECS = (
         name="category",
         dtype=np.dtype(np.uint8),
         encoding="8UC1",
+        wide_dtype=np.dtype(np.uint16),
+        wide_encoding="16UC1",
         meaning="category id",
         invalid="0 background, 255 unlabelled",
         display="category",
@@ -281,6 +301,13 @@ def checked_views(
     return ordered
 
 
+class DrawAlone(Protocol):
+    """Draws the objects of a frame, each alone."""
+
+    def __call__(self, only: int = 0) -> AmodalMasks:
+        """Draw the object of that id, perhaps others too; 0 draws all."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frame:
     """All views of one camera at one instant.
@@ -310,6 +337,8 @@ class Frame:
     states : InstanceStates or None
         Poses and velocities of all instances at the frame's own instant; None if they were not
         recorded.
+    draw_alone : callable or None
+        Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
     """
 
     agent: str
@@ -325,15 +354,17 @@ class Frame:
     timings_s: Mapping[str, float] = field(default_factory=dict)
     info: SceneInfo | None = None
     states: InstanceStates | None = None
+    draw_alone: DrawAlone | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width
         for name, array in self.views.items():
             spec = view_spec(name)
             shape = spec.shape(height, width)
-            if array.shape != shape or array.dtype != spec.dtype:
+            if array.shape != shape or array.dtype not in spec.dtypes:
+                types = " or ".join(map(str, spec.dtypes))
                 raise ValueError(
-                    f"view {name} must be {shape} {spec.dtype}, got {array.shape} {array.dtype}"
+                    f"view {name} must be {shape} {types}, got {array.shape} {array.dtype}"
                 )
             array.flags.writeable = False
         object.__setattr__(self, "views", MappingProxyType(dict(self.views)))
@@ -355,6 +386,86 @@ class Frame:
         Empty if the scene of that instant is not known.
         """
         return {} if self.info is None else dict(self.info.objects)
+
+    @cached_property
+    def objects(self) -> ObjectTable:
+        """What is known of every object of the scene at the frame's instant, seen or not.
+
+        Raises
+        ------
+        InvalidState
+            If the scene of that instant is not known.
+        """
+        from sailenv_ros.object_truth.frame_objects import objects_of
+
+        return objects_of(self)
+
+    @cached_property
+    def amodal(self) -> AmodalMasks:
+        """What each object covers, whatever lies in front of it: drawn when it is asked for first.
+
+        Raises
+        ------
+        InvalidState
+            If the frame's objects cannot be drawn alone: amodal masks were not recorded, or the
+            simulator has rendered a later frame of that agent.
+        SimulationClosed
+            If the simulation has ended.
+        """
+        if self.draw_alone is None:
+            raise InvalidState(
+                "the frame has no amodal masks: ask a frame of a Simulation or of an Agent for "
+                "them, or record them"
+            )
+        return self.draw_alone()
+
+    def amodal_of(self, instance_id: int) -> AmodalMasks:
+        """Return what one object covers, perhaps among others; quicker than `amodal`.
+
+        Raises
+        ------
+        InvalidRequest
+            If there is no object of that id.
+        InvalidState, SimulationClosed
+            As `amodal`.
+        """
+        if self.draw_alone is None or "amodal" in self.__dict__:
+            return self.amodal
+        return self.draw_alone(instance_id)
+
+    @property
+    def objects_with_amodal(self) -> ObjectTable:
+        """The table of `objects` with the columns of `amodal`; see both for errors."""
+        return self.objects.with_amodal(self.amodal)
+
+    def keypoints(self, instance_id: int) -> Keypoints:
+        """Return the named points of an object; the corners of its box if its asset names none.
+
+        Raises
+        ------
+        InvalidRequest, InvalidState
+            If there is no object of that id, or the scene is not known.
+        """
+        from sailenv_ros.object_truth.frame_objects import keypoints_of
+
+        return keypoints_of(self, instance_id)
+
+    def points(self, *, in_world: bool = True) -> PointCloud:
+        """Return the points that the pixels see, with their colours and labels.
+
+        Parameters
+        ----------
+        in_world : bool
+            False gives points in the camera's optical frame.
+
+        Raises
+        ------
+        UnknownName
+            If the frame has no depth.
+        """
+        from sailenv_ros.object_truth.point_cloud import points_of
+
+        return points_of(self, in_world=in_world)
 
     def to_dict(self, *, copy: bool = True) -> dict[str, Any]:
         """Return the frame as the dict of the SAILenv client, with more in it.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +18,13 @@ from sailenv_ros.errors import InvalidRequest, NameTaken, UnknownName
 
 __all__ = [
     "BACKGROUND",
+    "MAX_CATEGORY_ID",
     "MAX_INSTANCE_ID",
     "UNLABELLED_CATEGORY",
     "Category",
     "CategoryTable",
     "Instance",
+    "Keypoint",
     "colour_instances",
     "instance_colours",
 ]
@@ -34,6 +37,10 @@ UNLABELLED_CATEGORY = 255
 
 MAX_INSTANCE_ID = 65535
 
+MAX_CATEGORY_ID = 65535
+
+Vector3 = tuple[float, float, float]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Category:
@@ -42,7 +49,7 @@ class Category:
     Attributes
     ----------
     id : int
-        1 to 254; 0 is the background and 255 the unlabelled.
+        1 to 65535 without 255; 0 is the background and 255 the unlabelled.
     name : str
         Lower-case name, e.g. ``"dining table"`` (COCO's names where COCO has the class).
     colour : (3,) tuple of int
@@ -54,10 +61,9 @@ class Category:
     colour: tuple[int, int, int]
 
     def __post_init__(self) -> None:
-        if not 0 <= self.id <= 255:
-            raise InvalidRequest(
-                f"id of category {self.name!r}", self.id, "an integer from 0 to 255"
-            )
+        if not 0 <= self.id <= MAX_CATEGORY_ID:
+            accepted = f"an integer from 0 to {MAX_CATEGORY_ID}"
+            raise InvalidRequest(f"id of category {self.name!r}", self.id, accepted)
 
 
 class CategoryTable(Mapping[int, Category]):
@@ -102,13 +108,26 @@ class CategoryTable(Mapping[int, Category]):
         return self._by_name[name]
 
     @cached_property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of the category view: uint8, or uint16 if an id is more than 255."""
+        return np.dtype(np.uint8 if max(self._by_id) <= UNLABELLED_CATEGORY else np.uint16)
+
+    @cached_property
     def palette(self) -> NDArray[np.uint8]:
-        """(256, 3) uint8 read-only: RGB colour of each category id; grey where there is none."""
-        palette = np.full((256, 3), 128, dtype=np.uint8)
+        """(65536, 3) uint8 read-only: RGB colour of each category id; grey where there is none."""
+        palette = np.full((MAX_CATEGORY_ID + 1, 3), 128, dtype=np.uint8)
         for category in self._by_id.values():
             palette[category.id] = category.colour
         palette.flags.writeable = False
         return palette
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Keypoint:
+    """A named point of an object; `position_m` is in the object's own frame [m]."""
+
+    name: str
+    position_m: Vector3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,6 +148,13 @@ class Instance:
         The category's name.
     static : bool
         True if physics never moves it.
+    low_m, high_m : (3,) tuple of float
+        Lowest and highest corner of the box around its mesh, in its own frame, its scale applied
+        [m].
+    parent : int
+        Id of the object that it is a part of; 0 for none.
+    keypoints : tuple of Keypoint
+        Those that its asset names, its scale applied.
     """
 
     id: int
@@ -137,6 +163,10 @@ class Instance:
     category_id: int
     category: str
     static: bool
+    low_m: Vector3 = (0.0, 0.0, 0.0)
+    high_m: Vector3 = (0.0, 0.0, 0.0)
+    parent: int = 0
+    keypoints: tuple[Keypoint, ...] = ()
 
 
 def instance_colours() -> NDArray[np.uint8]:

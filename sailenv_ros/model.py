@@ -224,6 +224,8 @@ class Asset:
         Mass if it may move [kg].
     centre_of_mass_m : (3,) tuple of float
         In the body frame [m].
+    keypoints : tuple of (str, (3,) tuple of float)
+        Named points in the body frame [m].
     """
 
     name: str
@@ -234,3 +236,4 @@ class Asset:
     mass_kg: float = 1.0
     centre_of_mass_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     tags: tuple[str, ...] = field(default=())
+    keypoints: tuple[tuple[str, tuple[float, float, float]], ...] = ()

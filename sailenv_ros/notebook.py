@@ -26,11 +26,17 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.object_truth.object_table import ObjectTable
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.pictures.object_pictures import (
+    draw_amodal_outlines,
+    draw_boxes,
+    draw_boxes_in_space,
+)
 from sailenv_ros.scene_info import SceneInfo
 
-__all__ = ["frame_html", "scene_html", "show"]
+__all__ = ["frame_html", "objects_html", "scene_html", "show"]
 
 TILE_WIDTH_PX = 320
 """Larger views are shown at this width."""
@@ -98,11 +104,48 @@ def scene_html(title: str, info: SceneInfo) -> str:
     return f"<div><p><b>{html.escape(title)}</b></p><table>{cells}</table></div>"
 
 
+def objects_html(table: ObjectTable) -> str:
+    """Return a table of objects as HTML: those that are visible first, the largest first.
+
+    Parameters
+    ----------
+    table : ObjectTable
+    """
+    order = np.argsort(-table.visible_pixels, kind="stable").tolist()
+    shares, truncated = table.visible_share, table.truncated_share
+    heads = ("id", "name", "category", "pixels", "box", "visible", "truncated", "distance", "size")
+    rows = [
+        (
+            str(table.ids[row]),
+            table.names[row],
+            table.categories[row],
+            str(table.visible_pixels[row]) if table.visible_pixels[row] else "",
+            ", ".join(map(str, table.visible_boxes[row])) if table.visible_pixels[row] else "",
+            _percent(shares[row]),
+            _percent(truncated[row]),
+            "" if np.isnan(table.distances[row]) else f"{table.distances[row]:.2f} m",
+            " × ".join(f"{side:.2f}" for side in table.box_sizes[row]) + " m",
+        )
+        for row in order
+    ]
+    head = "".join(f'<th style="text-align:left">{name}</th>' for name in heads)
+    body = "".join(
+        "<tr>"
+        + "".join(f'<td style="text-align:left">{html.escape(value)}</td>' for value in row)
+        + "</tr>"
+        for row in rows
+    )
+    seen = int(table.visible.sum())
+    about = f"{len(table)} objects, {seen} of them visible"
+    return f"<div><p><b>{about}</b></p><table><tr>{head}</tr>{body}</table></div>"
+
+
 def show(
     frame: Frame | Mapping[str, Any],
     path: str | Path | None = None,
     *,
     categories: CategoryTable | None = None,
+    objects: bool = False,
 ) -> Path | None:
     """Show all views of a frame: in a notebook below the cell, elsewhere as a PNG file.
 
@@ -118,6 +161,9 @@ def show(
         folder for temporary files.
     categories : CategoryTable or None
         Colours of the categories; None takes the fixed table.
+    objects : bool
+        True shows what is known of a `Frame`'s objects too: boxes, boxes in space, and the
+        outlines of whole objects where they can be drawn.
 
     Returns
     -------
@@ -130,11 +176,13 @@ def show(
         If the frame has no view, or the name of the file does not end in ``.png`` or ``.jpg``.
     """
     pictures = _pictures(frame, categories)
+    if objects and isinstance(frame, Frame):
+        pictures |= _object_pictures(frame)
     if not pictures:
         raise InvalidRequest("frame", type(frame).__name__, "a frame with at least one view")
     written = None if path is None else save_contact_sheet(path, pictures)
     if _in_a_notebook():
-        if isinstance(frame, Frame):
+        if isinstance(frame, Frame) and not objects:
             text = frame_html(frame, categories=categories)
         else:
             tiles = "".join(_tile(name, picture) for name, picture in pictures.items())
@@ -157,6 +205,22 @@ def _pictures(
     """Return (H, W, 3) RGB pictures of all views, by their names."""
     table = load_categories() if categories is None else categories
     return {name: view_picture(name, values, table=table) for name, values in _views(frame).items()}
+
+
+def _object_pictures(frame: Frame) -> dict[str, NDArray[np.uint8]]:
+    """Return the picture with what is known of the objects drawn over it."""
+    below = frame.views.get("rgb")
+    if below is None:
+        height, width = frame.camera.intrinsics.height, frame.camera.intrinsics.width
+        below = np.zeros((height, width, 3), np.uint8)
+    pictures = {
+        "boxes": draw_boxes(below, frame.objects),
+        "boxes in space": draw_boxes_in_space(below, frame.objects),
+    }
+    if frame.draw_alone is not None:
+        shown = frame.objects.select(frame.objects.visible)
+        pictures["whole objects"] = draw_amodal_outlines(below, frame.amodal, shown.ids.tolist())
+    return pictures
 
 
 def _views(frame: Frame | Mapping[str, Any]) -> dict[str, NDArray[Any]]:
@@ -187,6 +251,10 @@ def _tile(name: str, picture: NDArray[np.uint8]) -> str:
         f'height="{image.height}" src="data:image/png;base64,{text}">'
         f"<figcaption>{label}</figcaption></figure>"
     )
+
+
+def _percent(share: float) -> str:
+    return "" if np.isnan(share) else f"{100.0 * share:.0f} %"
 
 
 def _listed(names: Iterable[str], most: int = 8) -> str:

@@ -8,14 +8,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
 
-__all__ = ["MoverInfo", "SceneInfo", "SceneObject", "TimeMode"]
+__all__ = ["InstanceColumns", "MoverInfo", "SceneInfo", "SceneObject", "TimeMode"]
 
 TimeMode = Literal["realtime", "lockstep"]
 
@@ -65,6 +68,30 @@ class SceneObject:
     category: str
     static: bool
     moving: bool
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class InstanceColumns:
+    """The objects of a scene as columns, in the order of their ids; arrays are read-only.
+
+    Attributes
+    ----------
+    ids, category_ids, parents : (N,) uint16
+    names, categories, assets : (N,) tuple of str
+    static : (N,) bool
+    low_m, high_m : (N, 3) float64
+        See `Instance`.
+    """
+
+    ids: NDArray[np.uint16]
+    category_ids: NDArray[np.uint16]
+    parents: NDArray[np.uint16]
+    names: tuple[str, ...]
+    categories: tuple[str, ...]
+    assets: tuple[str, ...]
+    static: NDArray[np.bool_]
+    low_m: NDArray[np.float64]
+    high_m: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -134,3 +161,24 @@ class SceneInfo:
             )
             for instance in self.instances
         }
+
+    @cached_property
+    def instance_columns(self) -> InstanceColumns:
+        """The objects as columns."""
+        ordered = sorted(self.instances, key=lambda instance: instance.id)
+        arrays: dict[str, Any] = {
+            "ids": np.array([one.id for one in ordered], np.uint16),
+            "category_ids": np.array([one.category_id for one in ordered], np.uint16),
+            "parents": np.array([one.parent for one in ordered], np.uint16),
+            "static": np.array([one.static for one in ordered], np.bool_),
+            "low_m": np.array([one.low_m for one in ordered], np.float64).reshape(-1, 3),
+            "high_m": np.array([one.high_m for one in ordered], np.float64).reshape(-1, 3),
+        }
+        for values in arrays.values():
+            values.flags.writeable = False
+        return InstanceColumns(
+            names=tuple(one.name for one in ordered),
+            categories=tuple(one.category for one in ordered),
+            assets=tuple(one.asset for one in ordered),
+            **arrays,
+        )

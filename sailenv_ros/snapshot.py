@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,9 +79,9 @@ class SceneContents:
         return ids
 
     @cached_property
-    def category_of_instance(self) -> NDArray[np.uint8]:
-        """(65536,) uint8 read-only: category id of each instance id, 0 where there is none."""
-        table = np.zeros(65536, dtype=np.uint8)
+    def category_of_instance(self) -> NDArray[Any]:
+        """(65536,) read-only, of `CategoryTable.dtype`: category id of each instance id, else 0."""
+        table = np.zeros(65536, dtype=self.categories.dtype)
         for drawn in self.instances:
             table[drawn.instance.id] = drawn.instance.category_id
         table.flags.writeable = False

@@ -15,6 +15,7 @@ from sailenv_msgs_py.object_msgs import (
     object_state_from_response,
     object_state_to_response,
 )
+from sailenv_msgs_py.object_truth_msgs import amodal_mask_to_msgs, amodal_masks_from_msgs
 from sailenv_msgs_py.services.service import Arguments, Service
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg
@@ -22,6 +23,7 @@ from sailenv_ros.agents import AgentPose
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import Operations
 from sailenv_ros.operations.argument_checks import pose_of
 from sailenv_ros.picture_settings import NAMES
@@ -174,6 +176,11 @@ def _fill_frame(response: Any, frame: Frame, info: SceneInfo) -> None:
     response.sequence = frame.sequence
 
 
+def _fill_masks(response: Any, masks: AmodalMasks, info: SceneInfo) -> None:
+    response.height, response.width = masks.height, masks.width
+    response.masks = amodal_mask_to_msgs(masks)
+
+
 SIMULATOR_SERVICES: tuple[Service, ...] = (
     # agents
     Service(
@@ -304,6 +311,14 @@ AGENT_SERVICES: tuple[Service, ...] = (
     Service(Operations.get_picture, srv.GetPicture),
     Service(Operations.set_picture, srv.SetPicture, write=_write_picture),
     Service(Operations.capture, srv.Capture, none={"views": []}, fill=_fill_frame),
+    Service(
+        Operations.get_amodal_masks,
+        srv.GetAmodalMasks,
+        fill=_fill_masks,
+        result=lambda response: amodal_masks_from_msgs(
+            response.masks, response.height, response.width
+        ),
+    ),
 )
 """Services of each agent."""
 

@@ -11,6 +11,7 @@ import select
 import socket
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
 
@@ -100,7 +101,7 @@ class DirectFrames:
         """
         height, width = intrinsics.height, intrinsics.width
         sizes = (
-            math.prod(VIEWS[view].shape(height, width)) * VIEWS[view].dtype.itemsize
+            math.prod(VIEWS[view].shape(height, width)) * VIEWS[view].dtypes[-1].itemsize
             for view in views
             if view in VIEWS
         )
@@ -131,7 +132,9 @@ class DirectFrames:
         height, width = header["height"], header["width"]
         whole = self._pool.lend(segment)
         arrays = {
-            view: view_of(whole, begin, VIEWS[view].dtype, VIEWS[view].shape(height, width))
+            view: view_of(
+                whole, begin, np.dtype(header["types"][view]), VIEWS[view].shape(height, width)
+            )
             for view, begin in header["places"].items()
         }
         if self._pool.is_short:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs.srv import Capture
 from sailenv_msgs_py.error_codes import error_from_response
+from sailenv_msgs_py.services import SERVICES
 from sailenv_ros.agent.direct_frames import DirectFrames, Disconnected
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.agent.frame_topics import AgentTopics
@@ -25,6 +27,8 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.frame import Frame
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
+from sailenv_ros.operations import Operations
 from sailenv_ros.scene_info import SceneInfo
 
 __all__ = ["FrameClient"]
@@ -173,7 +177,16 @@ class FrameClient:
         scene = self._remote.connection.await_revision(info.revision, _left_s(deadline))
         if scene is None:
             return None
-        return frame_of_info(info, views, self._intrinsics(scene), scene)
+        draw = partial(self._amodal_masks, info.sequence)
+        return frame_of_info(info, views, self._intrinsics(scene), scene, draw)
+
+    def _amodal_masks(self, sequence: int, only: int = 0) -> AmodalMasks:
+        """Have the objects of a frame drawn alone, which must be the agent's last."""
+        operation = Operations.get_amodal_masks
+        arguments = operation.signature.bind(sequence=sequence, agent=self._spec.name)
+        masks = self._remote.call(SERVICES[operation.name], arguments, operation.deadline_s)
+        assert isinstance(masks, AmodalMasks)
+        return masks
 
     def _intrinsics(self, scene: SceneInfo) -> CameraIntrinsics:
         specs = {spec.name: spec for spec in scene.agents}

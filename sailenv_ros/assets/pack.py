@@ -39,6 +39,8 @@ AssetName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,62}$")]
 Text = Annotated[str, Field(max_length=300)]
 Checksum = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 FilePath = Annotated[str, Field(pattern=r"^[^/\x00-\x1f][^\x00-\x1f]{0,299}$")]
+KeypointName = Annotated[str, Field(pattern=r"^[^\x00-\x1f]{1,63}$")]
+Coordinate = Annotated[float, Field(ge=-100.0, le=100.0)]
 Metres = Annotated[float, Field(gt=0.0, le=100.0)]
 
 
@@ -52,6 +54,8 @@ class PackEntry(_PackModel):
     Attributes
     ----------
     name, display_name, category : str
+    keypoints : mapping of str to (3,) tuple of float
+        Named points in the body frame [m]: ``{left front foot: [0.2, 0.2, 0.0]}``.
     file : str
         Of the model, in the pack's folder.
     sha256 : str
@@ -75,6 +79,9 @@ class PackEntry(_PackModel):
     collision: Literal["box", "cylinder", "sphere", "hulls", "none"] = "hulls"
     triangles: Annotated[int, Field(ge=1)]
     tags: tuple[Text, ...] = ()
+    keypoints: dict[KeypointName, tuple[Coordinate, Coordinate, Coordinate]] = Field(
+        default_factory=dict, max_length=256
+    )
     author: Text = ""
     licence: Text = ""
     source: Text = ""
@@ -169,6 +176,7 @@ class AssetPack:
             mass_kg=entry.mass,
             centre_of_mass_m=(x, y, z),
             tags=entry.tags,
+            keypoints=tuple(entry.keypoints.items()),
         )
 
     def check_file(self, path: Path) -> None:

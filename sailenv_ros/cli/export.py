@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sailenv_ros.recording.export import Summary
+    from sailenv_ros.recording.export import DatasetSummary
 
 __all__ = ["add_parser", "run"]
 
-_FORMATS = ("png", "coco", "kitti", "flo", "mp4")
+_FORMATS = (*("png", "coco", "kitti", "flo", "mp4", "bop", "mot", "yolo", "yolo_segments", "voc"),)
 
 
 def add_parser(subparsers: Any) -> None:
@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _text_of(summary: Summary) -> str:
+def _text_of(summary: DatasetSummary) -> str:
     lines = [f"{summary.frames} frames as {', '.join(summary.formats)}"]
     if summary.splits:
         lines[0] += f" ({_counts(summary.splits)})"

@@ -37,6 +37,9 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("--agents", nargs="+", default=[], metavar="NAME", help="default: all")
     parser.add_argument("--views", nargs="+", default=[], metavar="VIEW", help="default: all five")
+    parser.add_argument(
+        "--amodal", action="store_true", help="draw each object alone: record amodal masks too"
+    )
     parser.add_argument("--namespace", default="/sailenv", help="default: %(default)s")
     parser.add_argument("--compression", choices=("zstd", "lz4", "none"), default="zstd")
     parser.add_argument("--split-size", default="0", metavar="SIZE", help="per file, e.g. 2G")
@@ -106,6 +109,7 @@ def _lockstep(args: argparse.Namespace, output: Path, options: RecordingOptions)
                 frames=args.frames,
                 agents=args.agents,
                 views=args.views,
+                amodal=args.amodal,
                 namespace=args.namespace,
                 on_frame=progress.frame_done,
             )
@@ -123,6 +127,7 @@ def _become_the_node(args: argparse.Namespace, output: Path, options: RecordingO
         "split_s": float(options.split_s),
         "progress": not args.quiet,
         "snapshot_s": float(args.snapshot),
+        "amodal": args.amodal,
     }
     if args.agents:
         parameters["agents"] = args.agents

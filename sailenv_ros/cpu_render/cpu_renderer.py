@@ -27,7 +27,7 @@ from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.finishing import Finisher
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
-__all__ = ["NativeRenderer"]
+__all__ = ["NativeRenderer", "native_view"]
 
 _ATTRIBUTES = ("normals", "albedo")
 """Views that the library writes as they are; `Drawing.picture` takes an array for each."""
@@ -62,6 +62,11 @@ class NativeRenderer:
         """One line: back end, instruction set, threads."""
         threads = "1 thread" if self._threads == 1 else f"{self._threads} threads"
         return f"native renderer on the CPU ({native_library().instruction_set}, {threads})"
+
+    @property
+    def part_table(self) -> PartTable:
+        """The meshes that are shown; for who draws in the same thread."""
+        return self._table
 
     @property
     def software(self) -> bool:
@@ -139,7 +144,7 @@ class NativeRenderer:
         if light is not None and not sampled:
             radiance = arrays["rgb"] = np.empty((height, width, 4), np.float16)
         self._drawing.picture(
-            _view(camera),
+            native_view(camera),
             instances,
             table.opaque,
             table.glass,
@@ -155,7 +160,7 @@ class NativeRenderer:
             if camera.picture.occlusion_strength > 0.0:
                 arrays["samples"] = np.empty((height, width, 2), np.float32)
             self._drawing.picture(
-                _view(fine),
+                native_view(fine),
                 instances,
                 table.opaque,
                 table.glass,
@@ -183,7 +188,7 @@ class NativeRenderer:
         at_baked_pose = self._table.at_baked_pose(snapshot)
         radiance = np.empty((camera.intrinsics.height, camera.intrinsics.width, 4), np.float16)
         self._drawing.picture(
-            _view(camera),
+            native_view(camera),
             self._table.instances(poses, at_baked_pose, only),
             parts,
             _NO_GLASS,
@@ -201,7 +206,8 @@ class NativeRenderer:
         return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
 
 
-def _view(camera: Camera) -> NDArray[np.void]:
+def native_view(camera: Camera) -> NDArray[np.void]:
+    """Return (1,) VIEW of a camera, as the native kernels read it."""
     lens = camera.intrinsics
     return record(
         VIEW,

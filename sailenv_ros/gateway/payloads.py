@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import ProtocolError
 from sailenv_ros.frame import Frame
 from sailenv_ros.gateway.codec import pack_floats, pack_ints
-from sailenv_ros.labels import instance_colours
+from sailenv_ros.labels import UNLABELLED_CATEGORY, instance_colours
 from sailenv_ros.pictures.colours import grey_depth
 
 __all__ = ["packed_frame", "views_of_flags"]
@@ -98,7 +98,9 @@ def _depth(depth_m: NDArray[np.float32], span_m: tuple[float, float]) -> bytes:
     return _picture(grey_depth(depth_m, near_m=span_m[0], range_m=span_m[1]))
 
 
-def _category(category: NDArray[np.uint8], _: tuple[float, float]) -> bytes:
+def _category(category: NDArray[Any], _: tuple[float, float]) -> bytes:
+    # The client reads eight bits: what has a larger id is unlabelled there.
+    category = np.minimum(category, UNLABELLED_CATEGORY)
     pixels = np.zeros((*category.shape, 3), dtype=np.uint8)
     pixels[..., 0] = category[::-1]
     return pixels.tobytes()

@@ -144,8 +144,9 @@ class CaptureServer:
             frame, header_of_frame(frame), views=frame.views, depth_range_m=frame.depth_range_m
         )
         places, lens = _written(frame.views, memory), frame.camera.intrinsics
+        types = {view: values.dtype.str for view, values in frame.views.items()}
         return (
-            {"places": places, "height": lens.height, "width": lens.width},
+            {"places": places, "types": types, "height": lens.height, "width": lens.width},
             [serialize_message(info)],
         )
 

@@ -108,7 +108,8 @@ def compressed_view(view: str, values: NDArray[Any], header: Header) -> Compress
     InvalidRequest
         If that view is not compressed.
     """
-    codec, encoding = view_spec(view).compressed_topic, view_spec(view).encoding
+    spec = view_spec(view)
+    codec, encoding = spec.compressed_topic, spec.encoding_of(values.dtype)
     if codec is None:
         compressed = ", ".join(name for name, spec in VIEWS.items() if spec.compressed_topic)
         raise InvalidRequest("view to compress", view, f"one of: {compressed}")

@@ -28,6 +28,7 @@ from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
 from sailenv_ros.frame import ALWAYS_MADE, Frame
 from sailenv_ros.nodes.derived_topics import DerivedTopics
 from sailenv_ros.nodes.diagnostics import AgentCounts, FrameCounter
+from sailenv_ros.nodes.object_topics import ObjectTopics
 from sailenv_ros.nodes.qos import frame_qos, no_events, overridable
 from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import FrameStream, Simulation
@@ -70,6 +71,7 @@ class AgentPublisher:
             depth_range_m=spec.depth_range_m,
             categories=lambda: simulation.info.categories,
         )
+        self._objects = ObjectTopics(self._publisher)
         self._counter = FrameCounter()
         self._publishing = threading.Lock()
         self._closing = threading.Event()
@@ -147,7 +149,12 @@ class AgentPublisher:
             self._thread.join(1.0)
         with self._publishing:
             infos = (self._camera_info, self._frame_info, self._pose)
-            for publisher in (*self._images.values(), *infos, *self._derived.publishers):
+            for publisher in (
+                *self._images.values(),
+                *infos,
+                *self._derived.publishers,
+                *self._objects.publishers,
+            ):
                 self._node.destroy_publisher(publisher)
 
     # -- the thread ------------------------------------------------------------------------
@@ -173,7 +180,7 @@ class AgentPublisher:
                 self._publish_streamed(frame)
 
     def _wanted_views(self) -> tuple[str, ...]:
-        shown = self._derived.wanted_views()
+        shown = self._derived.wanted_views() | self._objects.wanted_views()
         wanted = tuple(
             view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
         )
@@ -231,6 +238,7 @@ class AgentPublisher:
         self._tf.publish(self._spec.name, frame.camera.pose, header.stamp)
         # Last, as they take time and nobody waits for them.
         self._derived.publish(frame, header)
+        self._objects.publish(frame, header)
         self._counter.add(frame, time.perf_counter() - began)
         return tuple(sent)
 

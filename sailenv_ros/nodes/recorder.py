@@ -35,7 +35,14 @@ from sailenv_ros.nodes.lifecycle import StopRequest
 from sailenv_ros.nodes.parameter_table import Parameter
 from sailenv_ros.nodes.parameters import declare_table
 from sailenv_ros.nodes.running import run_node
-from sailenv_ros.recording.channels import AGENT_TOPICS, CLOCK, SCENE_INFO, message_of, topic
+from sailenv_ros.recording.channels import (
+    AGENT_TOPICS,
+    CLOCK,
+    ON_REQUEST,
+    SCENE_INFO,
+    message_of,
+    topic,
+)
 from sailenv_ros.recording.completeness import CompletenessCounter
 from sailenv_ros.recording.progress import progress_line
 from sailenv_ros.recording.queue_writer import QueueWriter
@@ -64,6 +71,7 @@ PARAMETERS = {
     "output": Parameter("", "Folder of the bag, which must not exist; empty: by the time."),
     "agents": Parameter([""], "Names of the agents; empty: all, also those that come later."),
     "views": Parameter([""], "Views that are recorded, and so rendered; empty: the five."),
+    "amodal": Parameter(False, "True: draw each object alone and record amodal masks too."),
     "clock": Parameter(True, "True: record /clock."),
     "compression": Parameter(
         "zstd", "Of the file's chunks.", choices=("zstd", "lz4", "none")
@@ -99,6 +107,8 @@ class Recorder:
     writer : QueueWriter or SnapshotBuffer
     agents, views : sequence of str
         No agents means all.
+    amodal : bool
+        Whether amodal masks are recorded.
     clock : bool
         Whether /clock is recorded.
     """
@@ -110,12 +120,13 @@ class Recorder:
         *,
         agents: Sequence[str],
         views: Sequence[str],
+        amodal: bool,
         clock: bool,
     ) -> None:
         self._node = node
         self._writer = writer
         self._agents = tuple(agents)
-        self._views = tuple(views)
+        self._kept = (*views, *(ON_REQUEST if amodal else ()))
         self._namespace = node.get_namespace().rstrip("/")
         self._taken: dict[str, int] = {}  # messages of each topic that is subscribed to
         self._counters: dict[str, CompletenessCounter] = {}
@@ -171,7 +182,7 @@ class Recorder:
 
     def _subscribe_agent(self, agent: str) -> None:
         for name, type_name in AGENT_TOPICS.items():
-            if name not in VIEWS or name in self._views:
+            if name not in (*VIEWS, *ON_REQUEST) or name in self._kept:
                 self._subscribe(f"{self._namespace}/{agent}/{name}", type_name, agent)
 
     def _subscribe(self, name: str, type_name: str, agent: str = "") -> None:
@@ -289,6 +300,7 @@ def _record(node: Node, stop: StopRequest) -> int:
             writer,
             agents=[agent for agent in values["agents"] if agent],
             views=views,
+            amodal=values["amodal"],
             clock=values["clock"],
         )
         executor.add_node(node)

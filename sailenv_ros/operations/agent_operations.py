@@ -13,13 +13,14 @@ from numpy.typing import ArrayLike
 
 from sailenv_ros.agents import AgentPose, AgentSpec, checked_rate
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.frame import FIVE_VIEWS, Frame
 from sailenv_ros.geometry import Pose
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.validation import vector
+from sailenv_ros.validation import checked_integer, vector
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -37,6 +38,10 @@ def _intrinsics(what: str, value: object) -> CameraIntrinsics:
     if not isinstance(value, CameraIntrinsics):
         raise InvalidRequest(what, value, "a sailenv_ros.camera.CameraIntrinsics")
     return value
+
+
+def _frame_number(what: str, value: object) -> int:
+    return checked_integer(what, value, 0, 2**63 - 1)
 
 
 class AgentOperations(Caller):
@@ -220,6 +225,43 @@ class AgentOperations(Caller):
         """
         record = core.agents[agent]
         return core.render(record, record.spec.views if views is None else views)
+
+    @operation(sequence=_frame_number)
+    @staticmethod
+    def get_amodal_masks(
+        core: SimulationCore, sequence: int = 0, *, agent: str | None = None
+    ) -> AmodalMasks:
+        """Draw each object of an agent's last frame alone: what it covers, whatever hides it.
+
+        `Frame.amodal` asks for it.
+
+        Parameters
+        ----------
+        sequence : int
+            Number of the frame; 0 for whichever was the last.
+        agent : str or None
+
+        Returns
+        -------
+        masks : AmodalMasks
+            Those that an `Agent` receives have no depths.
+
+        Raises
+        ------
+        InvalidState
+            If that frame was not the agent's last, or it has none yet.
+        NativeLibraryError
+            If there is no native library, which draws them.
+        """
+        record = core.agents[agent]
+        if record.latest is None:
+            raise InvalidState(f"agent {record.spec.name!r} has no frame yet; capture one first")
+        if sequence not in (0, record.sequence):
+            raise InvalidState(
+                f"frame {sequence} is no longer the last of agent {record.spec.name!r}, which is "
+                f"{record.sequence}; ask for amodal masks before the next frame"
+            )
+        return core.draw_alone(record.latest.snapshot, record.latest.camera)
 
     def get_frame(self, views: Sequence[str] = (), *, agent: str | None = None) -> dict[str, Any]:
         """Render one frame now and return it as the dict of the SAILenv client.

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.object_truth.visible_parts import VisibleParts, visible_parts
 from sailenv_ros.operations.operation import Caller
-from sailenv_ros.pictures.boxes import Boxes, instance_boxes
 from sailenv_ros.pictures.colours import colour_categories, colour_flow, view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.pictures.object_pictures import draw_boxes
 
 __all__ = ["FramePictures", "frame_pictures"]
 
@@ -57,11 +58,21 @@ def frame_pictures(
 class FramePictures(Caller):
     """Pictures of frames for people, and boxes for detectors."""
 
-    def save_contact_sheet(self, path: str | Path, frame: Mapping[str, Any]) -> Path:
-        """Write all views of a frame as one labelled PNG file; return its path."""
+    def save_contact_sheet(
+        self, path: str | Path, frame: Mapping[str, Any], *, boxes: bool = False
+    ) -> Path:
+        """Write all views of a frame as one labelled PNG file; return its path.
+
+        With `boxes` the picture shows the box and the category of each object that is visible.
+        """
         ranges = {spec.name: spec.depth_range_m for spec in self.info.agents}
         table, range_m = self.info.categories, ranges.get(self.own_agent or "", 10.0)
-        return save_contact_sheet(path, frame_pictures(frame, table, depth_range_m=range_m))
+        pictures = frame_pictures(frame, table, depth_range_m=range_m)
+        if boxes and "main" in pictures:
+            known = frame.get("instances", {})
+            names = {id_: instance.category for id_, instance in known.items()}
+            pictures["main"] = draw_boxes(pictures["main"], self.boxes(frame), names)
+        return save_contact_sheet(path, pictures)
 
     def colour_categories(self, category: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """Show a category view as (H, W, 3) uint8 BGR, each category in its own colour."""
@@ -83,7 +94,7 @@ class FramePictures(Caller):
         return _reversed(colour_flow(flow, full_px_s=full_px_s))
 
     @staticmethod
-    def boxes(frame: Mapping[str, Any]) -> Boxes:
+    def boxes(frame: Mapping[str, Any]) -> VisibleParts:
         """Return the box and the number of visible pixels of each instance that is seen.
 
         Raises
@@ -93,7 +104,7 @@ class FramePictures(Caller):
         """
         if "instance" not in frame:
             raise UnknownName("view of the frame", "instance", [k for k in frame if k != "sizes"])
-        return instance_boxes(frame["instance"])
+        return visible_parts(frame["instance"])
 
 
 def _reversed(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:

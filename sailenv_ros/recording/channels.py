@@ -19,6 +19,7 @@ from std_msgs.msg import Header
 from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
 from sailenv_msgs_py.images import image_from_view
+from sailenv_msgs_py.object_truth_msgs import objects_to_msg
 from sailenv_msgs_py.scene_msgs import scene_info_to_msg
 from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.errors import RecordingError
@@ -33,10 +34,13 @@ __all__ = [
     "CLOCK",
     "FRAME_INFO",
     "IMAGE",
+    "OBJECTS",
+    "ON_REQUEST",
     "SCENE_INFO",
     "agent_topics",
     "clock_message",
     "frame_messages",
+    "is_present_form",
     "message_of",
     "present_form",
     "scene_info_message",
@@ -47,6 +51,7 @@ __all__ = [
 IMAGE = "sensor_msgs/msg/Image"
 FRAME_INFO = "sailenv_msgs/msg/FrameInfo"
 SCENE_INFO = "sailenv_msgs/msg/SceneInfo"
+OBJECTS = "sailenv_msgs/msg/Objects"
 CLOCK = "rosgraph_msgs/msg/Clock"
 
 AGENT_TOPICS = {
@@ -54,8 +59,12 @@ AGENT_TOPICS = {
     "camera_info": "sensor_msgs/msg/CameraInfo",
     "frame_info": FRAME_INFO,
     "pose": "geometry_msgs/msg/PoseStamped",
+    "objects/amodal": OBJECTS,
 }
 """Type of each topic of an agent, by its name below the agent's."""
+
+ON_REQUEST = ("objects/amodal",)
+"""Topics that are recorded only if it is asked for."""
 
 _QOS = {
     SCENE_INFO: OfferedQos(depth=1, durability="transient_local"),
@@ -70,6 +79,9 @@ _LITTLE_ENDIAN_CDR = b"\x00\x01"
 
 _NEWER_FIELD = "has_states"
 """What the definition of `FrameInfo` did not have in version 0.2.0."""
+
+_NEWER_FIELD_OF_OBJECTS = "keypoints"
+"""What the definition of `Instance`, a part of `SceneInfo`, did not have in version 0.2.0."""
 
 _LONGEST_APPENDIX = 64
 """Bytes that all newer fields take where they are empty, and more [B]."""
@@ -90,17 +102,28 @@ def topic(name: str, type_name: str, qos: OfferedQos | None = None) -> RecordedT
 
 
 def agent_topics(namespace: str, agent: str, views: Iterable[str]) -> list[RecordedTopic]:
-    """Return the topics that an agent's frames are recorded on."""
+    """Return the topics that an agent's frames are recorded on.
+
+    Parameters
+    ----------
+    namespace, agent : str
+    views : iterable of str
+        Views, and what else is recorded of `ON_REQUEST`.
+    """
     wanted = set(views)
     return [
         topic(f"{namespace}/{agent}/{name}", type_name)
         for name, type_name in AGENT_TOPICS.items()
-        if name in wanted or name not in VIEWS
+        if name in wanted or name not in (*VIEWS, *ON_REQUEST)
     ]
 
 
-def frame_messages(frame: Frame, depth_range_m: float) -> Iterator[tuple[str, Parts]]:
+def frame_messages(
+    frame: Frame, depth_range_m: float, *, amodal: bool = False
+) -> Iterator[tuple[str, Parts]]:
     """Return everything that is recorded of a frame, by topics' names below the agent's.
+
+    With `amodal` its objects are drawn alone.
 
     The images' bytes are the frame's own; the info closes the frame, as it does on DDS.
     """
@@ -112,6 +135,9 @@ def frame_messages(frame: Frame, depth_range_m: float) -> Iterator[tuple[str, Pa
     yield "camera_info", (serialize_message(camera_info),)
     pose = pose_stamped_to_msg(frame.camera.pose, header.stamp, WORLD_FRAME_ID)
     yield "pose", (serialize_message(pose),)
+    if amodal:
+        objects = objects_to_msg(frame, header, frame.amodal)
+        yield "objects/amodal", (serialize_message(objects),)
     info = frame_info_to_msg(frame, header, views=views, depth_range_m=depth_range_m)
     yield "frame_info", (serialize_message(info),)
 
@@ -146,6 +172,11 @@ def present_form(topic: RecordedTopic, data: Buffer) -> Buffer:
     if topic.type == FRAME_INFO and _NEWER_FIELD not in topic.schema:
         return bytes(data) + bytes(_LONGEST_APPENDIX)
     return data
+
+
+def is_present_form(topic: RecordedTopic) -> bool:
+    """Tell if messages of a topic can be read: a `SceneInfo` has changed since version 0.2.0."""
+    return topic.type != SCENE_INFO or _NEWER_FIELD_OF_OBJECTS in topic.schema
 
 
 def _deserialize(type_name: str, data: Buffer) -> Any:

@@ -6,8 +6,10 @@ number; as for a live client, those recorded between two frames' infos belong to
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,15 +18,20 @@ from numpy.typing import NDArray
 from sailenv_msgs_py.camera_info import intrinsics_from_camera_info
 from sailenv_msgs_py.frame_info import camera_of_frame_info, states_of_frame_info
 from sailenv_msgs_py.images import view_from_image
+from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.frame import VIEWS, DrawAlone, Frame
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.channels import (
     FRAME_INFO,
     IMAGE,
+    OBJECTS,
+    ON_REQUEST,
     SCENE_INFO,
+    is_present_form,
     message_of,
     present_form,
 )
@@ -33,6 +40,8 @@ from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.validation import is_integer
 
 __all__ = ["RecordedFrames", "recorded_agents"]
+
+_log = logging.getLogger(__name__)
 
 
 def recorded_agents(reader: RecordingReader) -> dict[str, str]:
@@ -157,6 +166,7 @@ class RecordedFrames(Sequence[Frame]):
             timings_s={"render": info.render_s},
             info=scene_info,
             states=states_of_frame_info(info),
+            draw_alone=self._amodal_reader(index),
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -186,7 +196,33 @@ class RecordedFrames(Sequence[Frame]):
         info = self._entries[self.position(index)].info
         return self._intrinsics(info, self.scene_info(index))
 
+    def _amodal_reader(self, index: int) -> DrawAlone | None:
+        """Return what reads the amodal masks of a frame; None if they were not recorded."""
+        info = self._entries[self.position(index)].info
+        row = self._amodal_rows.get((ns_from_stamp(info.header.stamp), info.sequence))
+        if row is None:
+            return None
+
+        def read(only: int = 0) -> AmodalMasks:
+            message = self._message(row)
+            masks = (one.amodal for one in message.objects)
+            return amodal_masks_from_msgs(masks, message.height, message.width)
+
+        return read
+
     # -- inside ----------------------------------------------------------------------------
+
+    @cached_property
+    def _amodal_rows(self) -> dict[tuple[int, int], int]:
+        """Rows of the messages with amodal masks, by the stamp and the number of their frames."""
+        name = f"{self._prefix}/{ON_REQUEST[0]}"
+        if getattr(self._topics.get(name), "type", "") != OBJECTS:
+            return {}
+        found = {}
+        for row in self._reader.rows(name).tolist():
+            message = self._message(row)
+            found[ns_from_stamp(message.header.stamp), message.sequence] = row
+        return found
 
     def _intrinsics(self, info: Any, scene_info: SceneInfo | None) -> CameraIntrinsics:
         specs = [] if scene_info is None else scene_info.agents
@@ -208,6 +244,13 @@ class RecordedFrames(Sequence[Frame]):
     def _scene_infos(self) -> list[tuple[int, SceneInfo]]:
         name = f"{self._prefix.rpartition('/')[0]}/scene_info"
         if getattr(self._topics.get(name), "type", "") != SCENE_INFO:
+            return []
+        if not is_present_form(self._topics[name]):
+            _log.warning(
+                "%s was recorded by an older version, whose scene_info cannot be read: names, "
+                "categories and objects of its frames are not known",
+                self._reader.path,
+            )
             return []
         rows = self._reader.rows(name)
         return [

@@ -15,6 +15,7 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.recording.channels import (
+    ON_REQUEST,
     SCENE_INFO,
     agent_topics,
     frame_messages,
@@ -65,14 +66,15 @@ class FrameRecorder:
         log_ns = self._log_ns(info.epoch, info.sim_time_ns)
         self._writer.write(name, scene_info_message(info), log_ns)
 
-    def write_frame(self, frame: Frame, depth_range_m: float) -> None:
-        """Record a frame; its views are those that it has."""
-        for entry in agent_topics(self._namespace, frame.agent, frame.views):
+    def write_frame(self, frame: Frame, depth_range_m: float, *, amodal: bool = False) -> None:
+        """Record a frame; its views are those that it has. With `amodal` its amodal masks too."""
+        kept = (*frame.views, *(ON_REQUEST if amodal else ()))
+        for entry in agent_topics(self._namespace, frame.agent, kept):
             if entry.name not in self._known:
                 self._known.add(entry.name)
                 self._writer.add_topic(entry)
         log_ns = self._log_ns(frame.epoch, frame.stamp_ns)
-        for name, parts in frame_messages(frame, depth_range_m):
+        for name, parts in frame_messages(frame, depth_range_m, amodal=amodal):
             self._writer.write(f"{self._namespace}/{frame.agent}/{name}", parts, log_ns)
 
     def _log_ns(self, epoch: int, stamp_ns: int) -> int:
@@ -103,6 +105,7 @@ def record_lockstep(
     frames: int,
     agents: Sequence[str] = (),
     views: Sequence[str] = (),
+    amodal: bool = False,
     namespace: str = "/sailenv",
     on_frame: Callable[[int], None] = lambda count: None,
 ) -> int:
@@ -119,6 +122,8 @@ def record_lockstep(
         Names; none means all.
     views : sequence of str
         Views of every frame; none means each agent's own.
+    amodal : bool
+        True records amodal masks too.
     namespace : str
         What the topics' names begin with.
     on_frame : callable
@@ -155,7 +160,7 @@ def record_lockstep(
         for frame in _frames(simulation, shots, wanted):
             while infos:
                 recorder.write_info(infos.pop(0))
-            recorder.write_frame(frame, ranges[frame.agent])
+            recorder.write_frame(frame, ranges[frame.agent], amodal=amodal)
             count += 1
             on_frame(count)
     finally:

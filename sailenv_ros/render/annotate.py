@@ -35,6 +35,8 @@ OCCLUSION_TOLERANCE = 0.01
 frame to count as hidden there: a slanted surface differs by less within one pixel up to about
 80 degrees at common fields of view, and thin gaps smaller than this are not told apart."""
 
+_NO_CATEGORIES = np.zeros(65536, np.uint8)
+
 _NO_ROW = 0
 _SKY_ROW = 1
 _FIRST_BODY_ROW = 2
@@ -113,8 +115,11 @@ def annotate(
     """
     height, width = surface.shape[:2]
     wanted = (views & frozenset(views_of("annotation"))) | {"depth"}
+    # Ids of more than eight bits are looked up afterwards, by the instance.
+    wide = "category" in wanted and snapshot.contents.categories.dtype != VIEWS["category"].dtype
+    made = (wanted - {"category"}) | {"instance"} if wide else wanted
     arrays: dict[str, NDArray[Any]] = {}
-    for name in wanted:
+    for name in made:
         spec = VIEWS[name]
         arrays[name] = np.empty(spec.shape(height, width), spec.dtype)
     moves = any(VIEWS[name].needs_past for name in wanted)
@@ -130,7 +135,7 @@ def annotate(
         rows = np.zeros_like(rows)
     annotate_pixels(
         np.ascontiguousarray(surface),
-        snapshot.contents.category_of_instance,
+        _NO_CATEGORIES if wide else snapshot.contents.category_of_instance,
         rows,
         motions,
         _lens(intrinsics),
@@ -140,6 +145,10 @@ def annotate(
         arrays,
         threads=threads,
     )
+    if wide:
+        arrays["category"] = snapshot.contents.category_of_instance[arrays["instance"]]
+        if "instance" not in wanted:
+            del arrays["instance"]
     return arrays
 
 

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
+from sailenv_ros.labels import UNLABELLED_CATEGORY
 from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.fields import Rule
 from sailenv_ros.scene.messages import shown, shown_number, suggestion
@@ -24,7 +25,9 @@ __all__ = [
     "distinct_values",
     "few_samples",
     "movers_exist",
+    "not_unlabelled",
     "only_beside",
+    "parents_exist",
     "static_never_moves",
     "turned_where_placed",
     "unit_quaternion",
@@ -121,6 +124,27 @@ def carriers_exist(scene: Entry) -> Faults:
             on = carrier.get(on)
         if on == name:
             yield ("objects", index, "on"), "must not be an object that this one carries"
+
+
+def not_unlabelled(category: Entry) -> Faults:
+    """Refuse the id of what has no category."""
+    if category.get("id") == UNLABELLED_CATEGORY:
+        yield ("id",), f"must not be {UNLABELLED_CATEGORY}, which stands for what has no category"
+
+
+def parents_exist(scene: Entry) -> Faults:
+    """Refuse parts of what is not there, or of themselves."""
+    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
+    names = [entry["name"] for entry in objects if isinstance(entry.get("name"), str)]
+    for index, entry in enumerate(_listed(scene, "objects")):
+        parent = entry.get("part_of") if isinstance(entry, Mapping) else None
+        if not isinstance(parent, str):
+            continue
+        if parent not in names:
+            known = suggestion(parent, names, listing="its objects")
+            yield ("objects", index, "part_of"), f"the scene has no object {parent!r}; {known}"
+        elif parent == entry.get("name"):
+            yield ("objects", index, "part_of"), "must be another object than this one"
 
 
 def walls_need_a_room(scene: Entry) -> Faults:

@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.labels import Category
+from sailenv_ros.labels import MAX_CATEGORY_ID, Category
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
 from sailenv_ros.scene.room_rules import names_beside_room
@@ -21,6 +21,8 @@ from sailenv_ros.scene.rules import (
     carriers_exist,
     distinct,
     movers_exist,
+    not_unlabelled,
+    parents_exist,
     walls_need_a_room,
 )
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
@@ -56,18 +58,23 @@ __all__ = [
 ]
 
 FIRST_SCENE_CATEGORY_ID = 200
-"""Ids from here to 254 belong to scenes and packs; those below to `config/categories.yaml`."""
+"""Ids from here on, but 255, belong to scenes and packs, the others to `config/categories.yaml`."""
 
 
 class CategorySpec(SceneModel):
     """A category that the fixed table lacks."""
 
+    rules: ClassVar[tuple[Rule, ...]] = (not_unlabelled,)
+
     name: Annotated[
         str,
         Text(r"[a-z0-9][a-z0-9 _-]{0,62}", "lower-case letters, digits and spaces, at most 63"),
     ] = Field(description="not the name of another category")
-    id: Annotated[int, Number(least=FIRST_SCENE_CATEGORY_ID, most=254, whole=True)] = Field(
-        description="value of its pixels; lower ids belong to the fixed table"
+    id: Annotated[int, Number(least=FIRST_SCENE_CATEGORY_ID, most=MAX_CATEGORY_ID, whole=True)] = (
+        Field(
+            description="value of its pixels; not 255; lower ones belong to the fixed table. With "
+            "one above 255 the category view has 16 bits"
+        )
     )
     colour: (
         Annotated[str, Text("#[0-9a-fA-F]{6}", "a colour such as '#ff8800' (quoted)")] | None
@@ -93,6 +100,7 @@ class SceneSpec(SceneModel):
         distinct("id", "categories"),
         movers_exist,
         carriers_exist,
+        parents_exist,
         walls_need_a_room,
         names_beside_room,
     )
@@ -128,7 +136,7 @@ class SceneSpec(SceneModel):
         default=(), max_length=16, description="cameras that the scene brings along"
     )
     categories: tuple[CategorySpec, ...] = Field(
-        default=(), max_length=55, description="categories that the fixed table lacks"
+        default=(), max_length=10000, description="categories that the fixed table lacks"
     )
 
     @property

@@ -113,6 +113,11 @@ class ObjectSpec(Turned):
     category: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a category")] | None = Field(
         default=None, description="instead of the asset's category"
     )
+    part_of: Name | None = Field(
+        default=None,
+        description="name of the object that it is a part of: the truth about objects tells the "
+        "parent of each; nothing holds them together",
+    )
     colour: LinearColour | None = Field(
         default=None, description="paints the whole object, instead of the asset's colours"
     )

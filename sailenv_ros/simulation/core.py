@@ -16,7 +16,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.camera import Camera
+from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import Frame, checked_views
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import Operation, WorldOperations
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
@@ -27,7 +31,7 @@ from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.view_planes import view_planes
-from sailenv_ros.snapshot import Observation
+from sailenv_ros.snapshot import Observation, WorldSnapshot
 from sailenv_ros.world.world import World
 
 __all__ = ["SimulationCore"]
@@ -71,6 +75,9 @@ class SimulationCore(WorldOperations):
     scene_writer : SceneWriter
     on_info, on_step : callable
         Told each new `SceneInfo`, and the simulated time [ns] after physics advanced.
+    run_later : callable
+        Runs a function in the thread that this belongs to, and returns its result: for frames
+        whose objects are drawn alone when somebody asks for it.
     skipped_frames : int
         Streamed frames that were never rendered because the wall clock was ahead.
     """
@@ -97,8 +104,10 @@ class SimulationCore(WorldOperations):
         self.scene_writer = SceneWriter(self)
         self.on_info: Callable[[SceneInfo], None] = lambda info: None
         self.on_step: Callable[[int], None] = lambda sim_time_ns: None
+        self.run_later: Callable[[Callable[[], AmodalMasks]], AmodalMasks] = lambda draw: draw()
         self.skipped_frames = 0
         self._renderer = renderer
+        self._alone: AloneRenderer | None = None
         self._should_end = should_end
         self._revision = 0
         self._announced: SceneInfo | None = None
@@ -269,7 +278,24 @@ class SimulationCore(WorldOperations):
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
             info=info,
             states=self.world.states(),
+            draw_alone=lambda only=0: self.run_later(
+                lambda: self.draw_alone(snapshot, camera, only)
+            ),
         )
+
+    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+        """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
+
+        Raises
+        ------
+        NativeLibraryError
+            If there is no native library, which draws them.
+        """
+        if self._alone is None:
+            renderer = self._renderer
+            table = renderer.part_table if isinstance(renderer, NativeRenderer) else None
+            self._alone = AloneRenderer(table)
+        return self._alone.draw(snapshot, camera, only)
 
     def open_stream(
         self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]
@@ -288,6 +314,8 @@ class SimulationCore(WorldOperations):
             for stream in record.streams:
                 stream.end(f"the simulation has ended: {why}")
         self.world.close()
+        if self._alone is not None:
+            self._alone.close()
         self._renderer.close()
 
     # -- inside ----------------------------------------------------------------------------

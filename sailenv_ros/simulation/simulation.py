@@ -43,6 +43,7 @@ _log = logging.getLogger(__name__)
 TICK_STEPS = 2
 """Steps between two looks at the clock while no frame is due (120 per simulated second)."""
 
+_DRAW_TIMEOUT_S = 60.0
 _CLOSE_TIMEOUT_S = 10.0
 _START_TIMEOUT_S = 120.0
 
@@ -311,6 +312,7 @@ class Simulation(Operations):
             return
         self._core = core
         core.on_info, core.on_step = self._take_info, self._take_step
+        core.run_later = self._run_in_loop
         self._take_info(core.info)
         why = "it was closed"
         self._pacer.restart(core.world.step_count)
@@ -391,6 +393,13 @@ class Simulation(Operations):
             self._queue.append((future, call))
             self._wake.notify_all()
         return future
+
+    def _run_in_loop(self, call: Callable[[], T]) -> T:
+        """Run a function in the loop's thread and return its result."""
+        if threading.current_thread() is self._thread:
+            return call()
+        future = self._submit(lambda core: call())
+        return wait_for(future, "objects to be drawn alone", _DRAW_TIMEOUT_S)
 
     def _library(self) -> SceneLibrary:
         if self._core is None:

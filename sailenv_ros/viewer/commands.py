@@ -19,6 +19,7 @@ from sailenv_ros.operations import Operations
 from sailenv_ros.simulation.edit_records import EditOperations
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
+from sailenv_ros.viewer.object_overlay import overlay_of
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from sailenv_ros.viewer.recorded_commands import edits_object
 from sailenv_ros.viewer.request_arguments import Arguments
@@ -47,6 +48,20 @@ async def probe(context: CommandContext, given: Arguments) -> Any:
     """Tell the values at a pixel of a frame."""
     frame = context.frame(given.get("frame"))
     return values_at(frame, context.info, *pixel_of(frame, given.get("u"), given.get("v")))
+
+
+@_commands.looks
+async def objects(context: CommandContext, given: Arguments) -> Any:
+    """Tell what is drawn over a frame of its objects; see `object_overlay`."""
+    frame = context.frame(given.get("frame"))
+    # Drawing an object alone waits for the simulation.
+    return await asyncio.to_thread(
+        overlay_of,
+        frame,
+        boxes=given.flag("boxes"),
+        space=given.flag("space"),
+        whole=given.integer("whole"),
+    )
 
 
 @_commands.looks

@@ -88,6 +88,10 @@ class BodyTable:
             return int(obj)  # scripts of the SAILenv client hold ids as texts
         raise UnknownName("object", obj, ids)
 
+    def id_of_name(self, name: str) -> int:
+        """Return the instance id of the object of that name; 0 if there is none."""
+        return next((id_ for id_, body in self.items() if body.placement.name == name), 0)
+
     @property
     def firsts(self) -> Mapping[str, Body]:
         """The bodies of the start that are still there, by the names that they had then."""

@@ -18,7 +18,7 @@ from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import CategoryTable, Instance
+from sailenv_ros.labels import CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.spec import SceneSpec
@@ -351,7 +351,13 @@ class World:
             baked=self._baked,
         )
 
+    def _parent_of(self, placement: Placement) -> int:
+        """Return the id of the object that one is a part of; 0 if there is none (any more)."""
+        name = "" if placement.entry is None else placement.entry.part_of
+        return self._bodies.id_of_name(name) if name else 0
+
     def _drawn(self, instance_id: int, placement: Placement) -> DrawnInstance:
+        low, high = placement.asset.model.bounds().tolist()
         instance = Instance(
             id=instance_id,
             name=placement.name,
@@ -359,5 +365,17 @@ class World:
             category_id=placement.category_id,
             category=self.categories[placement.category_id].name,
             static=placement.static,
+            low_m=_scaled(low, placement.scale),
+            high_m=_scaled(high, placement.scale),
+            parent=self._parent_of(placement),
+            keypoints=tuple(
+                Keypoint(name=point, position_m=_scaled(place, placement.scale))
+                for point, place in placement.asset.keypoints
+            ),
         )
         return DrawnInstance(instance=instance, model=placement.asset.model, scale=placement.scale)
+
+
+def _scaled(point: Sequence[float], scale: Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = (float(a) * float(b) for a, b in zip(point, scale, strict=True))
+    return x, y, z

@@ -37,7 +37,8 @@ def names_and_types(heading: str) -> dict[str, str]:
     kind = "srv" if heading == "Services" else "msg"
     found = {}
     for name, type_, about in table(heading):
-        if "where `tf2_msgs` is installed" in about and find_spec("tf2_msgs") is None:
+        needed = re.search(r"where `(\w+)` is installed", about)
+        if needed and find_spec(needed[1]) is None:
             continue
         name = name.strip("`").replace("<agent>", "agent")
         package, _, word = type_.strip("`").partition("/")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -88,6 +89,17 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
             for view in ("rgb", "category", "instance")
         },
         "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+        f"{NAMESPACE}/agent/objects": "sailenv_msgs/msg/Objects",
+        f"{NAMESPACE}/agent/objects/amodal": "sailenv_msgs/msg/Objects",
+        f"{NAMESPACE}/agent/points": "sensor_msgs/msg/PointCloud2",
+        **(
+            {
+                f"{NAMESPACE}/agent/detections_{n}d": f"vision_msgs/msg/Detection{n}DArray"
+                for n in (2, 3)
+            }
+            if find_spec("vision_msgs")
+            else {}
+        ),
         f"{NAMESPACE}/agent/camera_info": "sensor_msgs/msg/CameraInfo",
         f"{NAMESPACE}/agent/frame_info": "sailenv_msgs/msg/FrameInfo",
         f"{NAMESPACE}/agent/pose": "geometry_msgs/msg/PoseStamped",

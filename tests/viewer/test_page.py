@@ -221,6 +221,41 @@ def test_the_probe_shows_the_arrays_values(opened: OpenPage, simulation: Simulat
     until(lambda: not simulation.info.paused, "time to run")
 
 
+PAINTED = """() => {
+  const over = document.querySelector(".tile.main .over");
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [over.width, over.height];
+  const pen = copy.getContext("2d", { willReadFrequently: true });
+  pen.drawImage(over, 0, 0);
+  const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
+  return bytes.filter((value, at) => at % 4 === 3 && value > 0).length;
+}"""
+"""How many pixels are drawn over the large picture."""
+
+
+def test_objects_are_drawn_over_the_picture(opened: OpenPage, simulation: Simulation) -> None:
+    """Boxes, boxes in space, the whole of what is pointed at: each adds to what is drawn."""
+    page = opened.page
+    simulation.pause()
+    opened.until(lambda: not changes(opened), "the last picture")
+    empty = page.evaluate(PAINTED)
+    for key in ("boxes", "space"):
+        page.check(f"[data-draws={key}]")
+        opened.until(lambda: page.evaluate(PAINTED) > empty, "something to be drawn")
+        page.uncheck(f"[data-draws={key}]")
+        opened.until(lambda: page.evaluate(PAINTED) == empty, "it to go")
+    frame = simulation.capture(("instance",), agent="debug_agent")
+    ids, counts = np.unique(frame["instance"][frame["instance"] > 0], return_counts=True)
+    rows, columns = np.nonzero(frame["instance"] == ids[counts.argmax()])
+    middle = len(rows) // 2
+    height, width = frame["instance"].shape
+    page.check("[data-draws=whole]")
+    page.mouse.move(*opened.at((columns[middle] + 0.5) / width, (rows[middle] + 0.5) / height))
+    opened.until(lambda: page.evaluate(PAINTED) > empty, "the whole object's outline")
+    page.uncheck("[data-draws=whole]")
+    simulation.resume()
+
+
 def changes(opened: OpenPage) -> bool:
     """True if another frame is shown within a while."""
     before = opened.frames

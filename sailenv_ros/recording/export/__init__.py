@@ -6,9 +6,9 @@ with `add(sample)` and `finish(records)`. Knows no ROS.
 
 from __future__ import annotations
 
-from sailenv_ros.recording.export.dataset_writer import DatasetWriter, FormatSummary, Summary
+from sailenv_ros.recording.export.dataset_writer import DatasetSummary, DatasetWriter, FormatSummary
 from sailenv_ros.recording.export.exporter import export
 from sailenv_ros.recording.export.formats import FORMATS
 from sailenv_ros.recording.export.splits import Splits
 
-__all__ = ["FORMATS", "DatasetWriter", "FormatSummary", "Splits", "Summary", "export"]
+__all__ = ["FORMATS", "DatasetWriter", "FormatSummary", "Splits", "DatasetSummary", "export"]

@@ -1,27 +1,28 @@
 """Frames → COCO's instance annotations: masks as run lengths, boxes, categories.
 
 The format is that of https://cocodataset.org/#format-data. An annotation is one object in one
-picture; `instance_id` joins those of one object.
+picture; `instance_id` joins those of one object. With amodal masks `amodal_segmentation`, its box
+and area, and `occlusion` (the share of the object that is hidden) are added.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.recording.export.coco_rle import run_lengths, run_lengths_text
+from sailenv_ros.assets.category_names import NAMING_SCHEMES, names_in
+from sailenv_ros.object_truth.object_table import ObjectTable
+from sailenv_ros.object_truth.run_lengths import crop_runs
+from sailenv_ros.recording.export.annotated_objects import annotated_objects, categories_of
+from sailenv_ros.recording.export.coco_rle import run_lengths_text
 from sailenv_ros.recording.export.data_files import write_json, write_png
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.recording.export.image_formats import frame_record
 
 __all__ = ["CocoExport"]
-
-_NO_CATEGORY = (0, 255)
-"""Background and unlabelled."""
 
 
 class CocoExport(DatasetFormat):
@@ -31,52 +32,65 @@ class CocoExport(DatasetFormat):
 
     def add(self, sample: Sample) -> Made:
         """Write the picture of a frame and take its objects."""
-        info, frame, number = sample.scene_info("COCO"), sample.frame, sample.number
+        frame, number = sample.frame, sample.number
+        found = annotated_objects(sample, "COCO")
         name = f"{sample.stem}.png"
         write_png(self.folder / sample.split / "images" / name, frame["rgb"])
         height, width = frame["instance"].shape
         image = {"id": number, "file_name": name, "width": width, "height": height}
-        categories = {
-            str(category.id): category.name
-            for category in info.categories.values()
-            if category.id not in _NO_CATEGORY
-        }
-        objects = {instance.id: instance for instance in info.instances}
+        table, masks = found.table, found.masks
         annotations = []
-        left_out: Counter[str] = Counter()
-        for instance_id in np.unique(frame["instance"]).tolist():
-            instance = objects.get(instance_id)
-            if instance is None or instance.category_id in _NO_CATEGORY:
-                left_out["no category"] += instance_id != 0
-                continue
-            annotations.append(
-                {
-                    "image_id": number,
-                    "category_id": instance.category_id,
-                    "instance_id": instance_id,
-                    "instance_name": instance.name,
-                    **_annotation(frame["instance"] == instance_id),
-                }
-            )
+        for row, instance_id in enumerate(table.ids.tolist()):
+            left, top, right, bottom = table.visible_boxes[row].tolist()
+            seen = frame["instance"][top : bottom + 1, left : right + 1] == instance_id
+            annotation = {
+                "image_id": number,
+                "category_id": int(table.category_ids[row]),
+                "instance_id": instance_id,
+                "instance_name": table.names[row],
+                "segmentation": _segmentation(seen, left, top, height, width),
+                "area": int(table.visible_pixels[row]),
+                "bbox": _bbox(table.visible_boxes[row]),
+                "iscrowd": 0,
+            }
+            if masks is not None:
+                crop, box = masks.crops[masks.row(instance_id)], table.amodal_boxes[row]
+                annotation |= _amodal(table, row)
+                annotation["amodal_segmentation"] = _segmentation(
+                    crop, int(box[0]), int(box[1]), height, width
+                )
+            annotations.append(annotation)
         return Made(
             record={
                 "image": {**frame_record(number, frame), **image},
-                "categories": categories,
+                "categories": categories_of(sample, "COCO"),
                 "annotations": annotations,
             },
             written={"images": 1, "annotations": len(annotations)},
-            left_out=+left_out,
+            left_out=found.left_out,
         )
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write the annotations of each split; ids of annotations count on over all of them."""
         count = 0
+        categories: dict[int, str] = {}
+        for record in records:
+            known: Mapping[str, str] = record.value["categories"]
+            categories.update({int(id_): name for id_, name in known.items()})
+        others = {scheme: names_in(scheme) for scheme in NAMING_SCHEMES}
+        listed = [
+            {
+                "id": id_,
+                "name": name,
+                "supercategory": "",
+                **{scheme: names.get(name, "") for scheme, names in others.items()},
+            }
+            for id_, name in sorted(categories.items())
+        ]
         for split in sorted({record.split for record in records}):
             own = [record.value for record in records if record.split == split]
-            categories: dict[int, str] = {}
             annotations = []
             for value in own:
-                categories.update({int(id_): name for id_, name in value["categories"].items()})
                 for annotation in value["annotations"]:
                     count += 1
                     annotations.append({"id": count, **annotation})
@@ -84,23 +98,27 @@ class CocoExport(DatasetFormat):
                 "info": {"description": "recorded by sailenv_ros"},
                 "images": [value["image"] for value in own],
                 "annotations": annotations,
-                "categories": [
-                    {"id": number, "name": name, "supercategory": ""}
-                    for number, name in sorted(categories.items())
-                ],
+                "categories": listed,
             }
             write_json(self.folder / split / "annotations.json", table)
 
 
-def _annotation(mask: NDArray[np.bool_]) -> dict[str, Any]:
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    x, y = int(columns[0]), int(rows[0])
+def _segmentation(
+    crop: NDArray[np.bool_], left: int, top: int, height: int, width: int
+) -> dict[str, Any]:
+    counts = crop_runs(crop, left, top, height, width).tolist()
+    return {"size": [height, width], "counts": run_lengths_text(counts)}
+
+
+def _amodal(table: ObjectTable, row: int) -> dict[str, Any]:
     return {
-        "segmentation": {
-            "size": list(mask.shape),
-            "counts": run_lengths_text(run_lengths(mask)),
-        },
-        "area": int(mask.sum()),
-        "bbox": [x, y, int(columns[-1]) - x + 1, int(rows[-1]) - y + 1],
-        "iscrowd": 0,
+        "amodal_area": int(table.amodal_pixels[row]),
+        "amodal_bbox": _bbox(table.amodal_boxes[row]),
+        "occlusion": float(1.0 - table.visible_share[row]),
+        "truncation": float(table.truncated_share[row]),
     }
+
+
+def _bbox(box: NDArray[np.int32]) -> list[int]:
+    left, top, right, bottom = box.tolist()
+    return [left, top, right - left + 1, bottom - top + 1]

@@ -1,27 +1,18 @@
-"""Masks as COCO's run lengths, and their compressed text."""
+"""The compressed text in which COCO's files hold the run lengths of masks."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Iterable
 
-__all__ = ["run_lengths", "run_lengths_text"]
-
-
-def run_lengths(mask: NDArray[np.bool_]) -> list[int]:
-    """Return lengths of runs of a mask, column by column: first of False, which may be 0."""
-    flat = mask.ravel(order="F")
-    changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
-    lengths = np.diff(np.concatenate([[0], changes, [flat.size]])).tolist()
-    return [0, *lengths] if flat.size and flat[0] else lengths
+__all__ = ["run_lengths_text"]
 
 
-def run_lengths_text(lengths: list[int]) -> str:
+def run_lengths_text(counts: Iterable[int]) -> str:
     """Write run lengths as COCO does: five bits a letter, from the third on as differences.
 
     P. Dollár, T.-Y. Lin, common/maskApi.c of the COCO API: rleToString.
     """
-    text = []
+    lengths, text = [int(count) for count in counts], []
     for number, length in enumerate(lengths):
         value = length - lengths[number - 2] if number > 2 else length
         more = True

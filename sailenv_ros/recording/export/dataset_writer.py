@@ -17,7 +17,7 @@ from sailenv_ros.recording.export.formats import FORMATS, check_views, format_cl
 from sailenv_ros.recording.export.journal import JOURNAL, Journal
 from sailenv_ros.recording.export.splits import Splits
 
-__all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "Summary"]
+__all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "DatasetSummary"]
 
 SUMMARY_FILE = "export.json"
 """What was written and what was left out, in the folder of a finished data set."""
@@ -32,7 +32,7 @@ class FormatSummary:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Summary:
+class DatasetSummary:
     """What a data set holds.
 
     Attributes
@@ -107,7 +107,7 @@ class DatasetWriter:
         # Those that cannot go on begin anew, with frames that the others have already.
         self._anew = 0 if all(made.resumable for made in classes.values()) else None
         self._next = len(self._journal.entries) if self._anew is not None else 0
-        self._summary: Summary | None = None
+        self._summary: DatasetSummary | None = None
 
     @property
     def done(self) -> int:
@@ -140,7 +140,7 @@ class DatasetWriter:
             self._journal.add(split, entry)
         self._next = number + 1
 
-    def finish(self) -> Summary:
+    def finish(self) -> DatasetSummary:
         """Write what is written at the end; a second call returns the same.
 
         Raises
@@ -159,7 +159,7 @@ class DatasetWriter:
                     for number, (split, entry) in enumerate(zip(splits, entries, strict=True))
                 ]
             )
-        summary = Summary(
+        summary = DatasetSummary(
             frames=len(entries),
             splits=MappingProxyType(dict(Counter(split for split in splits if split))),
             formats=MappingProxyType(
@@ -196,7 +196,7 @@ def _totals(made: Sequence[Made]) -> FormatSummary:
     return FormatSummary(written=dict(written), left_out=dict(left_out))
 
 
-def _plain(summary: Summary) -> dict[str, Any]:
+def _plain(summary: DatasetSummary) -> dict[str, Any]:
     return {
         "frames": summary.frames,
         "splits": dict(summary.splits),

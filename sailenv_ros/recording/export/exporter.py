@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
-from sailenv_ros.recording.export.dataset_writer import DatasetWriter, Summary
+from sailenv_ros.recording.export.dataset_writer import DatasetSummary, DatasetWriter
 from sailenv_ros.recording.export.formats import FORMATS, check_views
 from sailenv_ros.recording.export.splits import Splits
 from sailenv_ros.recording.frames import RecordedFrames
@@ -24,7 +24,7 @@ def export(
     splits: Splits | None = None,
     resume: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, of: None,
-) -> Summary:
+) -> DatasetSummary:
     """Write a recording as data sets.
 
     Parameters
@@ -46,7 +46,7 @@ def export(
 
     Returns
     -------
-    summary : Summary
+    summary : DatasetSummary
         What was written, and what was left out and why.
 
     Raises

@@ -18,6 +18,11 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "kitti": "image_formats.KittiExport",
         "flo": "image_formats.FloExport",
         "mp4": "video.VideoExport",
+        "bop": "bop_export.BopExport",
+        "mot": "mot_export.MotExport",
+        "yolo": "yolo_export.YoloExport",
+        "yolo_segments": "yolo_export.YoloSegmentsExport",
+        "voc": "voc_export.VocExport",
     }
 )
 """Module in this folder and class of each format, by its name."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -71,7 +70,14 @@ class Journal:
         """Note a frame whose files were written."""
         self.entries.append(entry)
         self.splits.append(split)
-        made = {name: asdict(one) for name, one in entry.items()}
+        made = {
+            name: {
+                "record": one.record,
+                "written": dict(one.written),
+                "left_out": dict(one.left_out),
+            }
+            for name, one in entry.items()
+        }
         self._waiting.append(json.dumps({"split": split, "made": made}))
         if len(self._waiting) >= FRAMES_PER_SYNC:
             self.flush()

@@ -28,6 +28,7 @@ class App {
   #times = [];
   #placing = false;
   #pointer = null;
+  #pointed = 0;
 
   constructor() {
     this.link = new Link();
@@ -160,6 +161,29 @@ class App {
     if (span > 200) $("fps").textContent = `${fixed((1000 * (this.#times.length - 1)) / span, 1)} fps`;
     if (this.view.root.isConnected) this.view.frame(head);
     this.#probe();
+    this.drawObjects();
+  }
+
+  /** Ask what is known of the objects of the frame that is shown, and draw it; one question at a time. */
+  async drawObjects() {
+    const { boxes, space, whole } = this.view.over;
+    if (!boxes && !space && !whole) {
+      if (this.stage.overlay) {
+        this.stage.overlay = null;
+        this.stage.drawOver();
+      }
+      return;
+    }
+    if (this.drawing || !this.stage.head) return;
+    this.drawing = true;
+    try {
+      const pointed = whole && this.#pointer ? this.#pointed : 0;
+      this.stage.overlay = await this.ask("objects", { frame: this.stage.head.number, boxes, space, whole: pointed });
+      this.stage.drawOver();
+    } catch {
+      // The frame is no longer kept; the next one is asked for.
+    }
+    this.drawing = false;
   }
 
   // ---- panels, buttons
@@ -373,6 +397,11 @@ class App {
   }
 
   #showProbe(values) {
+    const pointed = values.instance_id ?? 0;
+    if (pointed !== this.#pointed) {
+      this.#pointed = pointed;
+      this.drawObjects();
+    }
     const tip = $("probe-tip");
     const place = this.#pointer;
     const box = $("stage").getBoundingClientRect();

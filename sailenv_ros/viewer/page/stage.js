@@ -14,6 +14,7 @@ export class Stage {
     this.head = null;
     this.waypoints = [];
     this.loop = false;
+    this.overlay = null; // what is known of the objects of a frame, if it is wanted
     this.tiles = new Map();
     new ResizeObserver(() => this.arrange()).observe($("stage"));
     this.arrange();
@@ -158,6 +159,7 @@ export class Stage {
       pen.setTransform(width / head.width, 0, 0, height / head.height, 0, 0);
       pen.translate(0.5, 0.5);
       const line = head.width / box.width;
+      if (view === this.main) this.#objects(pen, line);
       this.#outline(pen, head, view === this.main ? line : line / 2);
       if (view === this.main) this.#waypoints(pen, head, line);
     }
@@ -165,14 +167,7 @@ export class Stage {
 
   #outline(pen, head, line) {
     if (!head.outline?.length) return;
-    const path = new Path2D();
-    for (const points of head.outline) {
-      for (let at = 0; at < points.length; at += 2) {
-        if (at) path.lineTo(points[at], points[at + 1]);
-        else path.moveTo(points[at], points[at + 1]);
-      }
-      path.closePath();
-    }
+    const path = closedLines(head.outline);
     pen.lineJoin = "round";
     pen.strokeStyle = "rgb(0 0 0 / 0.6)";
     pen.lineWidth = 5 * line;
@@ -180,6 +175,32 @@ export class Stage {
     pen.strokeStyle = "#ffd23f";
     pen.lineWidth = 2.5 * line;
     pen.stroke(path);
+  }
+
+  /** Boxes around objects, boxes in space, and the outline of what is hidden too. */
+  #objects(pen, line) {
+    if (!this.overlay) return;
+    pen.lineJoin = "round";
+    pen.lineWidth = 1.5 * line;
+    for (const [id, left, top, right, bottom] of this.overlay.boxes) {
+      pen.strokeStyle = colourOf(id);
+      pen.strokeRect(left - 0.5, top - 0.5, right - left + 1, bottom - top + 1);
+    }
+    for (const [id, edges] of this.overlay.edges) {
+      pen.strokeStyle = colourOf(id);
+      pen.beginPath();
+      for (const [u0, v0, u1, v1] of edges) {
+        pen.moveTo(u0, v0);
+        pen.lineTo(u1, v1);
+      }
+      pen.stroke();
+    }
+    if (!this.overlay.whole.length) return;
+    pen.setLineDash([5 * line, 4 * line]);
+    pen.lineWidth = 2.5 * line;
+    pen.strokeStyle = "white";
+    pen.stroke(closedLines(this.overlay.whole));
+    pen.setLineDash([]);
   }
 
   #project([x, y, z]) {
@@ -234,4 +255,21 @@ export class Stage {
     if (u < 0 || v < 0 || u >= this.head.width || v >= this.head.height) return null;
     return { view: tile.dataset.view, frame: this.head.number, u, v };
   }
+}
+
+function closedLines(lines) {
+  const path = new Path2D();
+  for (const points of lines) {
+    for (let at = 0; at < points.length; at += 2) {
+      if (at) path.lineTo(points[at], points[at + 1]);
+      else path.moveTo(points[at], points[at + 1]);
+    }
+    path.closePath();
+  }
+  return path;
+}
+
+/** A colour of its own for each object: steps of the golden angle keep hues apart. */
+function colourOf(id) {
+  return `hsl(${(id * 137.508) % 360} 85% 62%)`;
 }

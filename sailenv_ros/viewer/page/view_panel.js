@@ -11,12 +11,15 @@ export class ViewPanel {
     this.legend = el("div", { class: "legend", id: "legend" });
     this.shown = el("div", { id: "shown-views" });
     this.stages = el("div", { class: "stages", id: "stages" });
+    this.over = { boxes: false, space: false, whole: false };
+    this.objects = el("div", { id: "object-overlay" }, ...OVERLAYS.map((overlay) => this.#overlayBox(overlay)));
     this.camera = el("dl", { class: "values", id: "camera" });
     this.root = el(
       "div",
       {},
       section("Pixel", this.probe),
       section("Views", this.shown),
+      section("Over the picture", this.objects),
       section("Seen now", this.legend),
       section("Camera", this.camera),
       section("Time of a frame", this.stages),
@@ -27,6 +30,19 @@ export class ViewPanel {
   }
 
   update() {}
+
+  #overlayBox([key, label, title]) {
+    const box = el("input", {
+      type: "checkbox", data: { draws: key },
+      on: {
+        change: () => {
+          this.over[key] = box.checked;
+          this.app.drawObjects();
+        },
+      },
+    });
+    return el("label", { class: "line", title }, el("span", {}, label), box);
+  }
 
   /** Offer a box for each view that the simulator can render, to show it or not. */
   offer(specs) {
@@ -123,6 +139,12 @@ export class ViewPanel {
     );
   }
 }
+
+const OVERLAYS = [
+  ["boxes", "boxes", "The box around what is visible of each object"],
+  ["space", "boxes in space", "The oriented box of each object"],
+  ["whole", "whole object", "The outline of the object under the pointer, also of what is hidden"],
+];
 
 export function pairs(rows) {
   return rows.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);

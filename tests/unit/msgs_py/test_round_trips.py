@@ -32,7 +32,9 @@ from sailenv_msgs_py.object_msgs import (
     object_state_from_response,
     object_state_to_response,
 )
+from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs, objects_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
+from sailenv_msgs_py.point_clouds import point_cloud_to_msg
 from sailenv_msgs_py.scene_msgs import (
     light_from_msg,
     light_to_msg,
@@ -46,8 +48,9 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import Category, CategoryTable, Instance
+from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
+from sailenv_ros.object_truth import AmodalMasks
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.scene_info import MoverInfo, SceneInfo
@@ -68,18 +71,23 @@ VIEW_SETS = st.sets(st.sampled_from(sorted(VIEWS)), min_size=1).map(tuple)
 
 CATEGORIES = st.builds(
     Category,
-    id=st.integers(1, 254),
+    id=st.integers(1, 65535).filter(lambda id_: id_ != 255),
     name=NAMES,
     colour=st.tuples(*[st.integers(0, 255)] * 3),
 )
+KEYPOINTS = st.builds(Keypoint, name=TEXTS, position_m=TRIPLES)
 INSTANCES = st.builds(
     Instance,
     id=st.integers(1, 65535),
     name=TEXTS,
     asset=TEXTS,
-    category_id=st.integers(0, 255),
+    category_id=st.integers(0, 65535),
     category=TEXTS,
     static=st.booleans(),
+    low_m=TRIPLES,
+    high_m=TRIPLES,
+    parent=st.integers(0, 65535),
+    keypoints=st.lists(KEYPOINTS, max_size=2).map(tuple),
 )
 LIGHTS = st.builds(
     lambda inner, outer, **light: Light(
@@ -242,6 +250,119 @@ def frames(draw: st.DrawFn) -> Frame:
         timings_s={"render": draw(st.floats(0.0, 1e3))},
         states=draw(st.none() | instance_states()),
     )
+
+
+@st.composite
+def observed_frames(draw: st.DrawFn) -> Frame:
+    """Return frames of a few pixels that show some of the objects of their scene."""
+    info, states = draw(scene_infos()), draw(instance_states())
+    instances = [dataclasses.replace(draw(INSTANCES), id=id_) for id_ in states.ids.tolist()]
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    size = draw(st.tuples(st.integers(8, 10), st.integers(8, 10)))
+    shown = rng.choice(np.array([0, *states.ids], np.uint16), size)
+    lens = CameraIntrinsics(width=size[1], height=size[0], near_m=0.01, far_m=1e4)
+    return dataclasses.replace(
+        draw(frames()),
+        camera=Camera(intrinsics=lens, pose=draw(POSES)),
+        views={
+            "instance": shown,
+            "depth": np.full(size, np.inf, np.float32),
+            "flow": rng.normal(0.0, 9.0, (*size, 2)).astype(np.float32),
+        },
+        info=dataclasses.replace(info, instances=tuple(instances)),
+        states=states,
+        draw_alone=lambda: _random_masks(states.ids, rng, size),
+    )
+
+
+def _random_masks(ids: np.ndarray, rng: np.random.Generator, size: tuple[int, int]) -> AmodalMasks:
+    """Return masks of one rectangle each, or of nothing."""
+    boxes = np.full((len(ids), 4), -1, np.int32)
+    crops = []
+    for box in boxes:
+        if rng.random() < 0.2:
+            crops.append(np.zeros((0, 0), bool))
+            continue
+        left, top = rng.integers(0, 8, 2)
+        right, bottom = rng.integers(left, 8), rng.integers(top, 8)
+        box[:] = left, top, right, bottom
+        crops.append(rng.random((bottom - top + 1, right - left + 1)) < 0.7)
+    pixels = np.array([crop.sum() for crop in crops], np.int64)
+    return AmodalMasks(
+        height=size[0],
+        width=size[1],
+        ids=ids,
+        pixels=pixels,
+        whole_pixels=pixels + rng.integers(0, 9, len(ids)),
+        boxes=boxes,
+        whole_boxes=boxes - rng.integers(0, 9, (len(ids), 4)).astype(np.int32),
+        crops=tuple(crops),
+    )
+
+
+def objects_of(frame: Frame) -> msgs.Objects:
+    return objects_to_msg(frame, header_of_frame(frame), frame.amodal)
+
+
+@given(observed_frames())
+def test_objects(frame: Frame) -> None:
+    """The message holds the table's values; masks come back bit for bit."""
+    message, table = objects_of(frame), frame.objects_with_amodal
+    assert [one.id for one in message.objects] == table.ids.tolist()
+    for row, one in enumerate(message.objects):
+        assert (one.name, one.category) == (table.names[row], table.categories[row])
+        assert one.visible_pixels == table.visible_pixels[row]
+        assert one.visible_box.tolist() == table.visible_boxes[row].tolist()
+        np.testing.assert_array_equal(one.corner_pixels.reshape(8, 2), table.corner_pixels[row])
+        pose = Pose((0.0, 0.0, 0.0), tuple(getattr(one.pose.orientation, k) for k in "xyzw"))
+        np.testing.assert_allclose(
+            pose.matrix()[:3, :3], table.world_from_object[row, :3, :3], atol=1e-9
+        )
+        np.testing.assert_array_equal(one.visible_share, table.visible_share[row])
+        assert one.distance == table.distances[row]
+    masks = (one.amodal for one in message.objects)
+    read = amodal_masks_from_msgs(masks, message.height, message.width)
+    for name in ("ids", "pixels", "whole_pixels", "boxes", "whole_boxes"):
+        np.testing.assert_array_equal(getattr(read, name), getattr(frame.amodal, name))
+    for id_ in table.ids.tolist():
+        assert (read.mask(id_) == frame.amodal.mask(id_)).all()
+
+
+def test_masks_that_do_not_fit_are_refused() -> None:
+    """Run lengths of another size, and a box beside the picture."""
+    message = msgs.AmodalMask(id=1, pixels=1, whole_pixels=1, box=[0, 0, 0, 0], counts=[0, 1, 63])
+    assert amodal_masks_from_msgs([message], 8, 8).mask(1).sum() == 1
+    with pytest.raises(InvalidRequest, match="run lengths"):
+        amodal_masks_from_msgs([message], 8, 9)
+    message.box = [0, 0, 8, 0]
+    with pytest.raises(InvalidRequest, match="in the picture"):
+        amodal_masks_from_msgs([message], 8, 8)
+
+
+def test_point_clouds_are_what_rviz_reads() -> None:
+    """Field by field, at the offsets that the message says; PCL's colour."""
+    depth = np.full((8, 8), 2.0, np.float32)
+    depth[0, 0] = np.inf
+    rgb = np.zeros((8, 8, 3), np.uint8)
+    rgb[1, 2] = (10, 20, 30)
+    instance = np.full((8, 8), 700, np.uint16)
+    frame = Frame(
+        agent="eye", scene="s", epoch=1, revision=1, sequence=1, stamp_ns=0, dt_ns=0,
+        camera=Camera(intrinsics=CameraIntrinsics(width=8, height=8)),
+        views={"depth": depth, "rgb": rgb, "instance": instance},
+    )  # fmt: skip
+    cloud = point_cloud_to_msg(frame, header_of_frame(frame))
+    assert (cloud.height, cloud.width, cloud.row_step) == (8, 8, 8 * cloud.point_step)
+    assert len(cloud.data) == 8 * cloud.row_step
+    data = bytes(cloud.data)
+    at = {field.name: field.offset + (8 + 2) * cloud.point_step for field in cloud.fields}
+    read = {name: np.frombuffer(data, "<f4", 1, at[name])[0] for name in "xyz"}
+    np.testing.assert_allclose(
+        [read[name] for name in "xyz"], frame.points(in_world=False).xyz[8 + 2 - 1]
+    )
+    assert np.frombuffer(data, "<u4", 1, at["rgb"])[0] == 10 << 16 | 20 << 8 | 30
+    assert np.frombuffer(data, "<u2", 1, at["instance"])[0] == 700
+    assert np.isnan(np.frombuffer(data, "<f4", 3, 0)).all()
 
 
 def same_light(one: Light, other: Light) -> None:
@@ -410,6 +531,7 @@ def test_every_field_of_every_message_is_drawn_above() -> None:
     quick(given(BEHAVIOURS.map(behaviour_to_msg))(note))()
     quick(given(scene_infos().map(scene_info_to_msg))(note))()
     quick(given(frames().map(frame_info_of))(note))()
+    quick(given(observed_frames().map(objects_of))(note))()
     every = {
         (kind, field)
         for kind in dir(msgs)

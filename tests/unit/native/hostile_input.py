@@ -16,11 +16,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.geometry import Pose
 from sailenv_ros.native.ambient_visibility import find_ambient_visibility
 from sailenv_ros.native.annotation import annotate_pixels
 from sailenv_ros.native.client_views import convert_views
+from sailenv_ros.native.instance_measures import measure_instances
 from sailenv_ros.native.library import using_instruction_set
 from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
@@ -187,6 +189,31 @@ def drive_sensor() -> None:
         gather_light(halves, 1.0, 0.0, 0.0, 0, None, threads=2)
 
 
+def drive_alone() -> None:
+    """Hostile scenes, each object alone, and one that is larger than the canvas."""
+    for threads in THREADS:
+        for make in hostile_scenes().values():
+            snapshot = make()
+            for width, height in ((8, 8), (97, 61)):
+                drawing = AloneRenderer(threads=threads)
+                with np.errstate(all="ignore"):
+                    drawing.draw(snapshot, camera_at(width=width, height=height))
+                drawing.close()
+    drawing = AloneRenderer(threads=2)
+    around = snapshot_of([Thing(model_of(box_mesh(4.0), double_sided=True), Pose())])
+    drawing.draw(around, camera_at(width=1024, height=1024))
+    drawing.close()
+
+
+def drive_instance_measures() -> None:
+    """Every id there is, rows of one pixel, flow of any numbers."""
+    for surface in surfaces(*SIZES, LARGEST):
+        height, width = surface.shape[:2]
+        ids = np.resize(np.arange(65536, dtype=np.uint16), (height, width))
+        measure_instances(ids, surface)
+        measure_instances(ids, None)
+
+
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_annotate,
@@ -196,6 +223,8 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_drawing,
     drive_light_maps,
     drive_sensor,
+    drive_alone,
+    drive_instance_measures,
 )
 
 

@@ -268,7 +268,7 @@ ENTRIES = {
     ),
     "an id of the fixed table": (
         "version: 1\ncategories: [{name: rocket, id: 3}]\n",
-        "2:33: categories[0].id: must be an integer from 200 to 254, got 3",
+        "2:33: categories[0].id: must be an integer from 200 to 65535, got 3",
     ),
     "a name of the fixed table": (
         "version: 1\ncategories: [{name: chair, id: 200}]\n",

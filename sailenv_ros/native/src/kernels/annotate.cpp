@@ -5,6 +5,7 @@
 
 #include "../abi.h"
 #include "../threads.h"
+#include "clip_distances.h"
 #include "lanes.h"
 #include "scratch.h"
 
@@ -190,12 +191,6 @@ void annotate_chunk(const Input& in, const Output& out, int64_t v, int64_t u, in
     }
 }
 
-// The greatest number of single precision that is not above another one.
-float rounded_down(double x) {
-    const float r = static_cast<float>(x);
-    return static_cast<double>(r) > x ? std::nextafterf(r, -__builtin_inff()) : r;
-}
-
 }  // namespace
 
 SAILENV_KERNEL(annotate)
@@ -217,7 +212,8 @@ SAILENV_KERNEL(annotate)
                    row_of_instance,
                    motions,
                    motion_count,
-                   {lens[0], lens[1], lens[2], -rounded_down(-lens[3]), rounded_down(lens[4])},
+                   {lens[0], lens[1], lens[2], -sailenv::rounded_down(-lens[3]),
+                    sailenv::rounded_down(lens[4])},
                    columns.get(),
                    scale,
                    tolerance,

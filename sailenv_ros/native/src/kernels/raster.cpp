@@ -54,11 +54,10 @@ void set_sides(InstanceFrame& frame, const Projection& p) {
     const double* m = frame.eye_from_object;
     double wide[4];
     if (p.perspective) {
-        // Symmetric about the axis, a hundredth wider than the picture.
-        const double across =
-            0.5 * p.width > p.width - 0.5 - p.cx ? 0.5 * p.width : p.width - 0.5 - p.cx;
-        const double down =
-            0.5 * p.height > p.height - 0.5 - p.cy ? 0.5 * p.height : p.height - 0.5 - p.cy;
+        // Symmetric about the axis, a hundredth wider than what is drawn.
+        const double left = p.cx + 0.5 - p.x0, right = p.x1 + 0.5 - p.cx;
+        const double up = p.cy + 0.5 - p.y0, low = p.y1 + 0.5 - p.cy;
+        const double across = left > right ? left : right, down = up > low ? up : low;
         wide[0] = wide[1] = (1.0 + MARGIN) * across / p.focal;
         wide[2] = wide[3] = (1.0 + MARGIN) * down / p.focal;
     }
@@ -175,7 +174,8 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
 // Which pixels a triangle can reach: bounds in pixels; x0 > x1 if there are none.
 template <bool PERSPECTIVE>
 void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
-    const float right = static_cast<float>(p.width - 1), bottom = static_cast<float>(p.height - 1);
+    const float left = static_cast<float>(p.x0), right = static_cast<float>(p.x1);
+    const float top = static_cast<float>(p.y0), bottom = static_cast<float>(p.y1);
     const float focal = static_cast<float>(p.focal), cx = static_cast<float>(p.cx),
                 cy = static_cast<float>(p.cy);
     for (int32_t k = 0; k < count; k += 8) {
@@ -198,16 +198,16 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
             const f8 farthest = max8(depth[0], max8(depth[1], depth[2]));
             const i8 crosses = nearest < LEAST_DEPTH_M;
             behind = farthest <= LEAST_DEPTH_M;
-            x0 = crosses ? splat(0.0f) : x0;
-            y0 = crosses ? splat(0.0f) : y0;
+            x0 = crosses ? splat(left) : x0;
+            y0 = crosses ? splat(top) : y0;
             x1 = crosses ? splat(right) : x1;
             y1 = crosses ? splat(bottom) : y1;
         }
         // Rounded inwards to pixel centres: upwards is the negative floor of the negative.
-        x0 = -floor8(-clamp8(x0, 0.0f, 1e5f));
-        y0 = -floor8(-clamp8(y0, 0.0f, 1e5f));
-        x1 = floor8(clamp8(x1, -1.0f, right));
-        y1 = floor8(clamp8(y1, -1.0f, bottom));
+        x0 = -floor8(-clamp8(x0, left, 1e5f));
+        y0 = -floor8(-clamp8(y0, top, 1e5f));
+        x1 = floor8(clamp8(x1, left - 1.0f, right));
+        y1 = floor8(clamp8(y1, top - 1.0f, bottom));
         store(r.x0 + k, behind ? splat(1.0f) : x0);
         store(r.x1 + k, behind ? splat(0.0f) : x1);
         store(r.y0 + k, y0);
@@ -595,6 +595,23 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
                 draw_triangle<false>(t, number, part, projection, first_row, last_row, stride,
                                      visible, nearness);
             }
+        }
+    }
+}
+
+void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+                 int64_t stride, float* nearness) {
+    // Of the pixel (0, 0), which need not lie in the window.
+    float* origin = nearness - projection.y0 * stride - projection.x0;
+    for (int64_t s = 0; s < set.segment_count; s++) {
+        const Segment& segment = set.segments[static_cast<size_t>(s)];
+        for (int64_t k = 0; k < segment.triangle_count; k++) {
+            const int64_t number = segment.first_triangle + k;
+            const Triangle& t = set.triangles[static_cast<size_t>(number)];
+            const Part& part = parts.parts[t.part];
+            const auto draw = t.masked ? draw_triangle<true> : draw_triangle<false>;
+            draw(t, static_cast<uint32_t>(number), part, projection, projection.y0, projection.y1,
+                 stride, nullptr, origin);
         }
     }
 }

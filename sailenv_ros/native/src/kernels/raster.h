@@ -39,7 +39,8 @@ struct Projection {
     bool perspective;
     double focal, cx, cy;  // 1, 0, 0 in a shadow map
     int32_t width, height;
-    float least_nearness;  // what is not nearer is not drawn
+    int32_t x0, y0, x1, y1;  // first and last pixels that are drawn; may lie beside the picture
+    float least_nearness;    // what is not nearer is not drawn
     float greatest_nearness;
 };
 
@@ -92,6 +93,11 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
 // Draws one band: `visible` (may be null) and `nearness` begin at the picture's first row.
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible, float* nearness);
+
+// Draws all triangles of a set into the window of a projection, whose first pixel is the first
+// number of `nearness`. Rows of the window are followed by room for eight numbers.
+void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+                 int64_t stride, float* nearness);
 
 void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
                 uint32_t* visible, float* nearness);

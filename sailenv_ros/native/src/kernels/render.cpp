@@ -52,6 +52,8 @@ void draw_picture(int64_t threads, Scratch& scratch, const View& view, const Ins
     projection.cy = view.cy;
     projection.width = static_cast<int32_t>(view.width);
     projection.height = static_cast<int32_t>(view.height);
+    projection.x1 = projection.width - 1;
+    projection.y1 = projection.height - 1;
     // A little less: annotations compare depths with the far distance exactly.
     projection.least_nearness = std::nextafter(static_cast<float>(1.0 / view.far_m), 0.0f);
     projection.greatest_nearness = 3e38f;
@@ -155,6 +157,7 @@ SAILENV_KERNEL(draw_shadow_map)
         Projection projection{};
         projection.focal = 1.0;
         projection.width = projection.height = static_cast<int32_t>(size);
+        projection.x1 = projection.y1 = projection.width - 1;
         projection.greatest_nearness = 1.0f;
         scratch.band_rows = BAND_ROWS;
         set_frames(scratch, *instances, map_from_world, projection);

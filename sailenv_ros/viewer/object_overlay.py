@@ -1,0 +1,53 @@
+"""What the page draws over a frame of its objects: boxes, boxes in space, a whole object's outline.
+
+`Frame` in, JSON out.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sailenv_ros.frame import Frame
+from sailenv_ros.object_truth.object_table import EDGES
+from sailenv_ros.viewer.encoding import outline
+
+__all__ = ["overlay_of"]
+
+
+def overlay_of(frame: Frame, *, boxes: bool, space: bool, whole: int) -> dict[str, Any]:
+    """Return what is drawn over a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+    boxes : bool
+        Whether the boxes of what is visible are wanted.
+    space : bool
+        Whether the oriented boxes are.
+    whole : int
+        Instance whose amodal outline is wanted, 0 for none.
+
+    Returns
+    -------
+    overlay : dict
+        ``boxes``: id, left, top, right, bottom [px] of each. ``edges``: id, and the ends u, v, u, v
+        of each edge that lies before the camera. ``whole``: closed lines u, v, u, v, … [px].
+    """
+    told: dict[str, Any] = {"boxes": [], "edges": [], "whole": []}
+    if boxes or space:
+        table = frame.objects.select(frame.objects.visible)
+        if boxes:
+            rows = np.concatenate([table.ids[:, None], table.visible_boxes], axis=1)
+            told["boxes"] = rows.tolist()
+        if space:
+            corners = np.round(table.corner_pixels, 1)
+            for row, id_ in enumerate(table.ids.tolist()):
+                ends = [np.concatenate(corners[row, list(edge)]) for edge in EDGES]
+                seen = [end.tolist() for end in ends if np.isfinite(end).all()]
+                told["edges"].append([id_, seen])
+    if whole:
+        mask = frame.amodal_of(whole).mask(whole)
+        told["whole"] = outline(mask.astype(np.uint16), 1)
+    return told
