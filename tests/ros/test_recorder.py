@@ -16,6 +16,7 @@ from std_srvs.srv import Trigger
 from sailenv_ros import Agent
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.bag_recovery import recover
+from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
@@ -85,6 +86,33 @@ def test_a_recording_gives_what_the_live_agent_saw(node: NodeProcess, tmp_path: 
             same_dict(frame, live[frame["sequence"]])
     with Reader(bag) as other:
         assert other.message_count == sum(1 for _ in other.messages())
+
+
+def test_amodal_masks_are_kept_with_their_frames(node: NodeProcess, tmp_path: Path) -> None:
+    """Of each frame that has them, its own: those that the live frame had."""
+    bag = tmp_path / "bag"
+    live = {}
+    with (
+        Agent(width=64, height=48, name="whole", namespace=NAMESPACE) as agent,
+        recorder(bag, agents=["whole"], amodal=True, clock=False) as process,
+    ):
+
+        def seen() -> bool:
+            agent.step(8)
+            frame = agent.capture()
+            live[frame.sequence] = frame.amodal
+            return recorded(process) >= 4
+
+        until(seen, "frames to be recorded")
+        assert process.end() == 0, process.log
+    with RecordingReader(bag) as reader:
+        read = [frame for frame in RecordedFrames(reader) if frame.draw_alone is not None]
+        assert read
+        for frame in read:
+            kept = live[frame.sequence]
+            assert kept.pixels.tolist() == frame.amodal.pixels.tolist()
+            for id_ in kept.ids.tolist():
+                assert (frame.amodal.mask(id_) == kept.mask(id_)).all()
 
 
 def test_an_agent_that_is_not_meant_is_left_out(node: NodeProcess, tmp_path: Path) -> None:

@@ -42,8 +42,8 @@ def test_the_rviz_configuration_fits_our_topics() -> None:
     config = yaml.safe_load((resource_path("config") / "sailenv.rviz").read_text())
     manager = config["Visualization Manager"]
     topics = {d["Topic"]["Value"] for d in manager["Displays"] if "Topic" in d}
-    assert topics <= KNOWN
-    assert len(topics) == 5
+    assert topics <= {*KNOWN, "/sailenv/agent/points"}
+    assert len(topics) == 6
     assert manager["Global Options"]["Fixed Frame"] == "world"
 
 
