@@ -58,8 +58,6 @@ ROS = [
 # What only importing models and building the furniture pack need; reading packs does without.
 ASSETS = [
     "coacd>=1.0.7",
-    # Has no final release yet; compiled where it is installed, in some seconds.
-    "meshoptimizer>=0.2.30a0",
     "OpenEXR>=3.3",
 ]
 # What only baking light needs; light that was baked before is read without.

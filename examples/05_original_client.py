@@ -1,16 +1,47 @@
 """The SAILenv client: scripts written for SAILenv run with this simulator without changes.
 
-Needs the client (`pip install --no-deps sailenv==0.5b0`, Python up to 3.12) and a simulator that
-runs, with or without ROS: `sailenv run room_01 --no-ros`. The program uses only the client.
+Needs the client (`pip install --no-deps sailenv==0.5b0`, Python up to 3.12). Uses the simulator
+that listens on the port, which may be given on the command line, and starts one without ROS if none
+does. All but that is done with the client alone.
 """
 
+import atexit
+import socket
+import subprocess
 import sys
+import time
 
 import numpy as np
 from PIL import Image
-from sailenv.agent import Agent
+
+try:
+    from sailenv.agent import Agent
+except ImportError as missing:
+    raise SystemExit(
+        f"This example needs the SAILenv client ({missing}): pip install --no-deps sailenv==0.5b0"
+    ) from missing
 
 host, port = "127.0.0.1", int((sys.argv[1:] or ["8085"])[0])
+
+
+def listens() -> bool:
+    """Tell if a simulator answers on the port."""
+    with socket.socket() as probe:
+        return probe.connect_ex((host, port)) == 0
+
+
+if not listens():
+    print(f"no simulator listens on port {port}, so one is started")
+    command = [sys.executable, "-m", "sailenv_ros.cli.main", "run", "--no-ros", "--no-build"]
+    simulator = subprocess.Popen([*command, "--port", str(port), "--viewer-port", "0"])
+    atexit.register(simulator.wait)
+    atexit.register(simulator.terminate)  # called first
+    deadline = time.monotonic() + 120.0
+    while not listens():
+        if simulator.poll() is not None or time.monotonic() > deadline:
+            raise SystemExit("the simulator did not start; see above")
+        time.sleep(0.1)
+
 agent = Agent(width=320, height=240, host=host, port=port, use_gzip=False)
 agent.register()
 print(f"agent {agent.id}; scenes: {', '.join(agent.scenes)}")

@@ -18,7 +18,6 @@ _EXTRA_OF = {
     "coacd": "assets",
     "embreex": "bake",
     "matplotlib": "bench",
-    "meshoptimizer": "assets",
     "mujoco": "bench",
     "onnxruntime": "eval",
     "sailenv": "bench",

@@ -16,6 +16,9 @@ die() {
 # A sourced ROS 2 Jazzy is used instead of the wheels; the two must not be mixed.
 ros_is_sourced() { [[ ${ROS_DISTRO:-} == jazzy && -n ${AMENT_PREFIX_PATH:-} ]]; }
 
+# The messages are what comes last of ROS.
+ros_is_there() { [[ -f $venv/sailenv-messages ]]; }
+
 refuse_other_ros() {
   [[ -z ${ROS_DISTRO:-} || $ROS_DISTRO == jazzy ]] || die \
     "ROS 2 '$ROS_DISTRO' is sourced here, and sailenv_ros is for Jazzy." \

@@ -48,7 +48,7 @@ def main(path: Path) -> None:
 
 def _middle(simulation: Simulation, name: str) -> tuple[float, float]:
     """Return where an object is in the web viewer's large picture, from (0, 0) to (1, 1)."""
-    instance = simulation.capture("debug_agent", ["instance"]).views["instance"]
+    instance = simulation.capture(["instance"], agent="debug_agent").views["instance"]
     rows, columns = np.nonzero(instance == simulation.get_object(name).id)
     height, width = instance.shape
     return float(np.median(columns)) / width, float(np.median(rows)) / height

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from sailenv_ros.extras import need
+from sailenv_ros.assets.simplification import fewer_triangles
 from sailenv_ros.model import Mesh
 
 __all__ = [
@@ -102,24 +102,14 @@ def simplified(raw: RawMesh, target: int, *, max_error: float = 0.004) -> RawMes
     raw : RawMesh
         Without normals: they are found anew. The same mesh where it is small enough.
 
-    Notes
-    -----
-    Quadric errors, by meshoptimizer; vertices keep their places.
+    See Also
+    --------
+    sailenv_ros.assets.simplification : how.
     """
     if len(raw.triangles) <= target:
         return raw
     raw = welded(raw)
-    indices = raw.triangles.astype(np.uint32).reshape(-1)
-    positions = np.ascontiguousarray(raw.positions, dtype=np.float32)
-    result = np.zeros_like(indices)
-    count: int = need("meshoptimizer", "importing a model").simplify(
-        result,
-        indices,
-        positions,
-        target_index_count=3 * target,
-        target_error=max_error,
-    )
-    triangles = result[:count].reshape(-1, 3).astype(np.int64)
+    triangles = fewer_triangles(raw.positions, raw.triangles, target, max_error=max_error)
     return _used_only(replace(raw, triangles=triangles, normals=None))
 
 

@@ -6,7 +6,8 @@ but the faces stays as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import operator
+from collections.abc import Iterator, Sequence
 
 import mapbox_earcut
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 __all__ = ["with_triangles"]
 
 Floats = NDArray[np.float64]
+Point = tuple[float, float, float]
 
 
 def with_triangles(text: str) -> str:
@@ -25,7 +27,7 @@ def with_triangles(text: str) -> str:
     Ear clipping in the polygon's plane (mapbox's earcut). Faces whose corners cannot be found are
     left for the reader to complain about.
     """
-    points: list[tuple[float, float, float]] = []
+    points: list[Point] = []
     lines: list[str] = []
     for line in text.replace("\\\n", " ").splitlines():
         words = line.split()
@@ -41,16 +43,16 @@ def with_triangles(text: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _triangles(corners: list[str], points: list[tuple[float, float, float]]) -> list[str]:
+def _triangles(corners: list[str], points: list[Point]) -> list[str]:
     try:
         numbers = [int(corner.split("/")[0]) for corner in corners]
-        polygon = np.array([points[n - 1 if n > 0 else n] for n in numbers])
+        polygon = [points[n - 1 if n > 0 else n] for n in numbers]
     except (ValueError, IndexError):
         return []
     if len(corners) == 4 and _is_convex(polygon):
         cut = [(0, 1, 2), (0, 2, 3)]
     else:
-        cut = list(_clipped(polygon))
+        cut = list(_clipped(np.array(polygon)))
     return [f"f {corners[a]} {corners[b]} {corners[c]}" for a, b, c in cut]
 
 
@@ -59,10 +61,20 @@ def _normal(polygon: Floats) -> Floats:
     return np.asarray(np.cross(polygon, np.roll(polygon, -1, axis=0)).sum(axis=0))
 
 
-def _is_convex(polygon: Floats) -> bool:
-    edges = np.roll(polygon, -1, axis=0) - polygon
-    turns = np.cross(edges, np.roll(edges, -1, axis=0)) @ _normal(polygon)
-    return bool((turns >= 0.0).all())
+def _is_convex(corners: Sequence[Point]) -> bool:
+    """Tell of four corners if all turn to one side; in plain numbers, which files have many of."""
+    edges = [_difference(corners[(k + 1) % 4], corners[k]) for k in range(4)]
+    turns = [_cross(edges[k], edges[(k + 1) % 4]) for k in range(4)]
+    normal = tuple(sum(turn[axis] for turn in turns) for axis in range(3))
+    return all(sum(map(operator.mul, turn, normal)) >= 0.0 for turn in turns)
+
+
+def _difference(a: Point, b: Point) -> Point:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _cross(a: Point, b: Point) -> Point:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def _clipped(polygon: Floats) -> Iterator[tuple[int, int, int]]:

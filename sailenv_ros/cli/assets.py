@@ -23,8 +23,13 @@ from sailenv_ros.catalogue.thumbnails import is_whole_png, thumbnail_folder
 from sailenv_ros.cli.furniture import build_furniture, object_progress
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.validation import checked_integer
 
 __all__ = ["add_parser", "run"]
+
+
+COLUMNS, TILE_PX, AZIMUTH_DEG = 10, 192, 32.0
+"""How a sheet is laid out, and from where its objects are seen, unless asked otherwise."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -40,7 +45,13 @@ def add_parser(subparsers: Any) -> None:
     actions.add_parser(
         "verify", help="check every file of packs, sources, baked light and thumbnails"
     )
-    actions.add_parser("list", help="list every object, with its category, size and licence")
+    listed = actions.add_parser(
+        "list", help="list every object, with its category, size and licence"
+    )
+    listed.add_argument(
+        "--sheet", type=Path, metavar="FILE", help="picture them all, too: .jpg, .png"
+    )
+    listed.set_defaults(names=(), columns=COLUMNS, tile=TILE_PX, azimuth=AZIMUTH_DEG)
     credit = actions.add_parser("credits", help="print authors, licences and sources")
     credit.add_argument("--full", action="store_true", help="the licence texts too")
     sheet = actions.add_parser("sheet", help="picture objects on a contact sheet")
@@ -48,9 +59,11 @@ def add_parser(subparsers: Any) -> None:
     sheet.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE", help=".jpg, .png"
     )
-    sheet.add_argument("--columns", type=int, default=10, metavar="N")
-    sheet.add_argument("--tile", type=int, default=192, metavar="PX", help="width of a picture")
-    sheet.add_argument("--azimuth", type=float, default=32.0, metavar="DEG", help="of the camera")
+    sheet.add_argument("--columns", type=int, default=COLUMNS, metavar="N")
+    sheet.add_argument("--tile", type=int, default=TILE_PX, metavar="PX", help="width of a picture")
+    sheet.add_argument(
+        "--azimuth", type=float, default=AZIMUTH_DEG, metavar="DEG", help="of the camera"
+    )
     add = actions.add_parser("add", help="put a model of yours into your own pack")
     add.add_argument("model", type=Path, metavar="FILE", help=".glb, .gltf, .obj or .zip")
     add.add_argument("--category", required=True, help="what it is, e.g. chair")
@@ -84,7 +97,7 @@ def _build(args: argparse.Namespace) -> int:
     return 0
 
 
-def _list(_: argparse.Namespace) -> int:
+def _list(args: argparse.Namespace) -> int:
     for pack in installed_packs():
         print(f"{pack.folder}  {pack.content.title}".rstrip())
         for name, entry in sorted(pack.entries.items()):
@@ -92,6 +105,9 @@ def _list(_: argparse.Namespace) -> int:
             print(f"  {name:<20} {entry.category:<16} {size:>18} cm  {entry.licence}")
     if not any(pack.folder == standard_pack_folder() for pack in installed_packs()):
         print("The furniture has not been built yet: sailenv assets build")
+    if args.sheet is not None:
+        args.output = args.sheet
+        return _sheet(args)
     return 0
 
 
@@ -161,6 +177,8 @@ def _sheet(args: argparse.Namespace) -> int:
     from sailenv_ros.catalogue.preview_renderer import PreviewRenderer
     from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 
+    columns = checked_integer("--columns", args.columns, 1, 1000)
+    tile_px = checked_integer("--tile", args.tile, 16, 2048, unit="px")
     library = AssetLibrary(installed_sources())
     names = [library.canonical(n) for n in args.names] or [
         name for pack in installed_packs() for name in sorted(pack.entries)
@@ -171,9 +189,9 @@ def _sheet(args: argparse.Namespace) -> int:
         for name in bar.track(names, description="pictures"):
             asset = library.get(name)
             pictures[asset.display_name] = previews.thumbnail(
-                asset, width=args.tile, height=args.tile * 3 // 4, azimuth_deg=args.azimuth
+                asset, width=tile_px, height=tile_px * 3 // 4, azimuth_deg=args.azimuth
             )
-    print(save_contact_sheet(args.output, pictures, columns=args.columns))
+    print(save_contact_sheet(args.output, pictures, columns=columns))
     return 0
 
 

@@ -18,7 +18,7 @@ from sailenv_ros.errors import SimulationClosed
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.background_build import BackgroundBuild
+from sailenv_ros.simulation.background_build import BackgroundBuild, furnishing
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.transport import stay_local
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
@@ -135,13 +135,13 @@ def _background_build(
 ) -> contextlib.AbstractContextManager[object]:
     if args.no_build:
         return contextlib.nullcontext()
-    return BackgroundBuild(
-        simulation,
+    step = furnishing(
         str(args.scene or simulation.info.scene),
         everything=False,
         scene_paths=args.scenes,
         allow_modules=args.allow_modules,
     )
+    return BackgroundBuild(simulation, [step])
 
 
 @contextlib.contextmanager

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.cli.arguments import add_allow_modules
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.labels import CategoryTable
@@ -19,10 +19,16 @@ from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet, save_picture
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.simulation import Simulation
+from sailenv_ros.validation import checked_integer, checked_number
 
 __all__ = ["add_arguments", "render_scene"]
 
 STEPS_PER_S = 240
+DEFAULT_EYE_M = (0.0, 0.0, 1.5)
+"""Where the camera stands if only what it faces is given [m]."""
+
+PICTURE_SUFFIXES = (".png", ".jpg")
+
 FLOW_STEPS = 8
 """Steps between a picture and its past, which flow needs: 1/30 s."""
 
@@ -56,11 +62,7 @@ def render_scene(args: argparse.Namespace) -> int:
 
     The camera stands where the mover is at that time, unless its place is given.
     """
-    if min(args.time) < 0.0:
-        raise InvalidRequest("time", min(args.time), "0 s or later")
-    count = len(args.time) * len(set(args.views))
-    if args.plain and count != 1:
-        raise InvalidRequest("number of pictures", count, "one view of one time with --plain")
+    _check(args)
     scene = Path(args.scene) if Path(args.scene).suffix in SUFFIXES else args.scene
     pictures: dict[str, Any] = {}
     with Simulation(scene=scene, mode="lockstep", allow_modules=args.allow_modules) as simulation:
@@ -79,10 +81,33 @@ def render_scene(args: argparse.Namespace) -> int:
     return 0
 
 
+def _check(args: argparse.Namespace) -> None:
+    """Refuse what cannot be drawn, in the words of the command line."""
+    if min(args.time) < 0.0:
+        raise InvalidRequest("--time", min(args.time), "0 s or later")
+    count = len(args.time) * len(set(args.views))
+    if args.plain and count != 1:
+        accepted = "drawn with --views NAME and no more than one --time: it is one picture"
+        raise InvalidRequest("--plain", f"{count} pictures", accepted)
+    checked_integer("--width", args.width, MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
+    checked_integer("--height", args.height, MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
+    checked_number("--fov", args.fov, 1.0, 170.0, unit="deg")
+    checked_integer("--columns", args.columns, 1, 1000)
+    for name in args.views:
+        if name not in VIEWS:
+            raise UnknownName("--views", name, VIEWS)
+    eye = tuple(args.position or DEFAULT_EYE_M)
+    if args.look_at is not None and tuple(args.look_at) == eye:
+        raise InvalidRequest("--look-at", args.look_at, f"another point than --position, {eye}")
+    if args.output.suffix.lower() not in PICTURE_SUFFIXES:
+        wanted = f"a name that ends in {' or '.join(PICTURE_SUFFIXES)}"
+        raise InvalidRequest("--output", str(args.output), wanted)
+
+
 def _eye(args: argparse.Namespace) -> AgentSpec:
     pose = None
     if args.position is not None or args.look_at is not None:
-        pose = Pose(tuple(args.position or (0.0, 0.0, 1.5)))
+        pose = Pose(tuple(args.position or DEFAULT_EYE_M))
         if args.look_at is not None:
             pose = look_at(pose.position_m, args.look_at)
     intrinsics = CameraIntrinsics(width=args.width, height=args.height, vertical_fov_deg=args.fov)

@@ -6,7 +6,6 @@ Says on standard output what is ready, one line each, and on standard error how 
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
@@ -22,9 +21,6 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.parent import end_with_parent
 
 __all__ = ["add_parser", "run"]
-
-NICENESS = 10
-"""How far a build in the background stands back behind the simulation."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -42,7 +38,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
     )
-    # Of a simulator that builds in the background: ends with it, and stands back behind it.
+    # Of a simulator that builds in the background: ends with it.
     parser.add_argument("--parent", type=int, help=argparse.SUPPRESS)
     add_allow_modules(parser)
 
@@ -51,7 +47,6 @@ def run(args: argparse.Namespace) -> int:
     """Build and bake what is not there yet; 0 if all is there in the end."""
     if args.parent is not None:
         end_with_parent(args.parent)
-        os.nice(NICENESS)
     if args.scene is not None:
         _furniture(_names_of(args.scene, args.scenes), args.jobs, f"furniture of {args.scene}")
         if not args.no_light:

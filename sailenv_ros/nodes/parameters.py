@@ -1,186 +1,27 @@
-"""The parameters of sim_node: declared with description, unit and range, read into a dataclass.
+"""The parameters of a node: declared in ROS from a table and read.
 
-They say how to run, never what a scene is. Those in `LIVE` may be changed while the node runs (see
-`live_parameters`); a change of another is refused by ROS, and its description says what to use.
+A parameter that is misspelt, of the wrong type or out of range is refused with a sentence.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
 
-from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
-from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
-from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
-from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
-from sailenv_ros.gateway.protocol_commands import Protocol
-from sailenv_ros.render.backend import BACKEND_NAMES, BackendName
-from sailenv_ros.scene_info import TimeMode
-from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
-from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.nodes.parameter_table import (
+    LIVE,
+    PARAMETERS,
+    Parameter,
+    SimParameters,
+    sim_parameters,
+)
 
-__all__ = ["LIVE", "Parameter", "SimParameters", "declare_parameters", "declare_table"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimParameters:
-    """How to run the simulator.
-
-    Attributes
-    ----------
-    scene : str
-    mode : {'realtime', 'lockstep'}
-    real_time_factor : float
-    seed : int
-    paused : bool
-    backend : {'auto', 'native', 'gl', 'tiny'}
-    render_device : int or None
-    scene_paths : tuple of Path
-    allow_modules : bool
-    build_missing : {'nothing', 'scene', 'all'}
-    publish_clock : bool
-    gateway_host : str
-    gateway_port : int
-        0 for none.
-    gateway_protocol : {'0.5', '0.6'}
-    viewer_host : str
-    viewer_port : int
-        0 for none.
-    viewer_control : bool
-    agent : AgentSpec or None
-        The agent that is there from the start.
-    """
-
-    scene: str | None
-    mode: TimeMode
-    real_time_factor: float
-    seed: int
-    paused: bool
-    backend: BackendName
-    render_device: int | None
-    scene_paths: tuple[Path, ...]
-    allow_modules: bool
-    build_missing: str
-    publish_clock: bool
-    gateway_host: str
-    gateway_port: int
-    gateway_protocol: str
-    viewer_host: str
-    viewer_port: int
-    viewer_control: bool
-    agent: AgentSpec | None
-
-
-@dataclass(frozen=True, slots=True)
-class _Parameter:
-    default: Any
-    description: str
-    low: float | None = None
-    high: float | None = None
-    choices: tuple[str, ...] = ()
-
-    def descriptor(self, *, live: bool) -> ParameterDescriptor:
-        result = ParameterDescriptor(description=self.description, read_only=not live)
-        if self.choices:
-            result.additional_constraints = "one of: " + ", ".join(self.choices)
-        if self.low is not None and self.high is not None:
-            if isinstance(self.default, int):
-                span = IntegerRange(from_value=int(self.low), to_value=int(self.high), step=1)
-                result.integer_range = [span]
-            else:
-                bounds = FloatingPointRange(from_value=float(self.low), to_value=float(self.high))
-                result.floating_point_range = [bounds]
-        return result
-
-
-LIVE = ("real_time_factor", "agent.rate_hz")
-"""Parameters that take effect while the node runs."""
-
-_PARAMETERS: dict[str, _Parameter] = {
-    "scene": _Parameter(
-        "",
-        "Name of the first scene, or the path of a scene file; later: the service change_scene. "
-        "Empty: room_01, or optical where the furniture has not been built.",
-    ),
-    "scene_paths": _Parameter([""], "More folders with scenes; an empty path counts for nothing."),
-    "allow_modules": _Parameter(
-        False,
-        "True: scene files may have behaviours of Python modules, whose code runs in this process.",
-    ),
-    "mode": _Parameter(
-        "realtime",
-        "realtime: simulated time follows the wall clock; lockstep: it moves by the step service.",
-        choices=("realtime", "lockstep"),
-    ),
-    "real_time_factor": _Parameter(
-        1.0, "Simulated seconds per wall second, in realtime mode.", 0.1, 10.0
-    ),
-    "seed": _Parameter(
-        0, "Seed of every random number of the scene; later: the service reset.", 0, 2**63 - 1
-    ),
-    "paused": _Parameter(
-        False,
-        "True: start with simulated time standing still; later: the services pause and resume.",
-    ),
-    "backend": _Parameter(
-        "auto",
-        "Renderer: gl = OpenGL, native = made for processors, tiny = slow fallback, auto = gl on "
-        "graphics hardware, else native.",
-        choices=BACKEND_NAMES,
-    ),
-    "render_device": _Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
-    "build_missing": _Parameter(
-        "nothing",
-        "What is built in the background: furniture and light that the first scene lacks, or all.",
-        choices=("nothing", "scene", "all"),
-    ),
-    "publish_clock": _Parameter(
-        True, "True: publish simulated time on /clock, unless another simulator there does."
-    ),
-    "gateway.port": _Parameter(
-        DEFAULT_PORT, "TCP port for SAILenv clients; 0: none.", 0, 65535
-    ),
-    "gateway.host": _Parameter(
-        DEFAULT_HOST, "Address that port listens on; 0.0.0.0: all, without any password."
-    ),
-    "gateway.protocol": _Parameter(
-        "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
-    ),
-    "viewer.port": _Parameter(
-        VIEWER_PORT, "TCP port of the web viewer; 0: none.", 0, 65535
-    ),
-    "viewer.host": _Parameter(
-        VIEWER_HOST, "Address that port listens on; 0.0.0.0: all, with a token in the URL."
-    ),
-    "viewer.control": _Parameter(
-        False, "True: those from other machines may change things there, not only watch."
-    ),
-    "agent.name": _Parameter("agent", "Name of the first agent; empty: start without one."),
-    "agent.width": _Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
-    "agent.height": _Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
-    "agent.vertical_fov_deg": _Parameter(60.0, "Full vertical angle of view [deg].", 1.0, 170.0),
-    "agent.near_m": _Parameter(0.05, "Nearest depth that is seen [m].", 1e-3, 1e4),
-    "agent.far_m": _Parameter(100.0, "Farthest depth that is seen [m].", 1e-3, 1e4),
-    "agent.depth_range_m": _Parameter(
-        10.0, "Depth that the 8-bit depth picture shows as black [m].", 1e-3, 1e4
-    ),
-    "agent.rate_hz": _Parameter(
-        30.0, "Frames per simulated second; 0: on request only [Hz].", 0.0, MAX_RATE_HZ
-    ),
-    "agent.views": _Parameter(
-        list(FIVE_VIEWS), "Views of a captured frame unless the request names others.",
-        choices=RENDERED_VIEWS,
-    ),
-    "agent.following": _Parameter(True, "True: it takes over the pose of its mover."),
-    "agent.mover": _Parameter("", "Name of the mover; empty: the scene's first."),
-}  # fmt: skip
+__all__ = ["declare_parameters", "declare_table"]
 
 
 def declare_parameters(node: Node) -> SimParameters:
@@ -191,31 +32,7 @@ def declare_parameters(node: Node) -> SimParameters:
     InvalidRequest
         If a value that was given has the wrong type or is out of range, or a name is unknown.
     """
-    values = declare_table(node, _PARAMETERS)
-    return SimParameters(
-        scene=values["scene"] or None,
-        mode=cast(TimeMode, values["mode"]),
-        real_time_factor=values["real_time_factor"],
-        seed=values["seed"],
-        paused=values["paused"],
-        backend=cast(BackendName, values["backend"]),
-        render_device=None if values["render_device"] < 0 else values["render_device"],
-        scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
-        allow_modules=values["allow_modules"],
-        build_missing=values["build_missing"],
-        publish_clock=values["publish_clock"],
-        gateway_host=values["gateway.host"],
-        gateway_port=values["gateway.port"],
-        gateway_protocol=values["gateway.protocol"],
-        viewer_host=values["viewer.host"],
-        viewer_port=values["viewer.port"],
-        viewer_control=values["viewer.control"],
-        agent=_agent(values),
-    )
-
-
-Parameter = _Parameter
-"""One parameter of a node: default, description, range or choices."""
+    return sim_parameters(declare_table(node, PARAMETERS))
 
 
 def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
@@ -230,19 +47,15 @@ def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
     return {name: _declare(node, name, entry) for name, entry in table.items()}
 
 
-def _declare(node: Node, name: str, entry: _Parameter) -> Any:
+def _declare(node: Node, name: str, entry: Parameter) -> Any:
     try:
-        descriptor = entry.descriptor(live=name in LIVE)
+        descriptor = _descriptor(entry, live=name in LIVE)
         value = node.declare_parameter(name, entry.default, descriptor).value
     except InvalidParameterTypeException:
-        wanted = f"of the type of {entry.default!r}"
-        raise InvalidRequest(f"parameter {name}", _given(node, name), wanted) from None
+        raise entry.of_wrong_type(name, _given(node, name)) from None
     except InvalidParameterValueException:
-        unit = entry.description.rstrip(".")
-        wanted = f"from {entry.low:g} to {entry.high:g} ({unit})"
-        raise InvalidRequest(f"parameter {name}", _given(node, name), wanted) from None
-    if entry.choices and isinstance(value, str) and value not in entry.choices:
-        raise UnknownName(f"parameter {name}", value, entry.choices)
+        raise entry.out_of_range(name, _given(node, name)) from None
+    entry.check_choice(name, value)
     return value
 
 
@@ -259,21 +72,15 @@ def _refuse_unknown(node: Node, table: Mapping[str, Parameter]) -> None:
             raise UnknownName("parameter", name, table)
 
 
-def _agent(values: dict[str, Any]) -> AgentSpec | None:
-    if not values["agent.name"]:
-        return None
-    return AgentSpec(
-        name=values["agent.name"],
-        intrinsics=CameraIntrinsics(
-            width=values["agent.width"],
-            height=values["agent.height"],
-            vertical_fov_deg=values["agent.vertical_fov_deg"],
-            near_m=values["agent.near_m"],
-            far_m=values["agent.far_m"],
-        ),
-        depth_range_m=values["agent.depth_range_m"],
-        rate_hz=values["agent.rate_hz"],
-        views=tuple(values["agent.views"]),
-        following=values["agent.following"],
-        mover=values["agent.mover"],
-    )
+def _descriptor(entry: Parameter, *, live: bool) -> ParameterDescriptor:
+    result = ParameterDescriptor(description=entry.description, read_only=not live)
+    if entry.choices:
+        result.additional_constraints = "one of: " + ", ".join(entry.choices)
+    if entry.low is not None and entry.high is not None:
+        if isinstance(entry.default, int):
+            span = IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)
+            result.integer_range = [span]
+        else:
+            bounds = FloatingPointRange(from_value=float(entry.low), to_value=float(entry.high))
+            result.floating_point_range = [bounds]
+    return result

@@ -23,7 +23,8 @@ from std_srvs.srv import Trigger
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest
-from sailenv_ros.nodes.parameters import Parameter, declare_table
+from sailenv_ros.nodes.parameter_table import Parameter
+from sailenv_ros.nodes.parameters import declare_table
 from sailenv_ros.nodes.qos import clock_qos, no_events
 from sailenv_ros.nodes.running import run_node
 from sailenv_ros.recording.channels import CLOCK, clock_message, present_form, stamp_of

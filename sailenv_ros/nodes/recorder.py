@@ -32,7 +32,8 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import FIVE_VIEWS, VIEWS, checked_views
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.lifecycle import StopRequest
-from sailenv_ros.nodes.parameters import Parameter, declare_table
+from sailenv_ros.nodes.parameter_table import Parameter
+from sailenv_ros.nodes.parameters import declare_table
 from sailenv_ros.nodes.running import run_node
 from sailenv_ros.recording.channels import (
     AGENT_TOPICS,

@@ -12,11 +12,7 @@ import contextlib
 import logging
 import os
 import sys
-import threading
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future
-from dataclasses import replace
-from typing import TypeVar
+from collections.abc import Sequence
 
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -25,47 +21,44 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from sailenv_ros.errors import (
-    AddressInUse,
     InvalidRequest,
     NameTaken,
     SailenvError,
     SimulationClosed,
 )
-from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.agent_leases import AgentLeases
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.capture_server import CaptureServer
 from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
-from sailenv_ros.nodes.lifecycle import StopRequest, finished_within, stop_at_end_of
+from sailenv_ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
+from sailenv_ros.nodes.lifecycle import StopRequest, stop_at_end_of
 from sailenv_ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.nodes.log_bridge import LogBridge
-from sailenv_ros.nodes.parameters import SimParameters, declare_parameters
+from sailenv_ros.nodes.parameters import declare_parameters
 from sailenv_ros.nodes.requests import OperationRunner
 from sailenv_ros.nodes.services import SimulatorServices
 from sailenv_ros.nodes.tf_tree import TfTree
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.background_build import BackgroundBuild
 from sailenv_ros.system.memory import keep_freed_memory
-from sailenv_ros.system.presence import ClockLock, SimulatorLock, clock_publisher
+from sailenv_ros.system.presence import (
+    ClockLock,
+    SimulatorLock,
+    checked_domain,
+    clock_publisher,
+)
 from sailenv_ros.system.transport import use_shared_memory_profile, who_may_command
-from sailenv_ros.viewer import ViewerServer
 
-__all__ = ["SimNode", "main"]
+__all__ = ["SimNode", "main", "run"]
 
 NODE_NAME = "sim_node"
-NAMESPACE = "/sailenv"
-
-MAX_DOMAIN_ID = 232
 
 SWITCH_INTERVAL_S = 0.0005
 """How long one Python thread may keep the others waiting; Python's own 5 ms delays every frame."""
 
 _log = logging.getLogger(f"sailenv_ros.nodes.{NODE_NAME}")  # __name__ may be __main__
-
-Server = TypeVar("Server")
 
 
 class SimNode:
@@ -76,33 +69,35 @@ class SimNode:
     node : Node
     executor : SingleThreadedExecutor
         Spins the node once `start` was called.
-    simulation : Simulation
-        Owned from now on.
-    parameters : SimParameters
+    hosted : Hosted
+        The simulation with its servers; owned from now on.
+    publish_clock : bool
     """
 
     def __init__(
         self,
         node: Node,
         executor: SingleThreadedExecutor,
-        simulation: Simulation,
-        parameters: SimParameters,
+        hosted: Hosted,
+        *,
+        publish_clock: bool,
     ) -> None:
         self._node = node
         self._executor = executor
-        self._simulation = simulation
+        self._hosted = hosted
+        simulation = self._simulation = hosted.simulation
         runner = OperationRunner(simulation, executor)
         self._tf = TfTree(node)
         self._endpoints = AgentEndpoints(node, simulation, runner, self._tf)
         self._announcements = Announcements(
-            node, publish_clock=parameters.publish_clock, on_info=self._scene_changed
+            node, publish_clock=publish_clock, on_info=self._scene_changed
         )
         self._leases = AgentLeases(node, runner)
         self._services = SimulatorServices(
             node, runner, self._reconcile, before_registration=self._forget_ended_clients
         )
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
-        agent = "" if parameters.agent is None else parameters.agent.name
+        agent = "" if hosted.parameters.agent is None else hosted.parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
         self._spinning = ExecutorThread(executor)
         self._capture_server = CaptureServer(
@@ -111,19 +106,11 @@ class SimNode:
             node.get_namespace(),
             self._endpoints.publisher_of,
         )
-        self._gateway = _gateway(simulation, parameters)
-        self._viewer = _viewer(simulation, parameters)
-        self._build = _background_build(simulation, parameters)
 
     @property
     def simulation(self) -> Simulation:
         """The simulation that is hosted."""
         return self._simulation
-
-    @property
-    def viewer_url(self) -> str:
-        """Address of the web viewer; empty if there is none."""
-        return "" if self._viewer is None else self._viewer.url
 
     def start(self) -> None:
         """Begin to publish and to serve."""
@@ -134,17 +121,12 @@ class SimNode:
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
-        if self._build is not None:
-            self._build.close()
-        if self._gateway is not None:
-            self._gateway.close()
-        if self._viewer is not None:
-            self._viewer.close()
+        self._hosted.close_servers()
         self._capture_server.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._endpoints.close()
-        return finished_within(self._simulation.close, timeout_s)
+        return self._hosted.close_simulation(timeout_s)
 
     def _reconcile(self) -> None:
         info = self._simulation.info
@@ -164,11 +146,28 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the node until it is asked to end; return the exit status."""
     stop = StopRequest()
     stop.install()
-    arguments = list(sys.argv if argv is None else argv)
+    try:
+        return run(list(sys.argv if argv is None else argv), stop)
+    finally:
+        stop.disarm()
+
+
+def run(arguments: list[str], stop: StopRequest, hosted: Hosted | None = None) -> int:
+    """Run the node until the end is asked for; return the exit status.
+
+    Parameters
+    ----------
+    arguments : list of str
+        As `sys.argv` has them.
+    stop : StopRequest
+    hosted : Hosted or None
+        A simulation that runs already, in a process that has the lock of its name. Owned from
+        when the node is there; if the node cannot be made, it goes on as it was. None starts one.
+    """
     logger = get_logger(NODE_NAME)
     bridge = LogBridge(logger)
     try:
-        return _run(arguments, stop)
+        return _run(arguments, stop, hosted)
     except NameTaken as error:
         logger.fatal(_one_line(error))
         return 3
@@ -179,11 +178,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         _log.exception("the node ends because of an internal error")
         return 1
     finally:
-        stop.disarm()
         bridge.close()
 
 
-def _run(arguments: list[str], stop: StopRequest) -> int:
+def _run(arguments: list[str], stop: StopRequest, hosted: Hosted | None) -> int:
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     keep_freed_memory()
     transport = use_shared_memory_profile()
@@ -192,7 +190,7 @@ def _run(arguments: list[str], stop: StopRequest) -> int:
         try:
             options = _parsed(remove_ros_args(arguments))
             context.init(arguments)
-            _check_domain(context.get_domain_id())
+            checked_domain(context.get_domain_id())
             node = Node(NODE_NAME, namespace=NAMESPACE, context=context)
         except SailenvError:
             raise
@@ -202,30 +200,35 @@ def _run(arguments: list[str], stop: StopRequest) -> int:
         if options.end_with_fd is not None:
             stop_at_end_of(options.end_with_fd, stop)
         try:
-            return _run_node(node, context, transport.why, stop)
+            return _run_node(node, context, transport.why, stop, hosted)
         finally:
             node.destroy_node()
     finally:
         context.try_shutdown()
 
 
-def _run_node(node: Node, context: Context, transport: str, stop: StopRequest) -> int:
+def _run_node(
+    node: Node, context: Context, transport: str, stop: StopRequest, hosted: Hosted | None
+) -> int:
     parameters = declare_parameters(node)
     domain_id = context.get_domain_id()
-    with SimulatorLock(domain_id, node.get_namespace()), contextlib.ExitStack() as held:
-        if parameters.publish_clock and not _takes_clock(domain_id, held):
-            parameters = replace(parameters, publish_clock=False)
-        simulation = _load(parameters, stop)
-        if simulation is None:
-            return 0
+    with contextlib.ExitStack() as held:
+        if hosted is None:
+            held.enter_context(SimulatorLock(domain_id, node.get_namespace()))
+        publish_clock = parameters.publish_clock and _takes_clock(domain_id, held)
+        if hosted is None:
+            simulation = load_simulation(parameters, stop)
+            if simulation is None:
+                return 0
+            hosted = Hosted(simulation, parameters)
         executor = SingleThreadedExecutor(context=context)
-        sim_node = SimNode(node, executor, simulation, parameters)
+        sim_node = SimNode(node, executor, hosted, publish_clock=publish_clock)
         try:
             sim_node.start()
-            _greet(node, simulation.info, transport, sim_node.viewer_url)
+            _greet(node, hosted.simulation.info, transport, hosted.viewer_url)
             node.get_logger().info(who_may_command(domain_id))
             while not stop.wait(0.25):
-                if simulation.closed:
+                if hosted.simulation.closed:
                     raise SimulationClosed("of an internal error, which the log shows")
             status = 0
         finally:
@@ -250,105 +253,6 @@ def _takes_clock(domain_id: int, held: contextlib.ExitStack) -> bool:
         )
         return False
     return True
-
-
-def _load(parameters: SimParameters, stop: StopRequest) -> Simulation | None:
-    """Start the simulation; None if the end was asked for meanwhile."""
-    loading: Future[Simulation] = Future()
-
-    def load() -> None:
-        try:
-            loading.set_result(_simulation(parameters))
-        except BaseException as error:  # raised again in the main thread
-            loading.set_exception(error)
-
-    thread = threading.Thread(target=load, name="loading", daemon=True)
-    thread.start()
-    while thread.is_alive():
-        thread.join(0.02)
-        if stop.is_set:
-            # What is being loaded goes with the process, if not before.
-            loading.add_done_callback(_close_loaded)
-            thread.join(1.0)
-            return None
-    return loading.result()
-
-
-def _simulation(parameters: SimParameters) -> Simulation:
-    simulation = Simulation(
-        parameters.scene,
-        mode=parameters.mode,
-        real_time_factor=parameters.real_time_factor,
-        seed=parameters.seed,
-        paused=parameters.paused,
-        backend=parameters.backend,
-        render_device=parameters.render_device,
-        scene_paths=parameters.scene_paths,
-        allow_modules=parameters.allow_modules,
-    )
-    try:
-        agent = parameters.agent
-        if agent is not None and agent.name not in {spec.name for spec in simulation.info.agents}:
-            simulation.register_agent(agent)
-    except BaseException:
-        simulation.close()
-        raise
-    return simulation
-
-
-def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer | None:
-    return _unless_taken(
-        parameters.gateway_port,
-        lambda: GatewayServer(
-            simulation,
-            host=parameters.gateway_host,
-            port=parameters.gateway_port,
-            protocol=parameters.gateway_protocol,
-        ),
-        "SAILenv clients cannot connect here",
-    )
-
-
-def _viewer(simulation: Simulation, parameters: SimParameters) -> ViewerServer | None:
-    return _unless_taken(
-        parameters.viewer_port,
-        lambda: ViewerServer(
-            simulation,
-            host=parameters.viewer_host,
-            port=parameters.viewer_port,
-            control=parameters.viewer_control,
-        ),
-        "there is no window in the browser here",
-    )
-
-
-def _background_build(simulation: Simulation, parameters: SimParameters) -> BackgroundBuild | None:
-    if parameters.build_missing == "nothing":
-        return None
-    return BackgroundBuild(
-        simulation,
-        str(parameters.scene or simulation.info.scene),
-        everything=parameters.build_missing == "all",
-        scene_paths=parameters.scene_paths,
-        allow_modules=parameters.allow_modules,
-    )
-
-
-def _unless_taken(port: int, serve: Callable[[], Server], otherwise: str) -> Server | None:
-    """Start a server; none on port 0, nor on one that is taken, of which the log then tells."""
-    if not port:
-        return None
-    try:
-        return serve()
-    except AddressInUse as problem:
-        # Another simulator on this machine is no reason not to start; anything else is.
-        _log.warning("%s: %s", otherwise, problem)
-        return None
-
-
-def _close_loaded(loading: Future[Simulation]) -> None:
-    if loading.exception() is None:
-        loading.result().close()
 
 
 def _greet(node: Node, info: SceneInfo, transport: str, url: str) -> None:
@@ -381,12 +285,6 @@ def _leave_at_once(node: Node, context: Context, status: int) -> None:
     context.try_shutdown()
     logging.shutdown()
     os._exit(status)
-
-
-def _check_domain(domain_id: int) -> None:
-    if not 0 <= domain_id <= MAX_DOMAIN_ID:
-        # Fast DDS would end the process on the spot.
-        raise InvalidRequest("ROS_DOMAIN_ID", domain_id, f"from 0 to {MAX_DOMAIN_ID}")
 
 
 def _one_line(error: Exception) -> str:

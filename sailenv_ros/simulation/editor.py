@@ -68,6 +68,10 @@ class SceneEditor:
         self._core.announce()
         return instance_id
 
+    def entry_without_place(self, entry: ObjectSpec) -> dict[str, Any]:
+        """Return what a scene file says of an object, but for where it is and how it moves."""
+        return _without_place(entry)
+
     def change_object(self, instance_id: int, changes: Mapping[str, Any]) -> None:
         """Change what an object is; None takes the asset's own."""
         world = self._core.world

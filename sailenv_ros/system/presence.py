@@ -15,11 +15,14 @@ from sailenv_ros.system.process_locks import ProcessLock, holder_of
 __all__ = [
     "ClockLock",
     "SimulatorLock",
+    "checked_domain",
     "checked_namespace",
     "clock_publisher",
     "present_simulator",
     "simulator_is_present",
 ]
+
+MAX_DOMAIN_ID = 232
 
 _NAMESPACE_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -69,6 +72,20 @@ class ClockLock(ProcessLock):
 def clock_publisher(domain_id: int) -> int | None:
     """Return the process id of the simulator that publishes ``/clock``; None if none does."""
     return holder_of(_file_of_clock(domain_id))
+
+
+def checked_domain(domain_id: object) -> int:
+    """Return the number of a ROS domain, given as a number or as text.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is none, for which Fast DDS would end the process on the spot.
+    """
+    text = str(domain_id)
+    if not text.isascii() or not text.isdecimal() or int(text) > MAX_DOMAIN_ID:
+        raise InvalidRequest("ROS_DOMAIN_ID", domain_id, f"from 0 to {MAX_DOMAIN_ID}")
+    return int(text)
 
 
 def checked_namespace(namespace: object) -> str:

@@ -31,6 +31,7 @@ from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
+from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import packed, picture_png, view_png
 from sailenv_ros.viewer.outbox import Outbox
 from sailenv_ros.viewer.request_arguments import Arguments, arguments_of_text
@@ -67,6 +68,7 @@ class Client:
         Sent first; what never changes.
     touch : callable
         Called after each command that may have changed what is seen.
+    history : EditHistory
     """
 
     def __init__(
@@ -81,7 +83,9 @@ class Client:
         limits: ViewerLimits,
         greeting: dict[str, Any],
         touch: Callable[[], None],
+        history: EditHistory,
     ) -> None:
+        self.history = history
         self.debug_agent = debug_agent
         self._socket = socket
         self._simulation = simulation

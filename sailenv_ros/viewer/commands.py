@@ -16,10 +16,12 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import Operations
+from sailenv_ros.simulation.edit_records import EditOperations
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
 from sailenv_ros.viewer.object_overlay import overlay_of
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
+from sailenv_ros.viewer.recorded_commands import edits_object
 from sailenv_ros.viewer.request_arguments import Arguments
 from sailenv_ros.viewer.scene_json import object_to_json, pose_to_json
 
@@ -212,6 +214,7 @@ async def set_waypoints(context: CommandContext, given: Arguments) -> Any:
 
 
 @_commands.changes
+@edits_object("adding")
 async def spawn(context: CommandContext, given: Arguments) -> Any:
     """Put an object where a pixel is seen, its front towards the camera; tell what it is."""
     frame = context.frame(given.get("frame"))
@@ -228,6 +231,7 @@ async def spawn(context: CommandContext, given: Arguments) -> Any:
 
 
 @_commands.changes
+@edits_object("placing")
 async def place(context: CommandContext, given: Arguments) -> Any:
     """Move an object to where a pixel is seen."""
     frame = context.frame(given.get("frame"))
@@ -236,6 +240,7 @@ async def place(context: CommandContext, given: Arguments) -> Any:
 
 
 @_commands.changes
+@edits_object("moving")
 async def move(context: CommandContext, given: Arguments) -> Any:
     """Move an object."""
     pose = _pose(given)
@@ -245,6 +250,7 @@ async def move(context: CommandContext, given: Arguments) -> Any:
 
 
 @_commands.changes
+@edits_object("changing")
 async def change(context: CommandContext, given: Arguments) -> Any:
     """Change an object's name, category or scale."""
     number, changes = given.integer("object"), given.mapping("changes")
@@ -256,12 +262,14 @@ async def change(context: CommandContext, given: Arguments) -> Any:
 
 
 @_commands.changes
+@edits_object("deleting")
 async def despawn(context: CommandContext, given: Arguments) -> Any:
     """Take an object out of the scene."""
     await context.run(Operations.despawn_object, given.integer("object"))
 
 
 @_commands.changes
+@edits_object("the behaviour of")
 async def attach(context: CommandContext, given: Arguments) -> Any:
     """Let an object move of itself in one more way."""
     number = given.integer("object")
@@ -274,6 +282,7 @@ async def attach(context: CommandContext, given: Arguments) -> Any:
 
 
 @_commands.changes
+@edits_object("stopping")
 async def detach(context: CommandContext, given: Arguments) -> Any:
     """End everything that makes an object move of itself."""
     number = given.integer("object")
@@ -281,14 +290,31 @@ async def detach(context: CommandContext, given: Arguments) -> Any:
     return object_to_json(await context.run(Operations.get_object, number))
 
 
+# -- history ---------------------------------------------------------------------------------
+
+
+@_commands.changes
+async def undo(context: CommandContext, given: Arguments) -> Any:
+    """Undo the last change of an object, a light or the surroundings; tell which, and its id."""
+    what, number = await context.history.undo(context)
+    return {"what": what, "id": number}
+
+
+@_commands.changes
+async def redo(context: CommandContext, given: Arguments) -> Any:
+    """Do again what was undone last; tell as `undo` does."""
+    what, number = await context.history.redo(context)
+    return {"what": what, "id": number}
+
+
 def _pose(given: Arguments) -> Pose:
     return Pose.from_rpy_deg(given.numbers("position", 3), given.numbers("rpy_deg", 3))
 
 
 async def _set_down(context: CommandContext, number: int, point: tuple[float, float, float]) -> Any:
-    """Move an object so that it stands on a point, whatever its origin is."""
+    """Stand an object on what is seen at a point, whatever its origin is."""
     state = await context.run(Operations.get_object, number)
     x, y, z = point
     pose = Pose((x, y, z - state.bottom_m), state.pose.orientation_xyzw)
-    await context.run(Operations.move_object, number, pose=pose, teleport=True)
-    return object_to_json(await context.run(Operations.get_object, number))
+    held = await context.run(EditOperations.set_down, number, pose)
+    return {**object_to_json(await context.run(Operations.get_object, number)), "held": held}

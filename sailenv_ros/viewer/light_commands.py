@@ -11,6 +11,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.lights import LightType
 from sailenv_ros.operations import Operations
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
+from sailenv_ros.viewer.recorded_commands import edits_surroundings
 from sailenv_ros.viewer.request_arguments import Arguments
 
 __all__ = ["LIGHT_COMMANDS"]
@@ -19,6 +20,7 @@ LIGHT_COMMANDS = CommandTable()
 
 
 @LIGHT_COMMANDS.changes
+@edits_surroundings("adding the light")
 async def add_light(context: CommandContext, given: Arguments) -> Any:
     """Hang a light where the watched camera is, shining where it looks."""
     camera = context.frame(None).camera
@@ -36,12 +38,14 @@ async def add_light(context: CommandContext, given: Arguments) -> Any:
 
 
 @LIGHT_COMMANDS.changes
+@edits_surroundings("deleting the light")
 async def remove_light(context: CommandContext, given: Arguments) -> Any:
     """Take a light out of the scene."""
     await context.run(Operations.remove_light, given.text("light"))
 
 
 @LIGHT_COMMANDS.changes
+@edits_surroundings("changing the light")
 async def set_light(context: CommandContext, given: Arguments) -> Any:
     """Change attributes of a light."""
     changes = given.mapping("changes")
@@ -51,6 +55,7 @@ async def set_light(context: CommandContext, given: Arguments) -> Any:
 
 
 @LIGHT_COMMANDS.changes
+@edits_surroundings("changing the surroundings")
 async def set_environment(context: CommandContext, given: Arguments) -> Any:
     """Change the surroundings, by the keys of a scene file."""
     await context.run(Operations.set_environment, **given.mapping("changes"))

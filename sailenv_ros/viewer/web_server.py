@@ -25,6 +25,7 @@ from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, i
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
+from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import views_to_json
 from sailenv_ros.viewer.page_files import page_file
 from sailenv_ros.viewer.scene_json import (
@@ -95,6 +96,7 @@ class ViewerServer:
         self._clients: set[Client] = set()
         self._connected = 0
         self._touched = 0
+        self._history = EditHistory()
         self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
         self._thread = LoopThread("viewer", self._serve)
         try:
@@ -258,6 +260,7 @@ class ViewerServer:
                 "skies": await asyncio.to_thread(skies_to_json),
             },
             touch=self._touch,
+            history=self._history,
         )
         self._clients.add(client)
         try:
@@ -280,6 +283,7 @@ class ViewerServer:
         while True:
             await asyncio.sleep(STATS_S)
             now = (time.monotonic(), self._simulation.sim_time_ns)
+            self._history.forget_other_scenes(self._simulation.info.epoch)
             stats: dict[str, Any] = {
                 "type": "stats",
                 "time_s": now[1] * 1e-9,
@@ -287,6 +291,8 @@ class ViewerServer:
                 "skipped_frames": self._simulation.skipped_frames,
                 "viewers": len(self._clients),
                 "building": self._simulation.background_task,
+                "undo": self._history.undo_what,
+                "redo": self._history.redo_what,
             }
             before = now
             for client in self._clients:

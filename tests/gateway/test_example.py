@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import runpy
+import socket
+import subprocess
 import sys
 from pathlib import Path
 
@@ -36,3 +38,30 @@ def test_the_example_runs(
     assert "floor" in out
     with Image.open(picture) as image:
         assert image.size == (320, 240)
+
+
+def test_the_example_starts_a_simulator_where_there_is_none(tmp_path: Path) -> None:
+    """In a process of its own; the simulator ends with it."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port: int = probe.getsockname()[1]
+    picture = tmp_path / "seen.png"
+    # The client is imported first, as above.
+    program = (
+        "import runpy, sys; from tests.support.sailenv_client import OriginalAgent; "
+        f"sys.argv = ['example', '{port}', '{picture}']; "
+        f"runpy.run_path({str(EXAMPLE)!r}, run_name='__main__')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=EXAMPLE.parents[1],
+        capture_output=True,
+        text=True,
+        timeout=110.0,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert f"no simulator listens on port {port}" in done.stdout
+    with Image.open(picture) as image:
+        assert image.size == (320, 240)
+    with socket.socket() as later:
+        assert later.connect_ex(("127.0.0.1", port)) != 0

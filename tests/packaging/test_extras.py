@@ -53,7 +53,7 @@ def test_every_optional_package_is_in_the_extra_that_its_error_names() -> None:
     for package, extra in _EXTRA_OF.items():
         assert package in extras[extra], package
     assert not set(OPTIONAL) & extras["requirements"]
-    assert len(OPTIONAL) == 5
+    assert len(OPTIONAL) == 4
 
 
 @pytest.mark.gl

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import yaml
 
-from sailenv_ros.nodes.parameters import _PARAMETERS, LIVE
+from sailenv_ros.nodes.parameter_table import LIVE, PARAMETERS
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
@@ -103,7 +103,7 @@ def test_the_page_has_every_parameter() -> None:
     types = {bool: "bool", int: "integer", float: "double", str: "string", list: "string_array"}
     expected = {
         name: (types[type(entry.default)], shown_default(entry.default), shown_range(entry))
-        for name, entry in _PARAMETERS.items()
+        for name, entry in PARAMETERS.items()
     }
     rows = {name.strip("`"): tuple(cells) for name, *cells in table("Parameters of `sim_node`")}
     assert {name: row[:3] for name, row in rows.items()} == expected
@@ -126,7 +126,7 @@ def test_the_file_of_parameters_has_every_one_with_its_default() -> None:
     """`config/sim_node.yaml`, where an empty list has to be written as one empty text."""
     file = yaml.safe_load((PAGE.parents[1] / "config" / "sim_node.yaml").read_text())
     found = flattened(file["/**"]["ros__parameters"])
-    declared = {name: entry.default for name, entry in _PARAMETERS.items()}
+    declared = {name: entry.default for name, entry in PARAMETERS.items()}
     assert {name: [] if value == [""] else value for name, value in found.items()} == {
         name: [] if default == [""] else default for name, default in declared.items()
     }

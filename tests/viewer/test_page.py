@@ -18,6 +18,7 @@ from sailenv_ros.cli.main import main
 from sailenv_ros.frame import FIVE_VIEWS
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.background_build import BackgroundBuild, BuildStep
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import PHONE, OpenPage, chromium
 from tests.support.waiting import until
@@ -473,3 +474,19 @@ def test_the_page_fits(
     brightness = sum(map(int, paper.removeprefix("rgb(").removesuffix(")").split(",")))
     assert (brightness < 3 * 60) is (scheme == "dark")
     opened.close()
+
+
+def test_what_is_built_in_the_background_is_shown(
+    opened: OpenPage, simulation: Simulation, tmp_path: Path
+) -> None:
+    """As long as it is being built, in the words of who builds it."""
+    go_on = tmp_path / "go_on"
+    step = BuildStep(
+        command=("sh", "-c", f"echo furniture: 3 of 9; until [ -e {go_on} ]; do sleep 0.1; done"),
+        by_hand="-",
+    )
+    shown = opened.page.locator("#building")
+    with BackgroundBuild(simulation, [step]):
+        expect(shown).to_have_text("furniture: 3 of 9")
+        go_on.touch()
+        expect(shown).to_have_text("")

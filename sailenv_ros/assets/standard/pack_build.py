@@ -52,13 +52,22 @@ CREDITS = "credits"
 Progress = Callable[[str, int, int], None]
 """Called with what was done, how many are done, and of how many."""
 
-_TOOLS = ("glb", "hulls", "meshes", "model_files", "obj_polygons", "skies", "solids")
+_TOOLS = (
+    "glb",
+    "hulls",
+    "meshes",
+    "model_files",
+    "obj_polygons",
+    "simplification",
+    "skies",
+    "solids",
+)
 """Modules beside this folder whose code shapes the result."""
 
-_OPTIONAL = ("coacd", "meshoptimizer", "OpenEXR")
+_OPTIONAL = ("coacd", "OpenEXR")
 _PURPOSE = "building the furniture pack"
 
-_LIBRARIES = ("trimesh", "meshoptimizer", "coacd", "mapbox_earcut", "numpy")
+_LIBRARIES = ("trimesh", "coacd", "mapbox_earcut", "numpy")
 
 
 BUILD_S = 3600.0

@@ -34,6 +34,8 @@ const PATHS = {
   plus: "M12 5v14M5 12h14",
   up: "M12 19V5M6 11l6-6 6 6",
   down: "M12 5v14M6 13l6 6 6-6",
+  undo: "M9 5L4 10l5 5M4 10h10a5 5 0 0 1 0 10h-4",
+  redo: "M15 5l5 5-5 5M20 10H10a5 5 0 0 0 0 10h4",
   save: "M12 4v11M7 10l5 5 5-5M5 20h14",
 };
 

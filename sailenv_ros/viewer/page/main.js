@@ -126,6 +126,14 @@ class App {
     $("clock").textContent = `${fixed(stats.time_s)} s`;
     $("pace").textContent = `× ${fixed(stats.real_time_factor)}`;
     $("building").textContent = stats.building;
+    this.#history(stats.undo, stats.redo);
+  }
+
+  #history(undo, redo) {
+    for (const [id, words, what, key] of [["undo", "Undo", undo, "Z"], ["redo", "Do again", redo, "Shift+Z"]]) {
+      $(id).disabled = !what || !this.control;
+      $(id).title = `${words}${what ? `: ${what}` : ""} (${key})`;
+    }
   }
 
   #lost(why) {
@@ -198,7 +206,7 @@ class App {
   }
 
   #bar() {
-    for (const [id, name] of [["play", "pause"], ["step", "step"], ["reset", "reset"], ["layout", "one"], ["screenshot", "camera"], ["sheet", "sheet"]]) {
+    for (const [id, name] of [["play", "pause"], ["step", "step"], ["reset", "reset"], ["undo", "undo"], ["redo", "redo"], ["layout", "one"], ["screenshot", "camera"], ["sheet", "sheet"]]) {
       glyph($(id), name);
     }
     $("walk").append(icon("eye"), "Walk");
@@ -210,6 +218,8 @@ class App {
     click("play", () => this.try(this.scene.paused ? "resume" : "pause"));
     click("step", () => this.try("step", { count: 8 }));
     click("reset", () => this.try("reset"));
+    click("undo", () => this.goBack("undo"));
+    click("redo", () => this.goBack("redo"));
     click("layout", () => {
       this.stage.toggleAll();
       glyph($("layout"), this.stage.all ? "one" : "grid");
@@ -255,7 +265,9 @@ class App {
     if (!head) return;
     const middle = { frame: head.number, u: Math.floor(head.width / 2), v: Math.floor(0.62 * head.height) };
     const made = await this.try("spawn", { asset, ...(at ?? middle) });
-    if (made) this.select(made.id);
+    if (!made) return;
+    this.#tellHeld(made);
+    this.select(made.id);
   }
 
   async deleteSelected() {
@@ -263,6 +275,19 @@ class App {
     if (!id) return;
     this.select(0);
     await this.try("despawn", { object: id });
+  }
+
+  /** Undo the last change, or do it again; what has come back is selected. */
+  async goBack(which) {
+    const step = await this.try(which);
+    if (!step) return;
+    toast(`${which === "undo" ? "Undone" : "Done again"}: ${step.what}`);
+    if (step.id) this.select(step.id);
+    else if (this.selected && !this.instances.has(this.selected)) this.select(0);
+  }
+
+  #tellHeld({ name, held }) {
+    if (held) toast(`${name} is held where it stands: physics knows only the hull of what is around it.`);
   }
 
   placeNext() {
@@ -321,6 +346,10 @@ class App {
         if (event.code === "Escape") event.target.blur();
         return;
       }
+      if (event.key.toLowerCase() === "z" && this.control) {
+        event.preventDefault();
+        this.goBack(event.shiftKey ? "redo" : "undo");
+      }
       if (event.code === "Delete" || event.code === "Backspace") this.deleteSelected();
       if (event.code === "Escape") {
         if (this.#placing) this.#endPlacing();
@@ -339,7 +368,8 @@ class App {
   async #click({ view, frame, u, v }) {
     if (this.#placing && this.selected) {
       this.#endPlacing();
-      await this.try("place", { object: this.selected, frame, u, v });
+      const placed = await this.try("place", { object: this.selected, frame, u, v });
+      if (placed) this.#tellHeld(placed);
       this.object.show(this.selected);
       return;
     }

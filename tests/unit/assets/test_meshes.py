@@ -16,6 +16,7 @@ from sailenv_ros.assets.meshes import (
     smooth_mesh,
     thinned_out,
 )
+from sailenv_ros.assets.simplification import fewer_triangles
 from sailenv_ros.assets.solids import box_mesh, sphere_mesh
 from sailenv_ros.model import Mesh
 
@@ -137,3 +138,68 @@ def test_slivers_are_dropped() -> None:
         positions=points, uvs=np.zeros((4, 2)), triangles=np.array([[0, 1, 2], [0, 1, 3]])
     )
     assert len(smooth_mesh(mesh).triangles) == 1
+
+
+def grid(size: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return corners and triangles of a flat square of edge 1, cut into size x size squares."""
+    line = np.linspace(0.0, 1.0, size + 1)
+    x, y = np.meshgrid(line, line)
+    positions = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    at = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]
+    halves = [np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)]
+    return positions, np.concatenate([half.reshape(-1, 3) for half in halves])
+
+
+def area_of(positions: NDArray[np.float64], triangles: NDArray[np.int64]) -> float:
+    return area(RawMesh(positions=positions, uvs=positions[:, :2], triangles=triangles))
+
+
+def test_a_flat_sheet_becomes_few_triangles_and_keeps_its_outline() -> None:
+    """Its area is exact, and no triangle is turned over."""
+    positions, triangles = grid(24)
+    few = fewer_triangles(positions, triangles, 2, max_error=1e-6)
+    assert len(few) <= 24
+    assert area_of(positions, few) == pytest.approx(1.0, abs=1e-12)
+    a, b, c = (positions[few[:, k]] for k in range(3))
+    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()
+
+
+def test_a_cube_cut_finely_becomes_its_twelve_triangles() -> None:
+    """Edges and corners are where a contraction costs; the inside of a face costs nothing."""
+    positions, triangles = grid(8)
+    sides, faces = [], []
+    for axis in range(3):
+        for side, turn in ((0.0, slice(None, None, -1)), (1.0, slice(None))):
+            flat = np.roll(positions, axis + 1, axis=1)
+            flat[:, axis] = side
+            faces.append(triangles[:, turn] + len(positions) * len(sides))
+            sides.append(flat)
+    corners, cube = np.concatenate(sides).round(9), np.concatenate(faces)
+    unique, place = np.unique(corners, axis=0, return_inverse=True)
+    few = fewer_triangles(unique, place.reshape(-1)[cube], 12, max_error=1e-6)
+    assert len(few) == 12
+    assert area_of(unique, few) == pytest.approx(6.0, abs=1e-12)
+
+
+def test_a_seam_of_texture_stays_where_it_is() -> None:
+    """Two halves with coordinates of their own keep them: no triangle joins both."""
+    positions, triangles = grid(16)
+    right = positions[triangles].mean(axis=1)[:, 0] > 0.5
+    triangles = np.where(right[:, None], triangles + len(positions), triangles)
+    doubled = np.concatenate([positions, positions])
+    few = fewer_triangles(doubled, triangles, 4, max_error=1e-6)
+    assert len(few) < len(triangles) / 8
+    of_right = few >= len(positions)
+    assert (of_right.all(axis=1) | ~of_right.any(axis=1)).all()
+    for half in (few[of_right.all(axis=1)], few[~of_right.any(axis=1)]):
+        assert area_of(doubled, half) == pytest.approx(0.5, abs=1e-12)
+
+
+def test_a_surface_does_not_move_farther_than_is_allowed() -> None:
+    """A sphere that may not change keeps nearly all its triangles; no corner is made up."""
+    ball = raw(sphere_mesh(1.0, segments=24))
+    kept = simplified(ball, 20, max_error=1e-4)
+    assert len(kept.triangles) > 0.8 * len(ball.triangles)
+    rows = {tuple(row) for row in ball.positions.round(6)}
+    assert all(tuple(row) in rows for row in simplified(ball, 60, max_error=0.1).positions.round(6))

@@ -66,3 +66,25 @@ def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("[]")
+
+
+@pytest.mark.parametrize(
+    ("words", "flag"),
+    [
+        (["--width", "2"], "--width"),
+        (["--height", "99999"], "--height"),
+        (["--fov", "200"], "--fov"),
+        (["--views", "rbg"], "--views"),
+        (["--time", "-1"], "--time"),
+        (["--plain"], "--views NAME"),
+        (["--columns", "0"], "--columns"),
+        (["--look-at", "0", "0", "1.5"], "--position"),
+        (["--output", "sheet.gif"], "--output"),
+    ],
+)
+def test_what_a_picture_of_a_scene_lacks_is_named_by_its_flag(
+    words: list[str], flag: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In one sentence, before anything is loaded."""
+    assert main(["scene", "render", "optical", "--output", "sheet.png", *words]) == 2
+    assert flag in capsys.readouterr().err

@@ -8,7 +8,7 @@ import re
 import pytest
 import yaml
 
-from sailenv_ros.nodes.parameters import Parameter
+from sailenv_ros.nodes.parameter_table import Parameter
 from sailenv_ros.nodes.player import PARAMETERS as PLAYER
 from sailenv_ros.nodes.recorder import PARAMETERS as RECORDER
 from sailenv_ros.recording.channels import AGENT_TOPICS

@@ -1,0 +1,128 @@
+"""Changes that pages have made, in their order, to be undone and done again.
+
+One history for all pages of a simulation. It ends with the scene: what was changed in a scene that
+has been left or begun anew cannot be undone.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass, replace
+
+from sailenv_ros.errors import InvalidState
+from sailenv_ros.simulation.edit_records import (
+    EditOperations,
+    ObjectRecord,
+    SurroundingsRecord,
+)
+from sailenv_ros.viewer.command_context import CommandContext
+
+__all__ = ["EditHistory", "EditStep"]
+
+MOST_STEPS = 200
+
+MERGED_S = 1.0
+"""Changes of one thing that follow as fast are one step, as those of a slider are [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EditStep:
+    """One change.
+
+    Attributes
+    ----------
+    what : str
+        In words, for the page.
+    of : tuple
+        What was changed of which thing: changes of the same are merged.
+    epoch : int
+        Of the scene.
+    before, after : ObjectRecord, SurroundingsRecord or None
+        None where the object was not there.
+    time_s : float
+        Of the loop's clock [s].
+    """
+
+    what: str
+    of: tuple[str, ...]
+    epoch: int
+    before: ObjectRecord | SurroundingsRecord | None
+    after: ObjectRecord | SurroundingsRecord | None
+    time_s: float
+
+
+class EditHistory:
+    """What was done and can be undone, and what was undone and can be done again."""
+
+    def __init__(self) -> None:
+        self._done: list[EditStep] = []
+        self._undone: list[EditStep] = []
+        self._busy = asyncio.Lock()
+
+    @property
+    def undo_what(self) -> str:
+        """What would be undone next, in words; empty for nothing."""
+        return self._done[-1].what if self._done else ""
+
+    @property
+    def redo_what(self) -> str:
+        """What would be done again next, in words; empty for nothing."""
+        return self._undone[-1].what if self._undone else ""
+
+    def forget_other_scenes(self, epoch: int) -> None:
+        """Drop what belongs to a scene that has been left."""
+        self._done = [step for step in self._done if step.epoch == epoch]
+        self._undone = [step for step in self._undone if step.epoch == epoch]
+
+    def add(self, step: EditStep) -> None:
+        """Take a change down; what was undone before cannot be done again then."""
+        self.forget_other_scenes(step.epoch)
+        if step.before == step.after:
+            return
+        last = self._done[-1] if self._done and not self._undone else None
+        if last is not None and last.of == step.of and step.time_s - last.time_s < MERGED_S:
+            self._done[-1] = replace(last, after=step.after, time_s=step.time_s)
+        else:
+            self._done = [*self._done[1 - MOST_STEPS :], step]
+        self._undone.clear()
+
+    async def undo(self, context: CommandContext) -> tuple[str, int]:
+        """Undo the last change; return what it was, and the object's id or 0.
+
+        Raises
+        ------
+        InvalidState
+            If there is nothing to undo.
+        SailenvError
+            If others have changed the same meanwhile so that it cannot be undone; it is dropped.
+        """
+        return await self._step(context, backwards=True)
+
+    async def redo(self, context: CommandContext) -> tuple[str, int]:
+        """Do again what was undone last; as `undo`."""
+        return await self._step(context, backwards=False)
+
+    async def _step(self, context: CommandContext, *, backwards: bool) -> tuple[str, int]:
+        async with self._busy:
+            self.forget_other_scenes(context.info.epoch)
+            taken, put = (self._done, self._undone)[:: 1 if backwards else -1]
+            if not taken:
+                raise InvalidState(f"there is nothing to {'undo' if backwards else 'do again'}")
+            step = taken.pop()
+            now, then = (step.after, step.before)[:: 1 if backwards else -1]
+            number = await _restored(context, now, then)
+            put.append(replace(step, time_s=float("-inf")))
+            return step.what, number
+
+
+async def _restored(
+    context: CommandContext,
+    now: ObjectRecord | SurroundingsRecord | None,
+    then: ObjectRecord | SurroundingsRecord | None,
+) -> int:
+    if isinstance(now, SurroundingsRecord) and isinstance(then, SurroundingsRecord):
+        await context.run(EditOperations.restore_surroundings, now, then)
+        return 0
+    assert not isinstance(now, SurroundingsRecord)
+    assert not isinstance(then, SurroundingsRecord)
+    return await context.run(EditOperations.restore_object, now, then)

@@ -1,0 +1,83 @@
+"""Commands of the editor that can be undone: what they change is taken down before and after."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from sailenv_ros.simulation.edit_records import EditOperations, ObjectRecord, SurroundingsRecord
+from sailenv_ros.viewer.command_context import CommandContext, Run
+from sailenv_ros.viewer.edit_history import EditStep
+from sailenv_ros.viewer.request_arguments import Arguments
+
+__all__ = ["edits_object", "edits_surroundings"]
+
+
+def edits_object(words: str) -> Callable[[Run], Run]:
+    """Have a command that changes one object be undoable.
+
+    The object is named by the argument ``object``, or by ``id`` in the answer where the command
+    adds it. `words` say what was done, before the object's name.
+    """
+
+    def declare(run: Run) -> Run:
+        @wraps(run)
+        async def recorded(context: CommandContext, given: Arguments) -> Any:
+            before: ObjectRecord | None = None
+            number = None if given.get("object") is None else given.integer("object")
+            if number is not None:
+                before = await context.run(EditOperations.object_record, number)
+            epoch = context.info.epoch
+            result = await run(context, given)
+            after: ObjectRecord | None = None
+            if isinstance(result, dict):
+                after = await context.run(EditOperations.object_record, int(result["id"]))
+            name = next(record.name for record in (after, before) if record is not None)
+            _take_down(context, f"{words} {name}", (words, name), epoch, before, after)
+            return result
+
+        return recorded
+
+    return declare
+
+
+def edits_surroundings(words: str) -> Callable[[Run], Run]:
+    """Have a command that changes lights or surroundings be undoable; see `edits_object`."""
+
+    def declare(run: Run) -> Run:
+        @wraps(run)
+        async def recorded(context: CommandContext, given: Arguments) -> Any:
+            before = await context.run(EditOperations.surroundings_record)
+            epoch = context.info.epoch
+            result = await run(context, given)
+            after = await context.run(EditOperations.surroundings_record)
+            name = given.optional_text("light") or ""
+            keys = tuple(sorted(given.mapping("changes")))
+            what = f"{words} {name}".strip()
+            _take_down(context, what, (words, name, *keys), epoch, before, after)
+            return result
+
+        return recorded
+
+    return declare
+
+
+def _take_down(
+    context: CommandContext,
+    what: str,
+    of: tuple[str, ...],
+    epoch: int,
+    before: ObjectRecord | SurroundingsRecord | None,
+    after: ObjectRecord | SurroundingsRecord | None,
+) -> None:
+    step = EditStep(
+        what=what,
+        of=of,
+        epoch=epoch,
+        before=before,
+        after=after,
+        time_s=asyncio.get_running_loop().time(),
+    )
+    context.history.add(step)
