@@ -43,6 +43,7 @@ class SimParameters:
     allow_modules : bool
     build_missing : {'nothing', 'scene', 'all'}
     publish_clock : bool
+    publish_instance_tf : bool
     gateway_host : str
     gateway_port : int
         0 for none.
@@ -66,6 +67,7 @@ class SimParameters:
     allow_modules: bool
     build_missing: str
     publish_clock: bool
+    publish_instance_tf: bool
     gateway_host: str
     gateway_port: int
     gateway_protocol: str
@@ -145,6 +147,9 @@ PARAMETERS: dict[str, Parameter] = {
     "publish_clock": Parameter(
         True, "True: publish simulated time on /clock, unless another simulator there does."
     ),
+    "publish_instance_tf": Parameter(
+        False, "True: every published frame tells the poses of all objects on /tf (object/<name>)."
+    ),
     "gateway.port": Parameter(
         DEFAULT_PORT, "TCP port for SAILenv clients; 0: none.", 0, 65535
     ),
@@ -198,6 +203,7 @@ def sim_parameters(values: Mapping[str, Any]) -> SimParameters:
         allow_modules=values["allow_modules"],
         build_missing=values["build_missing"],
         publish_clock=values["publish_clock"],
+        publish_instance_tf=values["publish_instance_tf"],
         gateway_host=values["gateway.host"],
         gateway_port=values["gateway.port"],
         gateway_protocol=values["gateway.protocol"],

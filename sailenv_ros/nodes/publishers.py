@@ -240,6 +240,7 @@ class AgentPublisher:
             pose = frame.camera.pose
             self._pose.publish(pose_stamped_to_msg(pose, header.stamp, WORLD_FRAME_ID))
         self._tf.publish(self._spec.name, frame.camera.pose, header.stamp)
+        self._tf.publish_instances(frame, header.stamp)
         # Last, as they take time and nobody waits for them.
         self._derived.publish(frame, header)
         self._late.publish(frame)

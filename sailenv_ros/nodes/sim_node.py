@@ -87,7 +87,7 @@ class SimNode:
         self._hosted = hosted
         simulation = self._simulation = hosted.simulation
         runner = OperationRunner(simulation, executor)
-        self._tf = TfTree(node)
+        self._tf = TfTree(node, instances=hosted.parameters.publish_instance_tf)
         self._endpoints = AgentEndpoints(node, simulation, runner, self._tf)
         self._announcements = Announcements(
             node, publish_clock=publish_clock, on_info=self._scene_changed

@@ -1,5 +1,7 @@
 """`/tf` and `/tf_static`: world → agent → camera → optical frame, where tf2_msgs is installed.
 
+On request also world → object, for every instance.
+
 Frames and agents' names in, transforms out. package.xml declares tf2_msgs, so a ROS 2 installation
 has it; the ROS 2 packages on PyPI lack it. Without it every call does nothing, and the topic
 `<agent>/pose` holds the same poses.
@@ -9,6 +11,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import threading
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped, Vector3
@@ -18,15 +21,21 @@ from std_msgs.msg import Header
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, optical_frame_id
 from sailenv_msgs_py.transforms import pose_to_msg
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.nodes.qos import frame_qos, latched_qos, no_events
 
-__all__ = ["TfTree", "camera_frame_id", "fixed_transforms", "transform_of"]
+__all__ = ["TfTree", "camera_frame_id", "fixed_transforms", "object_frame_id", "transform_of"]
 
 
 def camera_frame_id(agent: str) -> str:
     """Return the name of the frame of an agent's camera (x forward, y left, z up)."""
     return f"{agent}_camera"
+
+
+def object_frame_id(name: str) -> str:
+    """Return the name of the frame of an object; agents' names have no slash."""
+    return f"object/{name}"
 
 
 def transform_of(pose: Pose, header: Header, child_frame_id: str) -> TransformStamped:
@@ -55,9 +64,14 @@ class TfTree:
     Parameters
     ----------
     node : Node
+    instances : bool
+        True: frames tell the pose of every instance, too, as ``world`` → ``object/<name>``.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, *, instances: bool = False) -> None:
+        self._instances = instances
+        self._told_ns = -1
+        self._telling = threading.Lock()
         self._message: Any = None
         self._static: dict[str, list[TransformStamped]] = {}
         if importlib.util.find_spec("tf2_msgs") is None:
@@ -91,3 +105,25 @@ class TfTree:
             return
         header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
         self._moving.publish(self._message(transforms=[transform_of(pose, header, agent)]))
+
+    def publish_instances(self, frame: Frame, stamp: Any) -> None:
+        """Tell where every instance of a frame is, if that is asked for.
+
+        Several agents may see one instant: it is told once, as tf2 warns of repeated ones.
+        """
+        if not self._instances or frame.states is None or not self.wanted:
+            return
+        with self._telling:
+            # Simulated time goes back with a reset.
+            if frame.stamp_ns == self._told_ns:
+                return
+            self._told_ns = frame.stamp_ns
+            header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
+            names, states = frame.instances, frame.states
+            transforms = []
+            for row, number in enumerate(states.ids.tolist()):
+                if number in names:
+                    pose = Pose(tuple(states.positions[row]), tuple(states.orientations[row]))
+                    frame_id = object_frame_id(names[number].name)
+                    transforms.append(transform_of(pose, header, frame_id))
+            self._moving.publish(self._message(transforms=transforms))

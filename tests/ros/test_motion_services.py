@@ -19,6 +19,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from sailenv_msgs.msg import Behaviour, SceneInfo
 from sailenv_msgs.srv import AddBehaviour, GetPose, RemoveBehaviours, SetMoverController, Step
+from sailenv_ros import Simulation
+from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
 from sailenv_ros.nodes.tf_tree import TfTree
@@ -180,6 +182,28 @@ def test_what_is_sent_is_a_tf_message_of_ros_2() -> None:
         if not isinstance(message, FakeMessage):
             assert serialize_message(message) == data
     assert held[0].header.frame_id == "left"
+
+
+@pytest.mark.usefixtures("tf_installed")
+def test_every_object_of_a_frame_has_a_transform_once() -> None:
+    """However many agents see the instant; and nobody who did not ask is told."""
+    eye = AgentSpec(name="eye", intrinsics=CameraIntrinsics(width=32, height=24), rate_hz=0.0)
+    with Simulation("optical", mode="lockstep", agent=eye) as simulation:
+        simulation.step(8)
+        frame = simulation.capture(("depth",))
+    silent, node = FakeNode(), FakeNode()
+    TfTree(silent).publish_instances(frame, Time(sec=1))  # type: ignore[arg-type]  # see above
+    assert silent.sent["/tf"] == []
+    tree = TfTree(node, instances=True)  # type: ignore[arg-type]  # see above
+    tree.publish_instances(frame, Time(sec=1))
+    tree.publish_instances(frame, Time(sec=1))
+    (message,) = node.sent["/tf"]
+    told = {link.child_frame_id: matrix(link) for link in message.transforms}
+    assert frame.states is not None
+    assert set(told) == {f"object/{one.name}" for one in frame.instances.values()}
+    for row, number in enumerate(frame.states.ids.tolist()):
+        pose = told[f"object/{frame.instances[number].name}"]
+        np.testing.assert_allclose(pose, frame.states.matrices[row], atol=1e-12)
 
 
 def optical(links: Any, parent: str) -> str:
