@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light
 from tests.render.conftest import Render
@@ -175,7 +175,7 @@ def test_a_change_of_lights_leaves_nothing_behind() -> None:
 
 def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:
     """Every other view is the same, to the byte, with and without it."""
-    views = [view for view in VIEWS if view != "rgb"]
+    views = [view for view in RENDERED_VIEWS if view != "rgb"]
     box = model_of(box_mesh(0.5))
     things = [Thing(WALL, AHEAD), Thing(box, Pose((2.0, 0.3, 0.1)))]
     light = baked({1: chart(WALL, AHEAD)}, [layer(SUN, visible=1.0)])

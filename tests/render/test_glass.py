@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.colour import srgb_from_linear
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import PictureSettings
@@ -60,7 +60,7 @@ def test_ground_truth_is_of_what_lies_behind(render: Render) -> None:
             (after, [Pose((1.5, 0, 0)).matrix(), Pose((2.5, 0, 0)).matrix()]),
         )
     ]
-    names = list(VIEWS)
+    names = list(RENDERED_VIEWS)
     plain = render(after, now, *names, past=(before, past))
     seen = render(glazed[1], now, *names, past=(glazed[0], past))
     assert len(np.unique(plain["instance"])) > 5

@@ -10,7 +10,7 @@ import pytest
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
@@ -86,7 +86,7 @@ def test_the_linear_curve_is_the_srgb_standard() -> None:
 def test_ground_truth_knows_nothing_of_the_picture(render: Render) -> None:
     """All other views are the same bytes with every setting on and off, asked together or alone."""
     before, after, past, now = two_instants()
-    truth = [name for name in VIEWS if name != "rgb"]
+    truth = [name for name in RENDERED_VIEWS if name != "rgb"]
     seen = [
         render(after, replace(now, picture=settings), *names, past=(before, past))
         for settings in (OFF, ALL)

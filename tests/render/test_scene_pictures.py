@@ -53,7 +53,7 @@ def test_a_view_alone_has_no_border(tmp_path: Path, capsys: pytest.CaptureFixtur
     plain = ["scene", "render", "optical", "-o", str(out), "--plain"]
     size = ["--width", "64", "--height", "48"]
     assert main([*plain, *size]) == 2
-    assert "one view of one time" in capsys.readouterr().err
+    assert "--views NAME" in capsys.readouterr().err
     assert not out.exists()
     assert main([*plain, *size, "--views", "category"]) == 0
     with Image.open(out) as picture:

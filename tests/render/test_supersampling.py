@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.frame import RENDERED_VIEWS
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import PictureSettings
@@ -45,7 +45,7 @@ def test_ground_truth_stays_that_of_pixel_centres(
 ) -> None:
     """All other views are the same bytes with and without, beside a picture or without one."""
     before, after, past, now = two_instants()
-    truth = [name for name in VIEWS if name != "rgb"]
+    truth = [name for name in RENDERED_VIEWS if name != "rgb"]
     views = [
         render(after, camera, *names, past=(before, past))
         for camera in (now, sampled(now, times, occlusion_strength=strength))
