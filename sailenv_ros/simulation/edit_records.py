@@ -22,7 +22,13 @@ from sailenv_ros.world.support import overlap_m, standing_place
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
 
-__all__ = ["EditOperations", "ObjectRecord", "SurroundingsRecord"]
+__all__ = [
+    "EditOperations",
+    "ObjectRecord",
+    "SurroundingsRecord",
+    "bring_back",
+    "record_of",
+]
 
 
 PUSHED_M = 0.004
@@ -67,6 +73,21 @@ class SurroundingsRecord:
     described: EnvironmentSpec
 
 
+def record_of(core: SimulationCore, number: int) -> ObjectRecord:
+    """Take down the object of an instance id as it is now."""
+    state, spec = core.world.object_state(number), core.world.body(number).placement.entry
+    entry = None
+    if spec is not None:
+        entry = {
+            **core.editor.entry_without_place(spec),
+            "name": state.name,
+            "category": state.category,
+            "scale": state.scale,
+            "static": state.static,
+        }
+    return ObjectRecord(name=state.name, entry=entry, pose=state.pose, behaviours=state.behaviours)
+
+
 class EditOperations(Caller):
     """Operations of a history of changes."""
 
@@ -74,20 +95,7 @@ class EditOperations(Caller):
     @staticmethod
     def object_record(core: SimulationCore, obj: int | str) -> ObjectRecord:
         """Take down an object as it is now."""
-        number = core.world.find(obj)
-        state, spec = core.world.object_state(number), core.world.body(number).placement.entry
-        entry = None
-        if spec is not None:
-            entry = {
-                **core.editor.entry_without_place(spec),
-                "name": state.name,
-                "category": state.category,
-                "scale": state.scale,
-                "static": state.static,
-            }
-        return ObjectRecord(
-            name=state.name, entry=entry, pose=state.pose, behaviours=state.behaviours
-        )
+        return record_of(core, core.world.find(obj))
 
     @operation()
     @staticmethod
@@ -109,7 +117,7 @@ class EditOperations(Caller):
             If others have changed it so that it cannot be done; nothing is done then.
         """
         if present is None:
-            return 0 if wanted is None else _bring_back(core, wanted)
+            return 0 if wanted is None else bring_back(core, wanted)
         number = core.world.find(present.name)
         if wanted is None:
             core.world.despawn(number)
@@ -204,7 +212,8 @@ class EditOperations(Caller):
         core.announce()
 
 
-def _bring_back(core: SimulationCore, wanted: ObjectRecord) -> int:
+def bring_back(core: SimulationCore, wanted: ObjectRecord) -> int:
+    """Spawn what a record says; return its instance id, and see `restore_object` for errors."""
     if wanted.entry is None:
         why = [(repr(wanted.name), "is a part of the room: begin the scene anew to have it back")]
         raise InvalidEntry("object", wanted.name, why)

@@ -36,7 +36,7 @@ from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
 
-__all__ = ["described_world", "environment_entry", "unsaid", "uploaded_models"]
+__all__ = ["described_world", "environment_entry", "room_entry", "unsaid", "uploaded_models"]
 
 Entry = dict[str, Any]
 
@@ -73,7 +73,7 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
     changed: dict[str, Any] = {
         "environment": environment_entry(world),
         "lights": _lights(world, spec),
-        **_room(spec, world.missing_parts),
+        "room": room_entry(world),
         "objects": _objects(world),
         **_movers(world, spec),
         "agents": _agents(world, spec, agents, cameras),
@@ -125,17 +125,19 @@ def environment_entry(world: World) -> Entry:
     return entry
 
 
-def _room(spec: SceneSpec, missing: Collection[str]) -> Entry:
-    """Return the room as its file has it, without those parts that it may do without."""
-    if spec.room is None:
+def room_entry(world: World) -> Entry:
+    """Return the room without those parts that were taken out of it; empty if there is none."""
+    assert world.described is not None
+    room, missing = world.described.room, world.missing_parts
+    if room is None:
         return {}
-    entry: Entry = spec.room.model_dump(mode="json", exclude_unset=True)
+    entry: Entry = room.model_dump(mode="json", exclude_unset=True)
     entry.update({key: False for key in ("ceiling", "skirting") if key in missing})
     windows = [opening for opening in entry.get("openings", ()) if opening["type"] == "window"]
     for number, window in enumerate(windows, start=1):
         if f"curtains {number}" in missing:
             window["curtains"] = False
-    return {"room": entry}
+    return entry
 
 
 def _lights(world: World, spec: SceneSpec) -> list[Entry]:
@@ -152,9 +154,11 @@ def _lights(world: World, spec: SceneSpec) -> list[Entry]:
 
 
 def _objects(world: World) -> list[Entry]:
-    begun, missing = world.first_bodies, world.missing_parts
+    begun = world.first_bodies
+    # What is at a wall would come nearer to it without the board at its foot.
+    same_walls = not world.room_changed and "skirting" not in world.missing_parts
     return [
-        _object(body, unchanged=_placement_unchanged(body, begun, missing))
+        _object(body, unchanged=_placement_unchanged(body, begun, same_walls=same_walls))
         for body in world.bodies
         if body.placement.entry is not None
     ]
@@ -180,19 +184,18 @@ def _object(body: Body, *, unchanged: bool) -> Entry:
     return {**entry, "behaviours": behaviours} if behaviours else entry
 
 
-def _placement_unchanged(body: Body, begun: Mapping[str, Body], missing: Collection[str]) -> bool:
+def _placement_unchanged(body: Body, begun: Mapping[str, Body], *, same_walls: bool) -> bool:
     """Say if it stands where its entry puts it, and so does all that carries it."""
     entry = body.placement.entry
     if entry is None or not body.arranged:
         return False
-    # What is at a wall would come nearer to it without the board at its foot.
-    if entry.wall is not None and "skirting" in missing:
+    if entry.wall is not None and not same_walls:
         return False
     if entry.on is not None:
         carrier = begun.get(entry.on)
         if carrier is None or carrier.placement.name != entry.on:
             return False
-        if not _placement_unchanged(carrier, begun, missing):
+        if not _placement_unchanged(carrier, begun, same_walls=same_walls):
             return False
     return body.placement.static or _only_settled(body)
 

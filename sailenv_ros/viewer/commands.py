@@ -23,6 +23,7 @@ from sailenv_ros.viewer.object_overlay import overlay_of
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from sailenv_ros.viewer.recorded_commands import edits_object
 from sailenv_ros.viewer.request_arguments import Arguments
+from sailenv_ros.viewer.room_commands import ROOM_COMMANDS
 from sailenv_ros.viewer.scene_json import object_to_json, pose_to_json
 
 __all__ = ["COMMANDS"]
@@ -30,7 +31,7 @@ __all__ = ["COMMANDS"]
 MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
-_commands = CommandTable(LIGHT_COMMANDS)
+_commands = CommandTable({**LIGHT_COMMANDS, **ROOM_COMMANDS})
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""
@@ -295,7 +296,7 @@ async def detach(context: CommandContext, given: Arguments) -> Any:
 
 @_commands.changes
 async def undo(context: CommandContext, given: Arguments) -> Any:
-    """Undo the last change of an object, a light or the surroundings; tell which, and its id."""
+    """Undo the last change of an object, the room or the light; tell which, and its id."""
     what, number = await context.history.undo(context)
     return {"what": what, "id": number}
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.simulation.edit_records import (
@@ -15,9 +16,13 @@ from sailenv_ros.simulation.edit_records import (
     ObjectRecord,
     SurroundingsRecord,
 )
+from sailenv_ros.simulation.room_edits import RoomOperations, RoomRecord
 from sailenv_ros.viewer.command_context import CommandContext
 
-__all__ = ["EditHistory", "EditStep"]
+__all__ = ["EditHistory", "EditStep", "Record"]
+
+Record: TypeAlias = ObjectRecord | SurroundingsRecord | RoomRecord | None
+"""What was changed, as it was before or after; None for an object that was not there."""
 
 MOST_STEPS = 200
 
@@ -37,7 +42,7 @@ class EditStep:
         What was changed of which thing: changes of the same are merged.
     epoch : int
         Of the scene.
-    before, after : ObjectRecord, SurroundingsRecord or None
+    before, after : ObjectRecord, SurroundingsRecord, RoomRecord or None
         None where the object was not there.
     time_s : float
         Of the loop's clock [s].
@@ -46,8 +51,8 @@ class EditStep:
     what: str
     of: tuple[str, ...]
     epoch: int
-    before: ObjectRecord | SurroundingsRecord | None
-    after: ObjectRecord | SurroundingsRecord | None
+    before: Record
+    after: Record
     time_s: float
 
 
@@ -71,8 +76,9 @@ class EditHistory:
 
     def forget_other_scenes(self, epoch: int) -> None:
         """Drop what belongs to a scene that has been left."""
-        self._done = [step for step in self._done if step.epoch == epoch]
-        self._undone = [step for step in self._undone if step.epoch == epoch]
+        # In place: a step that is being undone meanwhile is put into the very same lists.
+        for steps in (self._done, self._undone):
+            steps[:] = [step for step in steps if step.epoch == epoch]
 
     def add(self, step: EditStep) -> None:
         """Take a change down; what was undone before cannot be done again then."""
@@ -83,7 +89,7 @@ class EditHistory:
         if last is not None and last.of == step.of and step.time_s - last.time_s < MERGED_S:
             self._done[-1] = replace(last, after=step.after, time_s=step.time_s)
         else:
-            self._done = [*self._done[1 - MOST_STEPS :], step]
+            self._done[:] = [*self._done[1 - MOST_STEPS :], step]
         self._undone.clear()
 
     async def undo(self, context: CommandContext) -> tuple[str, int]:
@@ -115,14 +121,13 @@ class EditHistory:
             return step.what, number
 
 
-async def _restored(
-    context: CommandContext,
-    now: ObjectRecord | SurroundingsRecord | None,
-    then: ObjectRecord | SurroundingsRecord | None,
-) -> int:
+async def _restored(context: CommandContext, now: Record, then: Record) -> int:
     if isinstance(now, SurroundingsRecord) and isinstance(then, SurroundingsRecord):
         await context.run(EditOperations.restore_surroundings, now, then)
         return 0
-    assert not isinstance(now, SurroundingsRecord)
-    assert not isinstance(then, SurroundingsRecord)
+    if isinstance(now, RoomRecord) and isinstance(then, RoomRecord):
+        await context.run(RoomOperations.restore_room, now, then)
+        return 0
+    assert not isinstance(now, SurroundingsRecord | RoomRecord)
+    assert not isinstance(then, SurroundingsRecord | RoomRecord)
     return await context.run(EditOperations.restore_object, now, then)

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from sailenv_ros.simulation.edit_records import EditOperations, ObjectRecord, SurroundingsRecord
+from sailenv_ros.simulation.edit_records import EditOperations, ObjectRecord
 from sailenv_ros.viewer.command_context import CommandContext, Run
-from sailenv_ros.viewer.edit_history import EditStep
+from sailenv_ros.viewer.edit_history import EditStep, Record
 from sailenv_ros.viewer.request_arguments import Arguments
 
-__all__ = ["edits_object", "edits_surroundings"]
+__all__ = ["edits_object", "edits_surroundings", "take_down"]
 
 
 def edits_object(words: str) -> Callable[[Run], Run]:
@@ -35,7 +35,7 @@ def edits_object(words: str) -> Callable[[Run], Run]:
             if isinstance(result, dict):
                 after = await context.run(EditOperations.object_record, int(result["id"]))
             name = next(record.name for record in (after, before) if record is not None)
-            _take_down(context, f"{words} {name}", (words, name), epoch, before, after)
+            take_down(context, f"{words} {name}", (words, name), epoch, before, after)
             return result
 
         return recorded
@@ -56,7 +56,7 @@ def edits_surroundings(words: str) -> Callable[[Run], Run]:
             name = given.optional_text("light") or ""
             keys = tuple(sorted(given.mapping("changes")))
             what = f"{words} {name}".strip()
-            _take_down(context, what, (words, name, *keys), epoch, before, after)
+            take_down(context, what, (words, name, *keys), epoch, before, after)
             return result
 
         return recorded
@@ -64,14 +64,15 @@ def edits_surroundings(words: str) -> Callable[[Run], Run]:
     return declare
 
 
-def _take_down(
+def take_down(
     context: CommandContext,
     what: str,
     of: tuple[str, ...],
     epoch: int,
-    before: ObjectRecord | SurroundingsRecord | None,
-    after: ObjectRecord | SurroundingsRecord | None,
+    before: Record,
+    after: Record,
 ) -> None:
+    """Add a change that was made to the history; see `EditStep` for the arguments."""
     step = EditStep(
         what=what,
         of=of,

@@ -5,7 +5,7 @@ Knows neither time nor lights: what is changed here, `World` tells.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,11 +138,7 @@ class BodyTable:
             If there is one of that name, or no id is left.
         """
         self._require_free_name(placement.name)
-        if self._last_id >= MAX_INSTANCE_ID:
-            raise InvalidState(
-                f"a scene can have {MAX_INSTANCE_ID} objects in its life and has had them; "
-                "reset the scene to begin anew"
-            )
+        self._require_ids(1)
         body = Body(self._client, placement)
         self._last_id += 1
         self._bodies[self._last_id] = body
@@ -173,6 +169,50 @@ class BodyTable:
         old.remove()
         self._bodies[instance_id] = new
 
+    def replace_room(self, placements: Iterable[Placement], without: Collection[int] = ()) -> None:
+        """Exchange all parts of the room; a part of the same name keeps its id.
+
+        Parameters
+        ----------
+        placements : iterable of Placement
+            The parts that there shall be.
+        without : collection of int
+            Ids of objects that go with the present parts.
+
+        Raises
+        ------
+        NameTaken, InvalidState
+            If another object has the name of a part, or no ids are left; nothing is changed then.
+        """
+        parts = {b.placement.name: id_ for id_, b in self.items() if b.placement.entry is None}
+        wanted, leaving = list(placements), {*parts.values(), *without}
+        others = {body.placement.name for id_, body in self.items() if id_ not in leaving}
+        for placement in wanted:
+            if placement.name in others:
+                raise NameTaken("object", placement.name)
+        self._require_ids(sum(placement.name not in parts for placement in wanted))
+        made: list[Body] = []
+        try:
+            for placement in wanted:
+                made.append(Body(self._client, placement))
+        except BaseException:
+            for body in made:
+                body.remove()
+            raise
+        for id_ in leaving:
+            self._bodies[id_].remove()
+        for body in made:
+            id_ = parts.get(body.placement.name, 0)
+            if not id_:
+                self._last_id += 1
+                id_ = self._last_id
+            self._bodies[id_] = body
+            self.cut_off_past(id_)
+            leaving.discard(id_)
+        for id_ in leaving:
+            del self._bodies[id_], self._histories[id_]
+        self._room_parts = frozenset(placement.name for placement in wanted)
+
     def rouse_beside(self, body: Body) -> None:
         """Wake what sleeps beside or upon a body that is about to leave its place."""
         touching = body.touching_ids()
@@ -188,3 +228,10 @@ class BodyTable:
     def _require_free_name(self, name: str) -> None:
         if any(body.placement.name == name for body in self):
             raise NameTaken("object", name)
+
+    def _require_ids(self, count: int) -> None:
+        if self._last_id + count > MAX_INSTANCE_ID:
+            raise InvalidState(
+                f"a scene can have {MAX_INSTANCE_ID} objects in its life and has had them; "
+                "reset the scene to begin anew"
+            )

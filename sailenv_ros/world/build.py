@@ -22,7 +22,7 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
 
-__all__ = ["build_world", "make_environment", "make_placement"]
+__all__ = ["build_world", "make_environment", "make_placement", "room_placements"]
 
 
 def build_world(
@@ -64,7 +64,7 @@ def build_world(
         epoch=epoch,
         next_revision=next_revision,
         placements=[
-            *_room_placements(spec.room, table),
+            *room_placements(spec.room, table),
             *(
                 make_placement(entry, stock[entry.name], poses[entry.name], table, seed)
                 for entry in spec.objects
@@ -96,7 +96,7 @@ def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Enviro
     )
 
 
-def _room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterator[Placement]:
+def room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterator[Placement]:
     """Yield the parts of a room, none if there is no room."""
     for part in () if room is None else room_parts(room):
         yield Placement(

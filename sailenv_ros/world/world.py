@@ -7,7 +7,7 @@ the same bytes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -76,6 +76,7 @@ class World:
         self.epoch = epoch
         self.categories = categories
         self.described = described
+        self._first_room = described.room if described is not None else None
         self._next_revision = next_revision
         self._lights = tuple(lights)
         self._environment = environment or Environment()
@@ -150,6 +151,11 @@ class World:
     def missing_parts(self) -> frozenset[str]:
         """Names of the parts of the room that were there at the start and are no more."""
         return self._bodies.missing_room_parts
+
+    @property
+    def room_changed(self) -> bool:
+        """True if the room that is described is another than that of the start."""
+        return self.described is not None and self.described.room != self._first_room
 
     @property
     def first_bodies(self) -> Mapping[str, Body]:
@@ -261,6 +267,38 @@ class World:
         if placement.scale != old.placement.scale:
             self._bodies.cut_off_past(instance_id)
             self._forget_chart(instance_id)
+        self._changed()
+
+    def replace_room(
+        self,
+        placements: Iterable[Placement],
+        described: SceneSpec,
+        *,
+        without: Collection[int] = (),
+    ) -> None:
+        """Exchange the parts of the room; all else stays where it is.
+
+        Baked light was that of the old room and is taken off.
+
+        Parameters
+        ----------
+        placements : iterable of Placement
+            The parts that there shall be; one of the same name keeps its id.
+        described : SceneSpec
+            What a scene file says of it all from now on.
+        without : collection of int
+            Ids of objects whose places the parts take.
+
+        Raises
+        ------
+        NameTaken, InvalidState
+            If another object has the name of a part, or no ids are left; nothing is changed then.
+        """
+        self._bodies.replace_room(placements, without)
+        for body in self._bodies:
+            body.wake()
+        self._baked = None
+        self.described = described
         self._changed()
 
     def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:

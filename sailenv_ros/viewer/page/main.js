@@ -7,6 +7,7 @@ import { Link } from "./link.js";
 import { ObjectPanel } from "./object_panel.js";
 import { PathPanel } from "./path_panel.js";
 import { PicturePanel } from "./picture_panel.js";
+import { RoomPanel } from "./room_panel.js";
 import { ScenePanel } from "./scene_panel.js";
 import { Stage } from "./stage.js";
 import { ViewPanel, depthWords, flowWords } from "./view_panel.js";
@@ -41,7 +42,8 @@ class App {
     this.path = new PathPanel(this);
     this.picture = new PicturePanel(this);
     this.#panels = [
-      this.view, this.object, new AddPanel(this), new LightPanel(this), this.picture, this.path, new ScenePanel(this),
+      this.view, this.object, new AddPanel(this), new RoomPanel(this), new LightPanel(this), this.picture, this.path,
+      new ScenePanel(this),
     ];
     this.#tabs();
     this.#bar();
@@ -199,6 +201,7 @@ class App {
   open(panel) {
     $("panel").replaceChildren(panel.root);
     $("panel").scrollTop = 0;
+    panel.opened?.();
     for (const tab of $("tabs").children) {
       tab.setAttribute("aria-selected", String(tab.dataset.tab === panel.title));
     }

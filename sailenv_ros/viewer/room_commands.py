@@ -1,0 +1,45 @@
+"""What a client may ask for about the room: its floor plan, and another size.
+
+Arguments as JSON has them in, requests to a `Simulation` out. Part of the table of `commands.py`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sailenv_ros.simulation.room_edits import RoomOperations
+from sailenv_ros.viewer.command_context import CommandContext, CommandTable
+from sailenv_ros.viewer.recorded_commands import take_down
+from sailenv_ros.viewer.request_arguments import Arguments
+
+__all__ = ["ROOM_COMMANDS"]
+
+ROOM_COMMANDS = CommandTable()
+
+
+@ROOM_COMMANDS.looks
+async def floor_plan(context: CommandContext, given: Arguments) -> Any:
+    """Tell the room and what stands in it, seen from above [m]; the size is null for no room."""
+    plan = await context.run(RoomOperations.floor_plan)
+    return {
+        "size": None if plan.size_m is None else list(plan.size_m),
+        "openings": [
+            {"type": each.type, "wall": each.wall, "at": each.at, "width": each.width}
+            for each in plan.openings
+        ],
+        "objects": [
+            {"id": each.id, "name": each.name, "corners": [list(xy) for xy in each.corners_m]}
+            for each in plan.objects
+        ],
+    }
+
+
+@ROOM_COMMANDS.changes
+async def set_room(context: CommandContext, given: Arguments) -> Any:
+    """Resize the room, or make one; tell the objects whose places it has taken."""
+    x, y, height = given.numbers("size", 3)
+    epoch = context.info.epoch
+    before, after = await context.run(RoomOperations.set_room_size, (x, y, height))
+    words = "making the room" if before.room is None else "resizing the room"
+    take_down(context, words, (words,), epoch, before, after)
+    return {"replaced": [record.name for record in before.objects]}
