@@ -124,8 +124,9 @@ def _one_line(problem: Exception) -> str:
 
 def _part(name: str, mesh: trimesh.Trimesh, file_from_part: NDArray[np.float64]) -> RawPart:
     axes = _BODY_FROM_FILE @ file_from_part[:3, :3]
-    positions = np.asarray(mesh.vertices, dtype=np.float64) @ axes.T
-    positions += _BODY_FROM_FILE @ file_from_part[:3, 3]
+    with np.errstate(invalid="ignore", over="ignore"):  # refused below
+        positions = np.asarray(mesh.vertices, dtype=np.float64) @ axes.T
+        positions += _BODY_FROM_FILE @ file_from_part[:3, 3]
     triangles = np.asarray(mesh.faces, dtype=np.int64)
     if np.linalg.det(axes) < 0.0:
         triangles = triangles[:, ::-1]
