@@ -78,7 +78,7 @@ def camera_of_frame_info(msg: FrameInfo, intrinsics: CameraIntrinsics) -> Camera
     """
     x, y, z, w = QUAT_BODY_FROM_OPTICAL
     pose = pose_from_msg(msg.camera_pose).turned((-x, -y, -z, w))
-    return Camera(intrinsics=intrinsics, pose=pose)
+    return Camera(intrinsics=intrinsics, pose=pose, name=msg.agent)
 
 
 def states_of_frame_info(msg: FrameInfo) -> InstanceStates | None:

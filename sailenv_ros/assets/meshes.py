@@ -118,13 +118,15 @@ def thinned_out(raw: RawMesh, target: int, *, seed: int) -> RawMesh:
 
     Notes
     -----
+    What simplifying takes from the tips of leaves is made good by stretching the plant.
+
     Stochastic pruning after Cook, Halstead, Planck and Ryu (SIGGRAPH 2007): of n leaves k are
     kept, grown by the root of n/k about their middles.
     """
     if len(raw.triangles) <= target:
         return raw
     if len(raw.triangles) > MANY_TRIANGLES_A_LEAF * (int(components(raw).max()) + 1):
-        raw = simplified(raw, target)
+        raw = _as_large(simplified(raw, target), raw)
         if len(raw.triangles) <= target:
             return raw
     of_triangle = components(raw)
@@ -140,6 +142,14 @@ def thinned_out(raw: RawMesh, target: int, *, seed: int) -> RawMesh:
     growth = np.sqrt(len(raw.triangles) / max(1, int(chosen.sum())))
     thin = _used_only(replace(raw, triangles=raw.triangles[chosen]))
     return replace(thin, positions=_grown(thin, float(growth)))
+
+
+def _as_large(raw: RawMesh, whole: RawMesh) -> RawMesh:
+    """Stretch a mesh along the axes until it is as large as another one, and lies where it does."""
+    low, high = raw.positions.min(axis=0), raw.positions.max(axis=0)
+    first, last = whole.positions.min(axis=0), whole.positions.max(axis=0)
+    stretch = np.divide(last - first, high - low, out=np.ones(3), where=high - low > 1e-9)
+    return replace(raw, positions=first + (raw.positions - low) * stretch)
 
 
 def components(raw: RawMesh) -> Indices:

@@ -11,7 +11,7 @@ import pytest
 
 from sailenv_ros import Agent, Simulation
 from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import ALL_OPERATIONS, Operations
@@ -112,6 +112,9 @@ def assert_same(one: Any, other: Any, where: str) -> None:
     elif where.endswith("world_from_camera"):
         # Derived from the pose, which comes as a quaternion in a message.
         np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-12)
+    elif isinstance(one, Camera):
+        assert (one.intrinsics, one.name) == (other.intrinsics, other.name), where
+        assert_same(one.world_from_camera, other.world_from_camera, f"{where}, world_from_camera")
     elif isinstance(one, np.ndarray):
         assert (one.shape, one.dtype) == (other.shape, other.dtype), where
         assert one.tobytes() == other.tobytes(), where

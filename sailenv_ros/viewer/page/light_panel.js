@@ -69,9 +69,12 @@ export class LightPanel {
     const type = el("select", { id: "light-type" }, ...types);
     const name = el("input", { type: "text", id: "light-name", placeholder: "made of the type", spellcheck: false });
     const add = async () => {
-      const values = { light: name.value.trim() || this.#freeName(type.value), type: type.value };
+      const typed = name.value;
+      const values = { light: typed.trim() || this.#freeName(type.value), type: type.value };
       const attributes = { intensity: INTENSITIES[type.value] };
-      if ((await this.app.try("add_light", { ...values, attributes })) !== undefined) name.value = "";
+      const added = (await this.app.try("add_light", { ...values, attributes })) !== undefined;
+      // The next name may have been typed meanwhile.
+      if (added && name.value === typed) name.value = "";
     };
     return el("details", {}, el("summary", {}, "Add a light"),
       el("p", { class: "advice" }, "It hangs where the camera is now and shines where it looks."),

@@ -203,3 +203,13 @@ def test_a_surface_does_not_move_farther_than_is_allowed() -> None:
     assert len(kept.triangles) > 0.8 * len(ball.triangles)
     rows = {tuple(row) for row in ball.positions.round(6)}
     assert all(tuple(row) in rows for row in simplified(ball, 60, max_error=0.1).positions.round(6))
+
+
+def test_a_plant_of_large_leaves_keeps_its_size() -> None:
+    """A leaf of many triangles loses its tips when it is simplified."""
+    leaf = raw(sphere_mesh(0.5, segments=96))
+    few = thinned_out(leaf, len(leaf.triangles) // 20, seed=1)
+    assert len(few.triangles) <= len(leaf.triangles) // 20
+    for edge in (np.min, np.max):
+        kept, given = edge(few.positions, axis=0), edge(leaf.positions, axis=0)
+        np.testing.assert_allclose(kept, given, atol=1e-9)
