@@ -6,12 +6,12 @@ Made by `cpu_render.alone_renderer`, read out of messages; goes to tables, files
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.errors import InvalidState
+from sailenv_ros.object_truth.rows_by_id import RowsById
 
 __all__ = ["NO_BOX", "AmodalMasks"]
 
@@ -20,7 +20,7 @@ NO_BOX = (-1, -1, -1, -1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class AmodalMasks:
+class AmodalMasks(RowsById):
     """What each object of one frame covers, drawn alone.
 
     The canvas has three times the picture's width and height, with the picture in its middle: what
@@ -59,19 +59,6 @@ class AmodalMasks:
     def __len__(self) -> int:
         return len(self.ids)
 
-    def row(self, instance_id: int) -> int:
-        """Return the row of an object.
-
-        Raises
-        ------
-        InvalidRequest
-            If there was none of that id.
-        """
-        if instance_id not in self._rows:
-            accepted = "the id of an object that there was at this instant"
-            raise InvalidRequest("instance id", instance_id, accepted)
-        return self._rows[instance_id]
-
     def mask(self, instance_id: int) -> NDArray[np.bool_]:
         """Return where an object is: (H, W) bool, a new array."""
         row = self.row(instance_id)
@@ -95,10 +82,6 @@ class AmodalMasks:
         depth = np.full((self.height, self.width), np.inf, np.float32)
         depth[self._place(row)] = self.depths[row]
         return depth
-
-    @cached_property
-    def _rows(self) -> dict[int, int]:
-        return {id_: row for row, id_ in enumerate(self.ids.tolist())}
 
     def _place(self, row: int) -> tuple[slice, slice]:
         left, top, right, bottom = self.boxes[row].tolist()

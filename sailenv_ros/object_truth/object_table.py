@@ -7,15 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.labels import Keypoint
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
+from sailenv_ros.object_truth.rows_by_id import RowsById
 
 __all__ = ["CORNER_SIGNS", "EDGES", "Keypoints", "ObjectTable"]
 
@@ -56,7 +55,7 @@ class Keypoints:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ObjectTable:
+class ObjectTable(RowsById):
     """What is known of every object of the scene at a frame's instant, seen or not.
 
     Columns of the pose are NaN where the frame has no `states`, those of the instance view 0 and -1
@@ -150,19 +149,6 @@ class ObjectTable:
         seen: NDArray[np.bool_] = self.visible_pixels > 0
         return seen
 
-    def row(self, instance_id: int) -> int:
-        """Return the row of an object.
-
-        Raises
-        ------
-        InvalidRequest
-            If there was none of that id.
-        """
-        if instance_id not in self._rows:
-            accepted = "the id of an object that there was at this instant"
-            raise InvalidRequest("instance id", instance_id, accepted)
-        return self._rows[instance_id]
-
     def select(self, rows: ArrayLike) -> ObjectTable:
         """Return a table of some rows: numbers of rows, or truth values."""
         picked = np.arange(len(self))[np.asarray(rows)]
@@ -216,10 +202,6 @@ class ObjectTable:
         from sailenv_ros.notebook import objects_html
 
         return objects_html(self)
-
-    @cached_property
-    def _rows(self) -> dict[int, int]:
-        return {id_: row for row, id_ in enumerate(self.ids.tolist())}
 
 
 def corner_keypoints(low: ArrayLike, high: ArrayLike) -> tuple[Keypoint, ...]:
