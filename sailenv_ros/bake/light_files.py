@@ -14,6 +14,7 @@ import os
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -39,8 +40,10 @@ __all__ = [
     "is_baked",
     "light_folder",
     "load_baked",
+    "load_draft",
     "remember",
     "store_baked",
+    "store_draft",
 ]
 
 FORMAT = 3
@@ -48,6 +51,9 @@ MAGIC = b"sailenv_ros baked light\n"
 DIGEST_BYTES = 32
 
 SUFFIX = ".light"
+
+DRAFT_SUFFIX = ".draft"
+"""Of light that is right, but rough: what stands in until the light itself is baked."""
 
 MOST_FILES = 24
 """The oldest are thrown away beyond it."""
@@ -78,7 +84,25 @@ def store_baked(baked: BakedLight) -> Path:
     DeadlineExceeded
         If another process kept writing to the folder.
     """
-    path = baked_file(baked.fingerprint)
+    path = _stored(baked, baked_file(baked.fingerprint))
+    path.with_suffix(DRAFT_SUFFIX).unlink(missing_ok=True)
+    return path
+
+
+def store_draft(baked: BakedLight) -> Path:
+    """Keep rough light until `store_baked` is called with the light itself.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be written.
+    DeadlineExceeded
+        If another process kept writing to the folder.
+    """
+    return _stored(baked, baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX))
+
+
+def _stored(baked: BakedLight, path: Path) -> Path:
     arrays = io.BytesIO()
     np.savez(arrays, allow_pickle=False, **_arrays_of(baked))
     payload = arrays.getbuffer()
@@ -94,7 +118,15 @@ def store_baked(baked: BakedLight) -> Path:
 
 def load_baked(fingerprint: str) -> BakedLight | None:
     """Return the light kept for a fingerprint; None if there is none that can be used."""
-    path = baked_file(fingerprint)
+    return _loaded(baked_file(fingerprint), fingerprint)
+
+
+def load_draft(fingerprint: str) -> BakedLight | None:
+    """Return the rough light kept for a fingerprint; None if there is none that can be used."""
+    return _loaded(baked_file(fingerprint).with_suffix(DRAFT_SUFFIX), fingerprint)
+
+
+def _loaded(path: Path, fingerprint: str) -> BakedLight | None:
     if not path.is_file():
         return None
     try:
@@ -113,7 +145,8 @@ def load_baked(fingerprint: str) -> BakedLight | None:
 def damaged_light() -> dict[Path, str]:
     """Check every file of baked light; return what is wrong, in words, by file."""
     problems = {}
-    for path in sorted(light_folder().glob(f"*{SUFFIX}")):
+    files = (light_folder().glob(f"*{suffix}") for suffix in (SUFFIX, DRAFT_SUFFIX))
+    for path in sorted(chain(*files)):
         try:
             _payload(path)
         except (OSError, ValueError) as problem:
@@ -169,7 +202,7 @@ def _is_fingerprint(text: str) -> bool:
 
 def forget_oldest(folder: Path, most: int = MOST_FILES) -> None:
     """Remove the files that have not been used for longest, so that `most` of a kind remain."""
-    for kind in (f"*{SUFFIX}", "*.known"):
+    for kind in (f"*{SUFFIX}", f"*{DRAFT_SUFFIX}", "*.known"):
         ages = {}
         for path in folder.glob(kind):
             with suppress(OSError):

@@ -32,7 +32,7 @@ PANEL = Light(
 )
 SPOT = Light(name="spot", type="spot", position_m=(-1.6, -1.2, 2.8), outer_cone_deg=50)
 LIGHTS = (LAMP, PANEL, SPOT)
-FINER = replace(COARSE, rays=256, fine_rays=256)
+FINER = replace(COARSE, rays=256)
 
 
 def room(at: Pose) -> WorldSnapshot:
