@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.light_shapes import LAMP_RADIUS_M, SUN_RADIUS, area_sides
+from sailenv_ros.bake.light_shapes import LAMP_RADIUS_M, SUN_DISC_RADIUS, SUN_RADIUS, area_sides
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import NEVER, RayScene
 from sailenv_ros.bake.sampling import shifted
 from sailenv_ros.lights import Light
 
-__all__ = ["LightSamples", "Points", "arriving", "samples_of", "visible_range"]
+__all__ = ["LightSamples", "Points", "arriving", "samples_of", "sun_directions", "visible_range"]
 
 Floats = NDArray[np.float32]
 
@@ -143,19 +143,30 @@ def _free(
     return free
 
 
-def _sun(light: Light, at: Floats) -> LightSamples:
+def sun_directions(
+    light: Light, pattern: Floats, shifts: Floats, radius: float = SUN_DISC_RADIUS
+) -> Floats:
+    """Return (N, M, 3) float32: unit vectors towards points of a directional light's disc."""
+    return _to_the_disc(light, shifted(pattern, shifts), radius).astype(np.float32)
+
+
+def _to_the_disc(light: Light, at: Floats, radius: float) -> NDArray[np.float64]:
     forward = np.asarray(light.direction)
     helper = np.eye(3)[np.argmin(np.abs(forward))]
     side = np.cross(forward, helper)
     side /= np.linalg.norm(side)
     other = np.cross(forward, side)
-    radius, turn = SUN_RADIUS * np.sqrt(at[..., 0]), 2.0 * np.pi * at[..., 1]
+    away, turn = radius * np.sqrt(at[..., 0]), 2.0 * np.pi * at[..., 1]
     towards = (
         -forward
-        + (radius * np.cos(turn))[..., None] * side
-        + (radius * np.sin(turn))[..., None] * other
+        + (away * np.cos(turn))[..., None] * side
+        + (away * np.sin(turn))[..., None] * other
     )
-    towards /= np.linalg.norm(towards, axis=2, keepdims=True)
+    return np.asarray(towards / np.linalg.norm(towards, axis=2, keepdims=True))
+
+
+def _sun(light: Light, at: Floats) -> LightSamples:
+    towards = _to_the_disc(light, at, SUN_RADIUS)
     return LightSamples(
         towards=towards.astype(np.float32),
         lengths=np.full(at.shape[:2], NEVER, np.float32),

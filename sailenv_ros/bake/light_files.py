@@ -22,7 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.folders import cache_folder
-from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, Unwrapping
+from sailenv_ros.baked_light import (
+    BakedLight,
+    LightChart,
+    LightLayer,
+    ProbeGrid,
+    SunEdges,
+    Unwrapping,
+)
 from sailenv_ros.lights import Light
 from sailenv_ros.system.files import (
     file_lock,
@@ -46,7 +53,7 @@ __all__ = [
     "store_draft",
 ]
 
-FORMAT = 3
+FORMAT = 4
 MAGIC = b"sailenv_ros baked light\n"
 DIGEST_BYTES = 32
 
@@ -59,6 +66,7 @@ MOST_FILES = 24
 """The oldest are thrown away beyond it."""
 
 _LAYER_ARRAYS = ("direct", "bounced", "probe_direct", "probe_bounced", "visibility")
+_EDGE_ARRAYS = ("index", "blocks")
 _CHART_ARRAYS = ("vertices", "triangles", "uvs")
 
 _log = logging.getLogger(__name__)
@@ -223,6 +231,9 @@ def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:
             array = getattr(layer, name)
             if array is not None:
                 arrays[f"layer_{place}_{name}"] = array
+        if layer.edges is not None:
+            for name in _EDGE_ARRAYS:
+                arrays[f"layer_{place}_edges_{name}"] = getattr(layer.edges, name)
     number = {id(unwrapping): u for u, unwrapping in enumerate(unwrappings)}
     description = {
         "format": FORMAT,
@@ -260,6 +271,7 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
         LightLayer(
             light=None if light is None else Light(**_with_tuples(light)),
             clear=clear,
+            edges=_edges_of(arrays, place),
             **{
                 name: _frozen(arrays[f"layer_{place}_{name}"])
                 for name in _LAYER_ARRAYS
@@ -284,6 +296,16 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
         layers=tuple(layers),
         probes=ProbeGrid(**_with_tuples(description["probes"])),
     )
+
+
+def _edges_of(arrays: Mapping[str, NDArray[Any]], place: int) -> SunEdges | None:
+    names = {name: f"layer_{place}_edges_{name}" for name in _EDGE_ARRAYS}
+    if any(name not in arrays for name in names.values()):
+        return None
+    edges = SunEdges(**{name: _frozen(arrays[key]) for name, key in names.items()})
+    if edges.index.size and not -1 <= edges.index.min() <= edges.index.max() < len(edges.blocks):
+        raise ValueError("it names edges of shadows that it does not have")
+    return edges
 
 
 def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:

@@ -37,9 +37,10 @@ from sailenv_ros.bake.sky import panes
 from sailenv_ros.bake.sky_picture import sky_picture
 from sailenv_ros.bake.solving import Samples, SolvedLight, Solver, Stages
 from sailenv_ros.bake.static_geometry import static_geometry_of
+from sailenv_ros.bake.sun_edges import sun_edges
 from sailenv_ros.bake.texels import Texels, rasterised
 from sailenv_ros.bake.visibility import probe_visibility, visible_triangles
-from sailenv_ros.baked_light import BakedLight, LightLayer
+from sailenv_ros.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.lights import Light
 from sailenv_ros.snapshot import WorldSnapshot
 
@@ -92,6 +93,7 @@ class _Bake:
     ) -> None:
         self._snapshot, self._settings = snapshot, settings
         self._stages, self._preview = stages, preview
+        self._edges: dict[str, SunEdges] = {}
 
     def run(self) -> BakedLight:
         settings, stages, lights = self._settings, self._stages, self._snapshot.contents.lights
@@ -237,9 +239,15 @@ class _Bake:
         layers = []
         for place, entry in enumerate(solver.lights):
             mine = slice(3 * place, 3 * place + 3)
-            share = None
+            share = edges = None
             if entry.visibility is not None:
-                share = self._map_of(np.rint(known[:, next(visibility)] * 255.0), np.uint8)
+                rounded = np.rint(known[:, next(visibility)] * 255.0)
+                if of_texel is None:
+                    edges = self._sun_edges(entry, valid)
+                    marked = edges.index[texels.rows, texels.columns] >= 0
+                    # Where light is partial, blocks are looked for.
+                    rounded[marked] = np.clip(rounded[marked], 1.0, 254.0)
+                share = self._map_of(rounded, np.uint8)
             layers.append(
                 LightLayer(
                     light=entry.light,
@@ -253,6 +261,7 @@ class _Bake:
                     .astype(np.float16),
                     visibility=share,
                     clear=self._clear(entry.light),
+                    edges=edges,
                 )
             )
         return BakedLight(
@@ -261,6 +270,18 @@ class _Bake:
             layers=tuple(layers),
             probes=grid,
         )
+
+    def _sun_edges(self, entry: SolvedLight, valid: NDArray[np.bool_]) -> SunEdges:
+        """Return where a directional light's shadows end; found once for all results."""
+        assert entry.light is not None
+        assert entry.mixed is not None
+        found = self._edges.get(entry.light.name)
+        if found is None:
+            found = self._edges[entry.light.name] = sun_edges(
+                self._geometry, self._around.scene, self._texels, self._layout.places,
+                entry.light, entry.mixed[valid[entry.mixed]], self._stages.run,
+            )  # fmt: skip
+        return found
 
     def _map_of(self, values: Floats, kind: type[np.generic]) -> NDArray[Any]:
         texels = self._texels

@@ -109,12 +109,14 @@ class Samples:
 class SolvedLight:
     """What arrives straight from one light, and the share that is visible of a directional one.
 
-    `light` is None for the surroundings, of which nothing counts as straight.
+    `light` is None for the surroundings, of which nothing counts as straight; `mixed` are the
+    points near which a shadow of a directional one ends.
     """
 
     light: Light | None
     direct: Floats
     visibility: Floats | None = None
+    mixed: NDArray[np.intp] | None = None
 
 
 class Solver:
@@ -251,9 +253,12 @@ class Solver:
 
             self._stages.run(shine, len(lit), rays, report)
 
-        shine_on(np.flatnonzero(self._outside & np.isnan(known)), settings.light_rays, None)
+        mixed = np.flatnonzero(self._outside & np.isnan(known))
+        shine_on(mixed, settings.light_rays, None)
         shine_on(np.flatnonzero(self._outside & (known > 0.0)), settings.light_rays, known)
-        return SolvedLight(light, direct, visibility if light.type == "directional" else None)
+        if light.type != "directional":
+            return SolvedLight(light, direct)
+        return SolvedLight(light, direct, visibility, mixed)
 
     def _known_shares(self, light: Light) -> Floats:
         """Return (N,) float32: how much of a light arrives where no shadow ends; else NaN."""

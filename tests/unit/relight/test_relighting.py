@@ -116,6 +116,21 @@ def test_no_ghost_is_left(scene: BakedScene, anew: BakedLight) -> None:
     assert light(got) == pytest.approx(expected[near].mean(), rel=0.15)
 
 
+def test_sharp_edges_stay_where_light_is_the_same(scene: BakedScene) -> None:
+    """Blocks of shadows' edges go where the share of the sun has changed, and nowhere else."""
+    for before, after in zip(scene.baked.layers, moved(scene).layers, strict=True):
+        assert (before.edges is None) == (after.edges is None)
+        if before.edges is None or after.edges is None:
+            continue
+        assert before.visibility is not None
+        assert after.visibility is not None
+        changed = before.visibility != after.visibility
+        assert changed.any()
+        np.testing.assert_array_equal(after.edges.index[~changed], before.edges.index[~changed])
+        assert (after.edges.index[changed] == -1).all()
+        assert after.edges.blocks is before.edges.blocks
+
+
 def test_where_nothing_moves_nothing_changes(scene: BakedScene) -> None:
     """A chest that moves to where it stands changes no light but by rays that hit its own faces."""
     got = relit(scene, [], FINE, threads=2)
