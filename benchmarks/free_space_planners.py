@@ -23,6 +23,7 @@ WAYS = 20
 
 
 def write(folder: Path) -> None:
+    """Write the maps and our ways."""
     from sailenv_ros import Simulation
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -51,6 +52,7 @@ def write(folder: Path) -> None:
 
 
 def judge(folder: Path) -> None:
+    """Find the same ways by others, and print how they compare."""
     import networkx
     from pathfinding.core.diagonal_movement import DiagonalMovement
     from pathfinding.core.grid import Grid
@@ -63,9 +65,10 @@ def judge(folder: Path) -> None:
         for row, column in np.argwhere(free).tolist():
             for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
                 to = row + down, column + right
-                if all(0 <= to[k] < free.shape[k] for k in (0, 1)) and free[to]:
-                    if not (down and right) or (free[row + down, column] and free[row, to[1]]):
-                        graph.add_edge((row, column), to, weight=math.hypot(down, right))
+                if not all(0 <= to[k] < free.shape[k] for k in (0, 1)) or not free[to]:
+                    continue
+                if not (down and right) or (free[row + down, column] and free[row, to[1]]):
+                    graph.add_edge((row, column), to, weight=math.hypot(down, right))
         found = {"pathfinding": 0, "networkx": 0}
         worst = dict.fromkeys(found, 0.0)
         for way in ways:
@@ -85,6 +88,7 @@ def judge(folder: Path) -> None:
 
 
 def main() -> None:
+    """Run what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", type=Path)
     parser.add_argument("--judge", type=Path)
