@@ -11,7 +11,7 @@ from pydantic import Field
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.space.free_space import BodySize
-from sailenv_ros.viewpoints.base import CameraView, RuleSettings, ViewScene, camera_rule
+from sailenv_ros.viewpoints.view_scene import CameraView, RuleSettings, ViewScene, camera_rule
 
 __all__ = ["FreeView", "free_view", "poses_in_free_space"]
 

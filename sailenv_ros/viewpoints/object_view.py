@@ -13,7 +13,6 @@ from pydantic import Field
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.viewpoints.base import CameraView, RuleSettings, ViewScene, camera_rule
 from sailenv_ros.viewpoints.object_targets import (
     Rule,
     Target,
@@ -22,6 +21,7 @@ from sailenv_ros.viewpoints.object_targets import (
     stands_in_something,
     target_of_row,
 )
+from sailenv_ros.viewpoints.view_scene import CameraView, RuleSettings, ViewScene, camera_rule
 
 __all__ = ["ObjectView", "SeenTarget", "object_view", "views_in_turn"]
 

@@ -11,10 +11,10 @@ from pydantic import ValidationError
 from sailenv_ros.errors import InvalidEntry, UnknownName
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.validation import checked_integer
-from sailenv_ros.viewpoints.base import CameraRule, CameraView, RuleSettings, ViewScene
-from sailenv_ros.viewpoints.coverage import coverage
 from sailenv_ros.viewpoints.free_view import free_view
 from sailenv_ros.viewpoints.object_view import object_view
+from sailenv_ros.viewpoints.scene_coverage import coverage
+from sailenv_ros.viewpoints.view_scene import CameraRule, CameraView, RuleSettings, ViewScene
 
 __all__ = ["MOST_VIEWS", "camera_rules", "checked_rule", "sample_cameras"]
 

@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from sailenv_ros.geometry import Pose
-from sailenv_ros.viewpoints.base import CameraView, ViewScene, camera_rule
 from sailenv_ros.viewpoints.free_view import FreeView, poses_in_free_space
+from sailenv_ros.viewpoints.view_scene import CameraView, ViewScene, camera_rule
 
 __all__ = ["Coverage", "coverage"]
 
