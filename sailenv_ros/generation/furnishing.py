@@ -9,15 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from sailenv_ros.assets.arranging import RESTING_GAP_M, WALL_GAP_M
 from sailenv_ros.generation.items import Item, Namer, block_of, clear_blocks
-from sailenv_ros.generation.plan import Area, Block, Plan, WallSide
+from sailenv_ros.generation.plan import Area, Block, Hole, Plan, WallSide
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.rules import CompanionRule, FurnitureRule, PieceRule
 from sailenv_ros.generation.rule_files import Rules
+from sailenv_ros.generation.rules import CompanionRule, FurnitureRule, PieceRule
 from sailenv_ros.generation.stock import Stock
 
 __all__ = ["Furnisher"]
@@ -26,6 +27,10 @@ TRIES = 60
 COMPANION_TRIES = 8
 FROM_WINDOW_M = 0.05
 BESIDE_CURTAIN_M = 0.16
+FROM_WALL_M = 0.07
+LEAST_GAP_M = 0.001
+"""Between pieces that belong together."""
+
 _CURTAIN_OUT_M, _CURTAIN_IN_M = 0.30, 0.12
 _RUG_GAP_M = 0.03
 
@@ -36,6 +41,7 @@ class _Group:
 
     items: list[Item] = field(default_factory=list)
     clear: list[Block] = field(default_factory=list)
+    ends: dict[tuple[int, str], Item] = field(default_factory=dict)
     names: list[tuple[Item, str]] = field(default_factory=list)
 
 
@@ -70,6 +76,8 @@ class Furnisher:
         for piece in pieces:
             if not (piece.needed or self.dice.chance(piece.chance)):
                 continue
+            if piece.once and any(item.base == piece.put for item in self.items):
+                continue
             count = self.dice.whole(piece.count)
             count += int(piece.per_metre * self.area.floor_m2)
             for number in range(count):
@@ -98,6 +106,7 @@ class Furnisher:
         for item, base in group.names:
             prefix = f"{self.area.name} " if self.area.name else ""
             item.name = self.namer.name(prefix + base)
+            item.base = base
             item.section = f"{self.area.name}:{heading}"
         self.plan.stand(
             [_thin(item.block) if item.is_flat else item.block for item in group.items],
@@ -107,7 +116,7 @@ class Furnisher:
 
     def _proposed(self, name: str, rule: FurnitureRule, group: _Group) -> Item | None:
         """Draw a place for a piece; None if it cannot stand there."""
-        asset, scale = self.dice.one(rule.assets), round(self.dice.between(rule.scale), 2)
+        asset, scale = self._fresh(rule), round(self.dice.between(rule.scale), 2)
         if rule.at in ("wall", "corner") or rule.height is not None:
             item = self._at_wall(rule, asset, scale, corner=rule.at == "corner")
         elif rule.at == "ceiling":
@@ -116,6 +125,11 @@ class Furnisher:
         else:
             item = self._in_the_room(rule, asset, scale)
         return item if item is not None and self._fits(item, rule, name, group) else None
+
+    def _fresh(self, rule: FurnitureRule) -> str:
+        """Return an object of a piece, one that the room has not got yet where there is one."""
+        present = {item.asset for item in self.items}
+        return self.dice.one([a for a in rule.assets if a not in present] or rule.assets)
 
     def _at_wall(
         self, rule: FurnitureRule, asset: str, scale: float, *, corner: bool
@@ -133,9 +147,7 @@ class Furnisher:
             along = (hole.along[0] + hole.along[1]) / 2.0 + self.dice.between((-0.15, 0.15))
         else:
             along = self.dice.between((half, side.length_m - half))
-        return self._against(
-            side, along, rule, asset, scale, turn=self.dice.between(rule.turn)
-        )
+        return self._against(side, along, rule, asset, scale, turn=self.dice.between(rule.turn))
 
     def _against(
         self,
@@ -146,13 +158,14 @@ class Furnisher:
         scale: float,
         *,
         turn: float = 0.0,
+        digits: int = 2,
     ) -> Item | None:
         """Return a piece with its back to a wall, at a place along it; None if it cannot be."""
         low, high = self.stock.bounds(asset, scale)
         height = 0.0 if rule.height is None else round(self.dice.between(rule.height), 2)
         gap = round(self.dice.between(rule.gap), 2)
         turn = round(turn)
-        along = _rounded_along(side, along)
+        along = _rounded_along(side, along, digits)
         half = (float(low[1]), float(high[1]))
         extent = (along + min(half[0], -half[1]), along + max(half[1], -half[0]))
         if turn:
@@ -198,7 +211,7 @@ class Furnisher:
         """Return a piece that stands free."""
         x, y, yaw = round(x, 2), round(y, 2), _angle(yaw)
         z = 0.0 if rule.flat else RESTING_GAP_M
-        entry = {"position": [x, y, z], "rotation": [0, 0, yaw]}
+        entry: dict[str, object] = {"position": [x, y, z], "rotation": [0, 0, yaw]}
         block = block_of(self.stock, asset, scale, x, y, yaw)
         return self._item(rule, asset, scale, entry, block, (x, y, yaw))
 
@@ -206,7 +219,8 @@ class Furnisher:
         """Return a lamp below the ceiling."""
         z = round(self.area.height - float(self.stock.bounds(asset, scale)[1, 2]) - 0.005, 3)
         block = block_of(self.stock, asset, scale, x, y, 0.0, z)
-        return self._item(rule, asset, scale, {"position": [x, y, z]}, block, (x, y, 0.0), z=z)
+        entry: dict[str, object] = {"position": [x, y, z]}
+        return self._item(rule, asset, scale, entry, block, (x, y, 0.0))
 
     def _item(
         self,
@@ -219,14 +233,13 @@ class Furnisher:
         *,
         side: WallSide | None = None,
         along_m: float = 0.0,
-        z: float = 0.0,
     ) -> Item:
         entry |= {"scale": scale} if scale != 1.0 else {}
         entry |= {"static": True} if rule.static else {}
         light = None
         if rule.light is not None:
             tall = float(self.stock.bounds(asset, scale)[1, 2])
-            light = (z + rule.light_at * tall, round(self.dice.between(rule.light), 2))
+            light = (rule.light_at * tall, round(self.dice.between(rule.light), 2))
         x, y, yaw = pose
         return Item(
             name="",
@@ -246,14 +259,16 @@ class Furnisher:
 
     def _fits(self, item: Item, rule: FurnitureRule, name: str, group: _Group) -> bool:
         """Say if a piece can stand where it was drawn; it is in the group then."""
-        if not self.area.holds(item.block):
+        # What stands free keeps off sill boards and curtains.
+        stands_free = item.side is None and not rule.flat and rule.at != "ceiling"
+        if not self.area.holds(item.block, FROM_WALL_M if stands_free else 0.0):
             return False
         if rule.flat:
             if not self._rug_fits(item, group):
                 return False
         else:
             mates = [each.block for each in group.items if not each.is_flat]
-            if any(item.block.meets(mate, 0.005) for mate in mates):
+            if any(item.block.meets(mate, LEAST_GAP_M) for mate in mates):
                 return False
             rugs = [each for each in (*self.items, *group.items) if each.is_flat]
             if item.side is not None and any(_over(item.block, rug.block) for rug in rugs):
@@ -270,7 +285,7 @@ class Furnisher:
         return True
 
     def _rug_fits(self, item: Item, group: _Group) -> bool:
-        """A rug lies on the floor alone: beside walls' furniture, or under what stands free."""
+        """Say if a rug lies on the floor alone, or under what stands free and never moves."""
         for other in (*self.items, *group.items):
             standing = other.side is not None or not other.entry.get("static", False)
             if (other.is_flat or standing) and _over(item.block, other.block):
@@ -291,9 +306,9 @@ class Furnisher:
     def _companions(self, item: Item, companion: CompanionRule, group: _Group) -> int:
         """Place the companions of one rule; return how many found a place."""
         rule = self.rules.furniture[companion.put]
-        asset = self.dice.one(rule.assets)  # all of them alike
+        asset = self._fresh(rule)  # all of them alike
         placed, count = 0, self.dice.whole(companion.count)
-        for spot in self._spots(item, companion, rule, asset, count):
+        for spot in self._spots(item, companion, rule, asset, count, group):
             if placed == count:
                 break
             for _ in range(COMPANION_TRIES):
@@ -304,6 +319,7 @@ class Furnisher:
                 mark = len(group.items), len(group.clear), len(group.names)
                 if self._with_companions(proposed, rule, group):
                     placed += 1
+                    group.ends[id(item), companion.where] = proposed
                     if companion.where == "around":
                         item.around.append(proposed)
                     break
@@ -312,7 +328,13 @@ class Furnisher:
         return placed
 
     def _spots(
-        self, item: Item, companion: CompanionRule, rule: FurnitureRule, asset: str, count: int
+        self,
+        item: Item,
+        companion: CompanionRule,
+        rule: FurnitureRule,
+        asset: str,
+        count: int,
+        group: _Group,
     ) -> Iterator[Callable[[str, float], Item | None]]:
         """Yield ways to draw a place at each spot where a companion may be."""
         where = companion.where
@@ -322,15 +344,21 @@ class Furnisher:
             yield lambda asset, scale: self._over(item, companion, rule, asset, scale)
         elif where == "under":
             yield lambda asset, scale: self._standing(
-                rule, asset, scale, *_offset(item, companion.ahead, 0.0),
+                rule,
+                asset,
+                scale,
+                *_offset(item, companion.ahead, 0.0),
                 item.yaw_deg + self._longways(item, asset),
             )
-        elif where in ("beside", "left", "right"):
-            signs = {"left": [1.0], "right": [-1.0]}.get(where) or self.dice.mixed([1.0, -1.0])
-            for sign in signs:
-                yield lambda asset, scale, sign=sign: self._beside(  # type: ignore[misc]
-                    item, companion, rule, asset, scale, sign
-                )
+        elif where in ("left", "right"):
+            # A row goes on where the last piece of this side ends.
+            for _ in range(count):
+                last = group.ends.get((id(item), where), item)
+                sign = 1.0 if where == "left" else -1.0
+                yield partial(self._beside, last, companion, rule, sign)
+        elif where == "beside":
+            for sign in self.dice.mixed([1.0, -1.0]):
+                yield partial(self._beside, item, companion, rule, sign)
         else:
             turned = 0.0 if where == "front" else 180.0
             yield lambda asset, scale: self._facing(item, companion, rule, asset, scale, turned)
@@ -357,10 +385,11 @@ class Furnisher:
         item: Item,
         companion: CompanionRule,
         rule: FurnitureRule,
+        sign: float,
         asset: str,
         scale: float,
-        sign: float,
     ) -> Item | None:
+        """Return a companion at the left (1) or right (-1) of a piece, at the same wall if any."""
         low, high = self.stock.bounds(asset, scale)
         gap = self.dice.between(companion.gap)
         if item.side is not None and not rule.flat and rule.at != "free":
@@ -368,13 +397,11 @@ class Furnisher:
             run = np.subtract(item.side.end, item.side.start) / item.side.length_m
             way = sign * float(np.sign(np.dot(left, run)))
             along = item.along_m + way * (item.block.half_y + gap + max(-low[1], high[1]))
-            return self._against(item.side, along, rule, asset, scale)
+            return self._against(item.side, along, rule, asset, scale, digits=3)
         turn = self.dice.between(companion.turn)
         aside = sign * (item.block.half_y + gap + (high[1] - low[1]) / 2.0)
         ahead = self.dice.between((-0.3, 0.3)) * item.block.half_x if rule.flat else 0.0
         if rule.flat:
-            turn, aside = 90.0, sign * (item.block.half_y + gap + (high[0] - low[0]) / 2.0)
-            turn = 0.0 if high[0] - low[0] > high[1] - low[1] else turn
             shorter = min(high[0] - low[0], high[1] - low[1])
             longer = max(high[0] - low[0], high[1] - low[1])
             turn = 90.0 if high[1] - low[1] > high[0] - low[0] else 0.0
@@ -479,7 +506,7 @@ def _over(first: Block, second: Block) -> bool:
     return flat[0].meets(flat[1], _RUG_GAP_M)
 
 
-def _windows(sides: Sequence[WallSide]) -> list[tuple[WallSide, object]]:
+def _windows(sides: Sequence[WallSide]) -> list[tuple[WallSide, Hole]]:
     return [(side, hole) for side in sides for hole in side.holes if hole.kind == "window"]
 
 
@@ -502,16 +529,16 @@ def _edge(item: Item, sign: float) -> float:
     return sign * item.block.half_x
 
 
-def _rounded_along(side: WallSide, along: float) -> float:
-    """Return a place along a wall whose coordinate in the room has two digits."""
+def _rounded_along(side: WallSide, along: float, digits: int) -> float:
+    """Return a place along a wall whose coordinate in the room is rounded."""
     x, y = side.point(along)
     axis = 0 if abs(side.end[0] - side.start[0]) > abs(side.end[1] - side.start[1]) else 1
-    at = round((x, y)[axis], 2)
+    at = round((x, y)[axis], digits)
     return abs(at - side.start[axis])
 
 
 def _wall_coordinate(side: WallSide, x: float, y: float) -> float:
-    return round(x if side.wall in ("north", "south") else y, 2)
+    return round(x if side.wall in ("north", "south") else y, 3)
 
 
 def _beside_holes(

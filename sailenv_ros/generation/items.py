@@ -43,6 +43,8 @@ class Item:
         True if the room is nothing without it.
     section : str
         Heading in the file.
+    base : str
+        Name of its piece in ``furniture.yaml``; empty for things.
     around : list of Item
         Chairs around a table.
     clear : tuple of Block
@@ -64,6 +66,7 @@ class Item:
     along_m: float = 0.0
     needed: bool = False
     section: str = ""
+    base: str = ""
     around: list[Item] = field(default_factory=list)
     clear: tuple[Block, ...] = ()
     light: tuple[float, float] | None = None
@@ -127,11 +130,11 @@ def clear_blocks(rule: FurnitureRule, block: Block) -> tuple[Block, ...]:
         if depth <= 0.0:
             continue
         half = (depth / 2.0, block.half_y) if ahead else (block.half_x, depth / 2.0)
-        offset = np.array(
-            [ahead * (block.half_x + half[0]), aside * (block.half_y + half[1])]
-        )
+        offset = np.array([ahead * (block.half_x + half[0]), aside * (block.half_y + half[1])])
         x, y = (offset @ block.axes() + (block.x, block.y)).tolist()
         blocks.append(
-            Block(x=x, y=y, half_x=half[0], half_y=half[1], yaw_rad=block.yaw_rad, low=0.02, high=1.9)
+            Block(
+                x=x, y=y, half_x=half[0], half_y=half[1], yaw_rad=block.yaw_rad, low=0.02, high=1.9
+            )
         )
     return tuple(blocks)

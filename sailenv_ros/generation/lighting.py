@@ -53,9 +53,7 @@ def light_entries(
     if rule.sun is not None and windows:
         side, _ = max(windows, key=lambda w: (w[1].along[1] - w[1].along[0], w[0].wall))
         yield _sun(rule, side, dice)
-    number = 0
-    for side, hole in windows:
-        number += 1
+    for number, (side, hole) in enumerate(windows, start=1):
         x, y = side.point((hole.along[0] + hole.along[1]) / 2.0, _IN_FRONT_M)
         yield {
             "name": "window light" if number == 1 else f"window light {number}",
@@ -98,14 +96,16 @@ def _lamps(
         count += 1
         z = heights.get(item.name, 0.0) + up
         if ceiling:
-            z = min(z, heights.get(item.name, 0.0)) - 0.05
+            z -= 0.05
             small = item.block.high - item.block.low < 0.2
             strength = round(dice.between(rule.ceiling), 2) if small else strength
             z -= _BELOW_CEILING_M - 0.05 if small else 0.0
         yield {
             "name": f"light of {item.name}",
             "type": "point",
-            "position": _rounded(item.block.x if ceiling else item.x, item.block.y if ceiling else item.y, z),
+            "position": _rounded(
+                item.block.x if ceiling else item.x, item.block.y if ceiling else item.y, z
+            ),
             "colour": list(rule.lamp_colour),
             "intensity": strength,
         }

@@ -6,13 +6,15 @@ from everything, and each looks at something.
 
 from __future__ import annotations
 
-import heapq
 import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from sailenv_ros.generation.items import Item
 from sailenv_ros.generation.plan import Plan
@@ -22,8 +24,11 @@ __all__ = ["mover_entry", "walk_cells"]
 
 CAMERA_RADIUS_M = 0.32
 EYE_M = (1.45, 1.65)
-MAX_STOPS = 9
-_STOP_M = 0.7
+STOPS_IN_A_ROOM = 8
+MORE_STOPS = 3
+"""In every further room."""
+_STOP_M = 0.9
+_STEP_CELLS = 12.0
 _LOOK_LEAST_M = 0.9
 
 Floats = NDArray[np.float64]
@@ -62,8 +67,6 @@ def mover_entry(
 
 def walk_cells(free: Flags, plan: Plan) -> Flags:
     """Return the largest connected part of some cells."""
-    from scipy.ndimage import label
-
     parts, count = label(free)
     if not count:
         return np.zeros_like(free)
@@ -87,7 +90,8 @@ def _stops(free: Flags, clearance: Floats, plan: Plan, dice: Dice) -> list[Cell]
     first = int(np.argmin(np.hypot(*(places - places[first]).T) - 2.0 * weight))
     chosen = [first]
     away = np.hypot(*(places - places[first]).T)
-    while len(chosen) < MAX_STOPS:
+    most = STOPS_IN_A_ROOM + MORE_STOPS * (len(plan.areas) - 1)
+    while len(chosen) < most:
         best = int(np.argmax(np.minimum(away, 2.5) + 0.5 * weight))
         if away[best] < _STOP_M:
             break
@@ -98,6 +102,7 @@ def _stops(free: Flags, clearance: Floats, plan: Plan, dice: Dice) -> list[Cell]
 
 def _closed_way(stops: Sequence[Cell], free: Flags, clearance: Floats) -> list[Cell]:
     """Return corners of a way that comes by all stops and ends where it began."""
+    ways = _Ways(stops, free, clearance)
     order, rest = [stops[0]], list(stops[1:])
     while rest:
         nearest = min(rest, key=lambda cell: (math.dist(cell, order[-1]), cell))
@@ -106,38 +111,62 @@ def _closed_way(stops: Sequence[Cell], free: Flags, clearance: Floats) -> list[C
     way: list[Cell] = []
     for start, end in zip(order, [*order[1:], order[0]], strict=True):
         if start != end:
-            way += _straightened(_shortest(start, end, free, clearance), free)[:-1]
-    return way or [stops[0]]
+            way += _straightened(ways.shortest(start, end), free)[:-1]
+    return _without_short_steps(way, free) or [stops[0]]
 
 
-def _shortest(start: Cell, end: Cell, free: Flags, clearance: Floats) -> list[Cell]:
-    """Return the cells of a short way that keeps away from things (Dijkstra's algorithm)."""
-    costs = {start: 0.0}
-    before: dict[Cell, Cell] = {}
-    waiting = [(0.0, start)]
-    steps = [(dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy]
-    while waiting:
-        cost, cell = heapq.heappop(waiting)
-        if cell == end:
+def _without_short_steps(way: list[Cell], free: Flags) -> list[Cell]:
+    """Leave out corners that lie close to the one before, where the way can go on without."""
+    kept = list(way)
+    while len(kept) > 3:
+        for index in range(len(kept)):
+            before, after = kept[index - 1], kept[(index + 1) % len(kept)]
+            if math.dist(before, kept[index]) < _STEP_CELLS and _sees(before, after, free):
+                del kept[index]
+                break
+        else:
             break
-        if cost > costs[cell]:
-            continue
-        for dx, dy in steps:
-            near = cell[0] + dx, cell[1] + dy
-            if not (0 <= near[0] < free.shape[0] and 0 <= near[1] < free.shape[1]):
-                continue
-            if not free[near]:
-                continue
-            narrow = 0.15 / max(float(clearance[near]), 0.05)
-            onward = cost + math.hypot(dx, dy) * (1.0 + narrow)
-            if onward < costs.get(near, math.inf):
-                costs[near] = onward
-                before[near] = cell
-                heapq.heappush(waiting, (onward, near))
-    way = [end]
-    while way[-1] != start:
-        way.append(before[way[-1]])
-    return way[::-1]
+    return kept
+
+
+class _Ways:
+    """Short ways between stops that keep away from things (Dijkstra's algorithm)."""
+
+    def __init__(self, stops: Sequence[Cell], free: Flags, clearance: Floats) -> None:
+        self._cells = np.argwhere(free)
+        numbers = np.full(free.shape, -1)
+        numbers[free] = np.arange(len(self._cells))
+        self._numbers = numbers
+        self._stops = {stop: row for row, stop in enumerate(stops)}
+        _, self._before = dijkstra(
+            _graph(self._cells, numbers, clearance),
+            indices=[int(numbers[stop]) for stop in stops],
+            return_predecessors=True,
+        )
+
+    def shortest(self, start: Cell, end: Cell) -> list[Cell]:
+        """Return the cells of a way from one stop to another."""
+        before, first = self._before[self._stops[start]], int(self._numbers[start])
+        way = [int(self._numbers[end])]
+        while way[-1] != first:
+            way.append(int(before[way[-1]]))
+        return [(int(x), int(y)) for x, y in self._cells[way[::-1]]]
+
+
+def _graph(cells: NDArray[np.intp], numbers: NDArray[np.intp], clearance: Floats) -> csr_array:
+    """Return the costs of steps between neighbouring cells; narrow places cost more."""
+    padded = np.pad(numbers, 1, constant_values=-1)
+    costs = 1.0 + 0.15 / np.maximum(clearance[cells[:, 0], cells[:, 1]], 0.05)
+    rows, columns, values = [], [], []
+    for dx in (-1, 0, 1):
+        for dy in (-1, 0, 1):
+            near = padded[cells[:, 0] + 1 + dx, cells[:, 1] + 1 + dy]
+            known = (near >= 0) & ((dx, dy) != (0, 0))
+            rows.append(np.flatnonzero(known))
+            columns.append(near[known])
+            values.append(math.hypot(dx, dy) * costs[near[known]])
+    index = np.concatenate(rows), np.concatenate(columns)
+    return csr_array((np.concatenate(values), index), shape=(len(cells), len(cells)))
 
 
 def _straightened(way: Sequence[Cell], free: Flags) -> list[Cell]:
@@ -169,7 +198,8 @@ def _looks(
         ranked = sorted(
             pieces,
             key=lambda item: (
-                seen.get(item.name, 0) + 0.25 * math.hypot(item.block.x - x, item.block.y - y)
+                seen.get(item.name, 0)
+                + 0.25 * math.hypot(item.block.x - x, item.block.y - y)
                 - min(1.0, 2.0 * item.block.half_x * item.block.half_y),
                 item.name,
             ),
@@ -186,5 +216,3 @@ def _looks(
         z = min(1.3, max(0.45, (item.block.low + item.block.high) / 2.0))
         looks.append((round(item.block.x, 2), round(item.block.y, 2), round(z, 2)))
     return looks
-
-

@@ -5,11 +5,13 @@ Reads ``config/rooms``; errors have file, line and column, all at once, as those
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
+
+from pydantic import ValidationError
 
 from sailenv_ros.errors import SceneDiagnostic, SceneError, UnknownName
 from sailenv_ros.generation.rules import (
@@ -24,10 +26,10 @@ from sailenv_ros.generation.rules import (
     ThingRule,
     ThingsFile,
 )
+from sailenv_ros.scene.documents import load_document
 from sailenv_ros.scene.fields import SceneModel
-from sailenv_ros.scene.loader import load_model
 from sailenv_ros.scene.messages import suggestion
-from sailenv_ros.scene.scene_diagnostics import Diagnostic
+from sailenv_ros.scene.scene_diagnostics import Diagnostic, model_diagnostics
 from sailenv_ros.system.resources import resource_path
 
 __all__ = ["Rules", "read_rules", "room_kinds", "rules_of"]
@@ -36,6 +38,9 @@ LIBRARY = "library"
 SUFFIX = ".yaml"
 
 M = TypeVar("M", bound=SceneModel)
+
+MoreErrors: TypeAlias = Callable[[M], Iterable[Diagnostic]]
+"""Finds what else is wrong with a file whose every part is well: names that nothing has."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,12 +119,14 @@ def read_rules(
     files = sorted(folder.glob(f"*{SUFFIX}"))
     if not files:
         why = "has no kinds of rooms: <kind>.yaml"
-        diagnostic = SceneDiagnostic(
-            path=str(folder), line=0, column=0, field="", message=why
-        )
+        diagnostic = SceneDiagnostic(path=str(folder), line=0, column=0, field="", message=why)
         raise SceneError([diagnostic])
     kinds = {file.stem for file in files}
-    known = {"furniture": furniture, "materials": materials, "light": light}
+    known: dict[str, Mapping[str, Any]] = {
+        "furniture": furniture,
+        "materials": materials,
+        "light": light,
+    }
     return Rules(
         kinds={file.stem: _load(file, KindFile, _kind_errors(known, kinds)) for file in files},
         furniture=furniture,
@@ -129,15 +136,21 @@ def read_rules(
     )
 
 
-def _load(path: Path, model: type[M], more: Any) -> M:
-    return load_model(path, model, more=more)
+def _load(path: Path, model: type[M], more: MoreErrors[M]) -> M:
+    def find_errors(data: dict[str, Any], error: ValidationError | None) -> Iterator[Diagnostic]:
+        found = list(model_diagnostics(model, data, error))
+        yield from found
+        if not found and error is None:
+            yield from more(model.model_validate(data))
+
+    return load_document(path, model, "a file of rules", find_errors=find_errors)
 
 
 def _unknown(what: str, loc: tuple[Any, ...], name: str, known: Iterable[str]) -> Diagnostic:
     return Diagnostic(loc, f"there is no {what} {name!r}; {suggestion(name, known)}")
 
 
-def _things_errors(assets: Iterable[str] | None) -> Any:
+def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
     known = None if assets is None else frozenset(assets)
 
     def errors(file: ThingsFile) -> Iterator[Diagnostic]:
@@ -152,7 +165,7 @@ def _things_errors(assets: Iterable[str] | None) -> Any:
 
 def _furniture_errors(
     assets: Iterable[str] | None, things: Mapping[str, tuple[ThingRule, ...]]
-) -> Any:
+) -> MoreErrors[FurnitureFile]:
     known = None if assets is None else frozenset(assets)
 
     def errors(file: FurnitureFile) -> Iterator[Diagnostic]:
@@ -187,7 +200,7 @@ def _rings(furniture: Mapping[str, FurnitureRule]) -> Iterator[Diagnostic]:
             yield Diagnostic(("furniture", name, "companions"), "leads back to the piece itself")
 
 
-def _materials_errors(surfaces: Iterable[str] | None) -> Any:
+def _materials_errors(surfaces: Iterable[str] | None) -> MoreErrors[MaterialsFile]:
     known = None if surfaces is None else frozenset(surfaces)
 
     def errors(file: MaterialsFile) -> Iterator[Diagnostic]:
@@ -201,7 +214,7 @@ def _materials_errors(surfaces: Iterable[str] | None) -> Any:
     return errors
 
 
-def _light_errors(skies: Iterable[str] | None) -> Any:
+def _light_errors(skies: Iterable[str] | None) -> MoreErrors[LightFile]:
     known = None if skies is None else frozenset(skies)
 
     def errors(file: LightFile) -> Iterator[Diagnostic]:
@@ -213,7 +226,9 @@ def _light_errors(skies: Iterable[str] | None) -> Any:
     return errors
 
 
-def _kind_errors(known: Mapping[str, Mapping[str, Any]], kinds: Iterable[str]) -> Any:
+def _kind_errors(
+    known: Mapping[str, Mapping[str, Any]], kinds: Iterable[str]
+) -> MoreErrors[KindFile]:
     def errors(file: KindFile) -> Iterator[Diagnostic]:
         for index, piece in enumerate(file.furniture):
             if piece.put not in known["furniture"]:

@@ -245,6 +245,9 @@ class PieceRule(_RuleModel):
     needed: Annotated[bool, Switch()] = Field(
         default=False, description="true: a room without it is thrown away"
     )
+    once: Annotated[bool, Switch()] = Field(
+        default=False, description="true: not if the room has one already"
+    )
     per_metre: Fraction = Field(
         default=0.0, description="more of them: so many per square metre of the floor"
     )

@@ -66,7 +66,8 @@ def single_room(kind: str, rules: KindFile, materials: MaterialsRule, dice: Dice
     x, y = (round(dice.between(span), 1) for span in (shape.width, shape.depth))
     height = round(dice.between(shape.height), 2)
     shell = Shell(entry={"size": [x, y, height]})
-    cut, partitions = None, []
+    cut: Block | None = None
+    partitions: list[tuple[dict[str, Any], WallSide]] = []
     if dice.chance(shape.l_chance):
         cut, partitions = _cut_corner((x, y), height, rules, dice)
         shell.entry["partitions"] = [entry for entry, _ in partitions]
@@ -76,9 +77,7 @@ def single_room(kind: str, rules: KindFile, materials: MaterialsRule, dice: Dice
     shell.entry["openings"] = openings
     sides += [side for _, side in partitions]
     low, high = (-x / 2, -y / 2), (x / 2, y / 2)
-    area = Area(
-        name="", kind=kind, low=low, high=high, height=height, walls=tuple(sides), cut=cut
-    )
+    area = Area(name="", kind=kind, low=low, high=high, height=height, walls=tuple(sides), cut=cut)
     shell.areas.append(area)
     note_openings(shell, openings, sides)
     return shell
@@ -113,8 +112,8 @@ def _cut_corner(
     )  # fmt: skip
     # Each wall's face lies at the cut; its middle is half its thickness behind.
     across, up = round(x1 + sx * half, 3), round(y1 + sy * half, 3)
-    along_y = {"name": "corner wall 1", "from": [across, y1], "to": [across, y0]}
-    along_x = {"name": "corner wall 2", "from": [x1, up], "to": [x0, up]}
+    along_y = {"name": "corner wall 1", "start": [across, y1], "end": [across, y0]}
+    along_x = {"name": "corner wall 2", "start": [x1, up], "end": [x0, up]}
     ends_y = tuple(sorted((y1, y0)))
     ends_x = tuple(sorted((x1, x0)))
     sides = [
@@ -153,7 +152,7 @@ def add_openings(
     *,
     doors: bool = True,
 ) -> tuple[list[dict[str, Any]], list[WallSide]]:
-    """Draw doors and windows in outer walls; return their entries and the walls with their holes."""
+    """Draw doors and windows; return their entries, and the walls with their holes."""
     holes: dict[int, list[Hole]] = {number: [] for number in range(len(sides))}
     openings: list[dict[str, Any]] = []
     asked = [("door", dice.whole(rules.doors.count) if doors else 0)]
@@ -166,7 +165,9 @@ def add_openings(
     for type_, count in asked:
         for _ in range(count):
             for _ in range(_TRIES):
-                width = DOOR_M[0] if type_ == "door" else round(dice.between(rules.windows.width), 1)
+                width = (
+                    DOOR_M[0] if type_ == "door" else round(dice.between(rules.windows.width), 1)
+                )
                 number = dice.whole((0, len(sides) - 1))
                 side = sides[number]
                 if type_ == "window" and number in door_walls and len(sides) > 1:
@@ -177,7 +178,9 @@ def add_openings(
                 along = dice.between((margin, side.length_m - margin))
                 at, along = _at(side, along)
                 room = width / 2.0 + _APART_M + (0.3 if curtained else 0.0)
-                if any(along - room < h.along[1] and along + room > h.along[0] for h in holes[number]):
+                if any(
+                    along - room < h.along[1] and along + room > h.along[0] for h in holes[number]
+                ):
                     continue
                 entry: dict[str, Any] = {"type": type_, "wall": side.wall, "at": at, "width": width}
                 if type_ == "door":
@@ -246,7 +249,8 @@ def _leaf(entry: dict[str, Any], sides: Sequence[WallSide]) -> Block:
     side = next(
         each
         for each in sides
-        if each.wall == entry["wall"] and any(h.kind == "door" for h in each.holes)
+        if each.wall == entry["wall"]
+        and any(h.kind == "door" for h in each.holes)
         and any(abs(_at(each, sum(h.along) / 2.0)[0] - entry["at"]) < 0.02 for h in each.holes)
     )
     axis = 0 if side.wall in ("north", "south") else 1
@@ -277,9 +281,7 @@ def surface_entry(surface: Any, seed: int) -> dict[str, Any] | str:
     return entry
 
 
-def materials_of(
-    shell: Shell, materials: MaterialsRule, dice: Dice
-) -> Iterator[tuple[str, Any]]:
+def materials_of(shell: Shell, materials: MaterialsRule, dice: Dice) -> Iterator[tuple[str, Any]]:
     """Yield the keys of a room that say what it is made of."""
     yield "walls", surface_entry(dice.one(materials.walls), dice.whole((0, 99)))
     sides = [side.wall for side in shell.areas[0].walls if side.wall]

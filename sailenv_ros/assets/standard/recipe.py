@@ -14,7 +14,7 @@ from sailenv_ros.assets.standard.finishes import FINISHES
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.system.resources import resource_path
 
-__all__ = ["MaterialRule", "Recipe", "RecipeEntry", "standard_recipe"]
+__all__ = ["MaterialRule", "Recipe", "RecipeEntry", "recipe_files", "standard_recipe"]
 
 Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -22,6 +22,9 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 class _RecipeModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+RECIPE_FILES = ("standard_pack.yaml", "standard_pack_rooms.yaml")
 
 
 class MaterialRule(_RecipeModel):
@@ -86,14 +89,25 @@ class Recipe(_RecipeModel):
 
 @lru_cache(maxsize=1)
 def standard_recipe() -> Recipe:
-    """Read the package's own recipe, once.
+    """Read the package's own recipe, all of its files, once.
 
     Raises
     ------
     AssetError
         If it cannot be read or breaks the rules above.
     """
-    return read_recipe(resource_path("config", "standard_pack.yaml"))
+    recipes = [read_recipe(path) for path in recipe_files()]
+    assets: dict[str, RecipeEntry] = {}
+    for recipe in recipes:
+        for name in assets.keys() & recipe.assets.keys():
+            raise AssetError(name, "two files of the recipe have it")
+        assets |= recipe.assets
+    return recipes[0].model_copy(update={"assets": assets})
+
+
+def recipe_files() -> tuple[Path, ...]:
+    """Return the files of the package's own recipe."""
+    return tuple(resource_path("config", name) for name in RECIPE_FILES)
 
 
 def read_recipe(path: Path) -> Recipe:
