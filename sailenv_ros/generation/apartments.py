@@ -12,8 +12,8 @@ from typing import Any
 from sailenv_ros.generation.plan import Area, Block, Hole, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_files import Rules
-from sailenv_ros.generation.rules import SplitRule
-from sailenv_ros.generation.shapes import (
+from sailenv_ros.generation.rule_models import SplitRule
+from sailenv_ros.generation.room_shapes import (
     DOOR_M,
     OUTER,
     PARTITION_M,

@@ -18,7 +18,7 @@ from sailenv_ros.generation.items import Item, Namer, block_of, clear_blocks
 from sailenv_ros.generation.plan import Area, Block, Hole, Plan, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_files import Rules
-from sailenv_ros.generation.rules import CompanionRule, FurnitureRule, PieceRule
+from sailenv_ros.generation.rule_models import CompanionRule, FurnitureRule, PieceRule
 from sailenv_ros.generation.stock import Stock
 
 __all__ = ["Furnisher"]

@@ -25,7 +25,7 @@ from sailenv_ros.generation.plan import Plan
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.route import mover_entry
 from sailenv_ros.generation.rule_files import Rules, rules_of
-from sailenv_ros.generation.rules import KindFile
+from sailenv_ros.generation.rule_models import KindFile
 from sailenv_ros.generation.scene_text import scene_text
 from sailenv_ros.generation.shells import Shell, shell_of
 from sailenv_ros.generation.stock import Stock

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.generation.plan import Block, WallSide
-from sailenv_ros.generation.rules import FurnitureRule
+from sailenv_ros.generation.rule_models import FurnitureRule
 from sailenv_ros.generation.stock import Stock
 
 __all__ = ["Item", "Namer", "block_of", "clear_blocks"]

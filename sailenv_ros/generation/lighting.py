@@ -9,7 +9,7 @@ from typing import Any
 from sailenv_ros.generation.items import Item
 from sailenv_ros.generation.plan import Hole, WallSide
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.rules import LightRule
+from sailenv_ros.generation.rule_models import LightRule
 
 __all__ = ["environment_entry", "light_entries"]
 

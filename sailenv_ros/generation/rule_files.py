@@ -14,7 +14,7 @@ from typing import Any, TypeAlias, TypeVar
 from pydantic import ValidationError
 
 from sailenv_ros.errors import SceneDiagnostic, SceneError, UnknownName
-from sailenv_ros.generation.rules import (
+from sailenv_ros.generation.rule_models import (
     FurnitureFile,
     FurnitureRule,
     KindFile,

@@ -14,7 +14,7 @@ from sailenv_ros.generation.items import Item, Namer, block_of
 from sailenv_ros.generation.plan import Block
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_files import Rules
-from sailenv_ros.generation.rules import ThingRule
+from sailenv_ros.generation.rule_models import ThingRule
 from sailenv_ros.generation.stock import Stock
 
 __all__ = ["lay_things"]

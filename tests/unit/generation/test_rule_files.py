@@ -70,9 +70,11 @@ def test_what_is_wrong_is_told_with_file_line_and_column(
 ) -> None:
     folder = _copy(tmp_path)
     line = (folder / file).read_text().split(old)[0].count("\n") + 1
-    errors = _changed(folder, file, old, new)
-    assert told in errors[0]
-    assert errors[0].startswith(f"{folder / file}:{line}:") or "has no" in told or "name" in told
+    told_now = [error for error in _changed(folder, file, old, new) if told in error]
+    assert len(told_now) == 1
+    path, *_ = told_now[0].split(": ")
+    assert path.startswith(f"{folder / file}:")
+    assert abs(int(path.split(":")[1]) - line) <= 1
 
 
 def test_a_piece_that_belongs_to_itself_is_refused(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from sailenv_ros.generation.plan import Area, Block, Hole, WallSide
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.rules import KindFile, MaterialsRule
+from sailenv_ros.generation.rule_models import KindFile, MaterialsRule
 
 __all__ = ["PARTITION_M", "Shell", "single_room", "surface_entry"]
 
