@@ -10,6 +10,7 @@ from collections.abc import Callable
 from functools import partial
 
 from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.standard.handmade.clutter import CLUTTER
 from sailenv_ros.assets.standard.handmade.paintings import painting
 from sailenv_ros.assets.standard.handmade.stationery import books, mirror, notebook, pen
 from sailenv_ros.assets.standard.handmade.textiles import (
@@ -42,5 +43,6 @@ HANDMADE: dict[str, Callable[[], list[RawPart]]] = {
     "rug_oriental": partial(rug, 2.4, 1.6, "oriental"),
     "rug_striped": partial(rug, 1.8, 1.2, "striped"),
     "mirror": partial(mirror, 0.60, 0.80),
+    **CLUTTER,
 }
 """Maker of each object by its name in the recipe."""
