@@ -11,8 +11,6 @@ from typing import Any
 
 from sailenv_ros.generation.plan import Area, Block, Hole, WallSide
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.rule_files import Rules
-from sailenv_ros.generation.rule_models import SplitRule
 from sailenv_ros.generation.room_shapes import (
     DOOR_M,
     OUTER,
@@ -22,6 +20,8 @@ from sailenv_ros.generation.room_shapes import (
     note_openings,
     surface_entry,
 )
+from sailenv_ros.generation.rule_files import Rules
+from sailenv_ros.generation.rule_models import SplitRule
 
 __all__ = ["apartment"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sailenv_ros.generation.apartments import apartment
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.rule_files import Rules
 from sailenv_ros.generation.room_shapes import Shell, materials_of, single_room
+from sailenv_ros.generation.rule_files import Rules
 
 __all__ = ["Shell", "shell_of"]
 

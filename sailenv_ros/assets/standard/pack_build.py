@@ -290,6 +290,7 @@ def _make(name: str, furniture: Path, scratch: Path) -> PackEntry:
         mass=entry.mass,
         collision="hulls" if hulled else entry.collision,
         tags=(*entry.tags, made.title.lower()),
+        labelled=made.labelled,
         author=made.author,
         licence=made.licence,
         source=made.source,

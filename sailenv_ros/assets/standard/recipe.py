@@ -14,7 +14,14 @@ from sailenv_ros.assets.standard.finishes import FINISHES
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.system.resources import resource_path
 
-__all__ = ["MaterialRule", "Recipe", "RecipeEntry", "recipe_files", "standard_recipe"]
+__all__ = [
+    "MaterialRule",
+    "Recipe",
+    "RecipeEntry",
+    "RecipePart",
+    "recipe_files",
+    "standard_recipe",
+]
 
 Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -38,6 +45,27 @@ class MaterialRule(_RecipeModel):
     drop: bool = False
 
 
+class RecipePart(_RecipeModel):
+    """What of an object is labelled apart.
+
+    Attributes
+    ----------
+    category : str
+    materials : tuple of str
+        Names of materials, with wildcards, whose meshes are the part's.
+    each : {'material', 'piece', 'book'}
+        ``material``: all of them are one part. ``piece``: each connected piece is one, with a
+        number after its name. ``book``: each book of rows that stand along y.
+    above : float or None
+        Only connected pieces that are higher than this over the base [m].
+    """
+
+    category: str
+    materials: Annotated[tuple[str, ...], Field(min_length=1)]
+    each: Literal["material", "piece", "book"] = "material"
+    above: float | None = None
+
+
 class RecipeEntry(_RecipeModel):
     """One object.
 
@@ -53,6 +81,8 @@ class RecipeEntry(_RecipeModel):
         About the vertical, where a catalogue's front is not the object's [deg].
     triangles : int or None
         At most about so many are drawn; None for what its size asks for.
+    parts : mapping of str to RecipePart
+        What of it is labelled apart; the first that names a material takes its meshes.
     """
 
     category: str
@@ -66,6 +96,7 @@ class RecipeEntry(_RecipeModel):
     tags: tuple[str, ...] = ()
     triangles: Annotated[int, Field(ge=100, lt=20000)] | None = None
     materials: dict[str, MaterialRule | str] = {}
+    parts: dict[str, RecipePart] = {}
 
     def rule(self, material: str) -> MaterialRule:
         """Return what is said of a material; an empty rule for nothing."""

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from functools import partial
 
 from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.standard.handmade.clutter import CLUTTER
 from sailenv_ros.assets.standard.handmade.devices import (
     computer,
     keyboard,
@@ -50,6 +51,7 @@ HANDMADE: dict[str, Callable[[], list[RawPart]]] = {
     "rug_oriental": partial(rug, 2.4, 1.6, "oriental"),
     "rug_striped": partial(rug, 1.8, 1.2, "striped"),
     "mirror": partial(mirror, 0.60, 0.80),
+    **CLUTTER,
     "stove": stove,
     "monitor": partial(monitor, 0.54, 0.32, 1),
     "wide_monitor": partial(monitor, 0.71, 0.33, 2),
