@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sailenv_ros.generation.plan import Area, Block, Hole, WallSide
+from sailenv_ros.generation.plan import Area, Block, WallGap, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.room_shapes import (
     DOOR_M,
@@ -225,10 +225,10 @@ def _wall_between(
         # Only the shared stretch of the side is this wall's.
         a, b = list(side.start), list(side.end)
         a[other], b[other] = max(a[other], low), min(b[other], high)
-        holes: tuple[Hole, ...] = ()
+        holes: tuple[WallGap, ...] = ()
         if hole is not None:
             along = (hole[0] - a[other], hole[1] - a[other])
-            holes = (Hole(along=along, up=(0.0, DOOR_M[1]), kind="doorway"),)
+            holes = (WallGap(along=along, up=(0.0, DOOR_M[1]), kind="doorway"),)
         room.sides.append(
             WallSide(
                 wall="", start=(a[0], a[1]), end=(b[0], b[1]), inward=_NORMALS[wall], holes=holes

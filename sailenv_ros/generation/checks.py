@@ -76,10 +76,12 @@ def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator
     """
     snapshot = world.snapshot()
     bodies = {
-        drawn.instance.id: body
-        for drawn, body in zip(snapshot.contents.instances, world.bodies, strict=True)
+        number: body
+        for number, body in world.bodies_by_id.items()
         if body.placement.entry is not None
     }
+    # An object is seen where a part of it is.
+    wholes = {drawn.instance.id: drawn.instance.parent for drawn in snapshot.contents.instances}
     missing = set(bodies)
     backend = _backend()
 
@@ -88,7 +90,8 @@ def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator
         camera = Camera(intrinsics=lens, pose=look_at(eye, at))
         ids = backend.render(snapshot, None, camera, ("instance",)).views["instance"]
         found, counts = np.unique(ids, return_counts=True)
-        missing.difference_update(found[counts >= LEAST_PIXELS].tolist())
+        seen = found[counts >= LEAST_PIXELS].tolist()
+        missing.difference_update(seen, (wholes.get(number, 0) for number in seen))
 
     try:
         for eye in eyes:

@@ -1,6 +1,6 @@
 """Furniture by its rules: a piece and all that belongs to it is placed together, or not at all.
 
-An `Area` of a `Plan` and rules in, `Item`s out. A place is drawn and kept if nothing is in the
+An `Area` of a `RoomPlan` and rules in, `Item`s out. A place is drawn and kept if nothing is in the
 way, what must stay free stays free, and all doors can still be reached.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from sailenv_ros.assets.arranging import RESTING_GAP_M, WALL_GAP_M
 from sailenv_ros.generation.items import Item, Namer, block_of, clear_blocks
-from sailenv_ros.generation.plan import Area, Block, Hole, Plan, WallSide
+from sailenv_ros.generation.plan import Area, Block, RoomPlan, WallGap, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_files import Rules
 from sailenv_ros.generation.rule_models import CompanionRule, FurnitureRule, PieceRule
@@ -52,7 +52,7 @@ class Furnisher:
     Parameters
     ----------
     area : Area
-    plan : Plan
+    plan : RoomPlan
         What stands there is added to it.
     rules : Rules
     stock : Stock
@@ -63,7 +63,7 @@ class Furnisher:
     """
 
     area: Area
-    plan: Plan
+    plan: RoomPlan
     rules: Rules
     stock: Stock
     dice: Dice
@@ -506,7 +506,7 @@ def _over(first: Block, second: Block) -> bool:
     return flat[0].meets(flat[1], _RUG_GAP_M)
 
 
-def _windows(sides: Sequence[WallSide]) -> list[tuple[WallSide, Hole]]:
+def _windows(sides: Sequence[WallSide]) -> list[tuple[WallSide, WallGap]]:
     return [(side, hole) for side in sides for hole in side.holes if hole.kind == "window"]
 
 

@@ -21,7 +21,7 @@ from sailenv_ros.generation.checks import Fault, faults, unseen
 from sailenv_ros.generation.furnishing import Furnisher
 from sailenv_ros.generation.items import Item, Namer
 from sailenv_ros.generation.lighting import environment_entry, light_entries
-from sailenv_ros.generation.plan import Plan
+from sailenv_ros.generation.plan import RoomPlan
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.route import mover_entry
 from sailenv_ros.generation.rule_files import Rules, rules_of
@@ -146,7 +146,7 @@ class Generator:
             return Dice(kind, seed, attempt, purpose)
 
         shell = shell_of(kind, self._rules, dice("shell"))
-        plan = Plan(areas=shell.areas, doors=shell.doors, walls=shell.walls)
+        plan = RoomPlan(areas=shell.areas, doors=shell.doors, walls=shell.walls)
         plan.stand(shell.leaves, shell.clear)
         namer = Namer(room_part_names(shell.entry))
         skirting = shell.entry.get("skirting")
@@ -261,7 +261,7 @@ class _Draft:
     seed: int
     attempt: int
     shell: Shell
-    plan: Plan
+    plan: RoomPlan
     items: list[Item]
     waypoints: Sequence[tuple[float, ...]] = ()
 

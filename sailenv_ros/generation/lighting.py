@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from sailenv_ros.generation.items import Item
-from sailenv_ros.generation.plan import Hole, WallSide
+from sailenv_ros.generation.plan import WallGap, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_models import LightRule
 
@@ -38,7 +38,7 @@ def environment_entry(rule: LightRule, dice: Dice) -> dict[str, Any]:
 
 def light_entries(
     rule: LightRule,
-    windows: Sequence[tuple[WallSide, Hole]],
+    windows: Sequence[tuple[WallSide, WallGap]],
     items: Sequence[Item],
     heights: dict[str, float],
     dice: Dice,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
-__all__ = ["BODY_RADIUS_M", "CELL_M", "Area", "Block", "Hole", "Plan", "WallSide"]
+__all__ = ["BODY_RADIUS_M", "CELL_M", "Area", "Block", "WallGap", "RoomPlan", "WallSide"]
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -85,7 +85,7 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hole:
+class WallGap:
     """An opening in a wall, seen from one side: its ends along it, its lower and upper edge [m]."""
 
     along: tuple[float, float]
@@ -106,7 +106,7 @@ class WallSide:
         Its ends [m]; outer walls run along +x or +y.
     inward : (2,) tuple of float
         Unit normal into the room.
-    holes : tuple of Hole
+    holes : tuple of WallGap
         Counted from `start`.
     """
 
@@ -114,7 +114,7 @@ class WallSide:
     start: tuple[float, float]
     end: tuple[float, float]
     inward: tuple[float, float]
-    holes: tuple[Hole, ...] = ()
+    holes: tuple[WallGap, ...] = ()
 
     @property
     def length_m(self) -> float:
@@ -185,7 +185,7 @@ class Area:
 
 
 @dataclass(slots=True)
-class Plan:
+class RoomPlan:
     """What stands where, and where one can still walk.
 
     Parameters

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sailenv_ros.generation.plan import Area, Block, Hole, WallSide
+from sailenv_ros.generation.plan import Area, Block, WallGap, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_models import KindFile, MaterialsRule
 
@@ -48,7 +48,7 @@ class Shell:
         Floor before doors, which stays free.
     leaves : list of Block
         Leaves of open doors.
-    windows : list of WallSide and Hole
+    windows : list of WallSide and WallGap
     """
 
     entry: dict[str, Any]
@@ -57,7 +57,7 @@ class Shell:
     doors: list[tuple[float, float]] = field(default_factory=list)
     clear: list[Block] = field(default_factory=list)
     leaves: list[Block] = field(default_factory=list)
-    windows: list[tuple[WallSide, Hole]] = field(default_factory=list)
+    windows: list[tuple[WallSide, WallGap]] = field(default_factory=list)
 
 
 def single_room(kind: str, rules: KindFile, materials: MaterialsRule, dice: Dice) -> Shell:
@@ -153,7 +153,7 @@ def add_openings(
     doors: bool = True,
 ) -> tuple[list[dict[str, Any]], list[WallSide]]:
     """Draw doors and windows; return their entries, and the walls with their holes."""
-    holes: dict[int, list[Hole]] = {number: [] for number in range(len(sides))}
+    holes: dict[int, list[WallGap]] = {number: [] for number in range(len(sides))}
     openings: list[dict[str, Any]] = []
     asked = [("door", dice.whole(rules.doors.count) if doors else 0)]
     asked += [("window", dice.whole(rules.windows.count))]
@@ -196,7 +196,7 @@ def add_openings(
                         entry["curtains"] = {"colour": list(cloth or ())}
                 span = (along - width / 2.0, along + width / 2.0)
                 holes[number].append(
-                    Hole(along=span, up=up, kind=type_, curtains=type_ == "window" and curtained)
+                    WallGap(along=span, up=up, kind=type_, curtains=type_ == "window" and curtained)
                 )
                 openings.append(entry)
                 break
@@ -234,7 +234,7 @@ def note_openings(
             shell.leaves.append(_leaf(entry, sides))
 
 
-def _before(side: WallSide, hole: Hole, depth: float) -> Block:
+def _before(side: WallSide, hole: WallGap, depth: float) -> Block:
     x, y = side.point((hole.along[0] + hole.along[1]) / 2.0, depth / 2.0)
     half = (hole.along[1] - hole.along[0]) / 2.0 + 0.1
     along_x = abs(side.inward[1]) > 0.5

@@ -17,7 +17,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from sailenv_ros.generation.items import Item
-from sailenv_ros.generation.plan import Plan
+from sailenv_ros.generation.plan import RoomPlan
 from sailenv_ros.generation.randomness import Dice
 
 __all__ = ["mover_entry", "walk_cells"]
@@ -37,7 +37,7 @@ Cell = tuple[int, int]
 
 
 def mover_entry(
-    plan: Plan, items: Sequence[Item], dice: Dice, speed_m_per_s: float
+    plan: RoomPlan, items: Sequence[Item], dice: Dice, speed_m_per_s: float
 ) -> dict[str, Any]:
     """Return the mover of a scene; it goes in a circle, there and back where there is no other way.
 
@@ -65,7 +65,7 @@ def mover_entry(
     return {"total_time": total, "loop": True, "waypoints": waypoints}
 
 
-def walk_cells(free: Flags, plan: Plan) -> Flags:
+def walk_cells(free: Flags, plan: RoomPlan) -> Flags:
     """Return the largest connected part of some cells."""
     parts, count = label(free)
     if not count:
@@ -81,7 +81,7 @@ def _in_the_way(items: Sequence[Item]) -> list[Any]:
             and item.block.low < 1.9 and item.block.high > 0.05]  # fmt: skip
 
 
-def _stops(free: Flags, clearance: Floats, plan: Plan, dice: Dice) -> list[Cell]:
+def _stops(free: Flags, clearance: Floats, plan: RoomPlan, dice: Dice) -> list[Cell]:
     """Return places that lie far from each other, each the farthest from those before."""
     cells = np.argwhere(free)
     places = plan.points[free]

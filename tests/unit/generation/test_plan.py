@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.generation.plan import Area, Block, Plan, WallSide
+from sailenv_ros.generation.plan import Area, Block, RoomPlan, WallSide
 
 LENGTH = st.floats(0.1, 2.0)
 PLACE = st.floats(-2.0, 2.0)
@@ -55,9 +55,9 @@ def test_distance_is_that_to_the_nearest_edge() -> None:
     assert found == pytest.approx([0.0, 0.5, 1.0, math.hypot(1.0, 1.0)])
 
 
-def _plan() -> Plan:
+def _plan() -> RoomPlan:
     area = Area(name="", kind="", low=(-2, -2), high=(2, 2), height=2.5, walls=())
-    return Plan(areas=[area], doors=[(-1.5, 0.0), (1.5, 0.0)])
+    return RoomPlan(areas=[area], doors=[(-1.5, 0.0), (1.5, 0.0)])
 
 
 def test_a_wall_of_furniture_parts_the_doors_and_a_gap_joins_them() -> None:
