@@ -1,4 +1,4 @@
-"""Generates rooms by many seeds and checks each file anew: how many have a fault, and how long it takes.
+"""Generates rooms by many seeds and checks each file anew: how many have a fault, the times.
 
     python -m benchmarks.generated_rooms --seeds 0 1000
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, SceneError
 from sailenv_ros.generation import Generator, drawn_kind, read_rules
+from sailenv_ros.generation.names import MAX_SEED
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.files import write_file
@@ -57,7 +58,7 @@ def generate(args: argparse.Namespace) -> int:
     if args.seed is None or args.output is None:
         missing = "--seed" if args.seed is None else "--output"
         raise InvalidRequest(missing, None, "given, unless --kinds is")
-    seed = checked_integer("--seed", args.seed, 0, 2**31 - 1)
+    seed = checked_integer("--seed", args.seed, 0, MAX_SEED)
     if args.output.suffix not in SUFFIXES:
         accepted = f"a name that ends in {SUFFIXES[0]}"
         raise InvalidRequest("--output", str(args.output), accepted)

@@ -21,6 +21,7 @@ from sailenv_ros.generation.checks import Fault, faults, unseen
 from sailenv_ros.generation.furnishing import Furnisher
 from sailenv_ros.generation.items import Item, Namer
 from sailenv_ros.generation.lighting import environment_entry, light_entries
+from sailenv_ros.generation.names import MAX_SEED
 from sailenv_ros.generation.plan import RoomPlan
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.route import mover_entry
@@ -124,7 +125,7 @@ class Generator:
             If the rules leave no room that passes the checks.
         """
         file = self._rules.kind(kind)
-        seed = checked_integer("seed", seed, 0, 2**31 - 1)
+        seed = checked_integer("seed", seed, 0, MAX_SEED)
         for attempt in range(MAX_ATTEMPTS):
             draft = self._drafted(kind, file, seed, attempt)
             if draft is None:

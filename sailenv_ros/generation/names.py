@@ -8,10 +8,12 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_files import Rules
 
-__all__ = ["PREFIX", "drawn_kind", "parsed_name"]
+__all__ = ["MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]
 
 PREFIX = "generated:"
 """How the name of a scene begins that is made when it is asked for."""
+
+MAX_SEED = 2**31 - 1
 
 _NAME = re.compile(r"generated:([a-z][a-z0-9_]{0,62}):([0-9]{1,10})")
 

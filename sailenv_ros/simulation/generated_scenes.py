@@ -50,7 +50,7 @@ class GeneratedScenes:
         """
         kind, seed = parsed_name(name, self._generator.rules)
         folder = cache_folder() / FOLDER / _state()
-        path = folder / f"{kind}_{seed}.yaml"
+        path = folder / f"generated_{kind}_{seed}.yaml"
         if not path.is_file():
             made = self._generator.generate(kind, seed)
             with storage_errors("generated scenes", folder):

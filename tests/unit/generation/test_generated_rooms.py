@@ -155,7 +155,7 @@ def test_rules_that_leave_no_space_are_told(generator: Generator) -> None:
 
 def test_a_scene_is_made_when_its_name_is_asked_for(library: SceneLibrary) -> None:
     path = library.path("generated:bathroom:2")
-    assert path.name == "bathroom_2.yaml"
+    assert path.name == "generated_bathroom_2.yaml"
     assert library.load("generated:bathroom:2").title == "Bathroom 2"
     assert isinstance(library.load(path), SceneSpec)
     with pytest.raises(InvalidRequest, match="generated:KIND:SEED"):
