@@ -26,8 +26,8 @@ from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.errors import AssetError
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_import.categories_by_name import category_of_name
+from sailenv_ros.scene_import.default_light import add_daylight
 from sailenv_ros.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
-from sailenv_ros.scene_import.scene_light import add_daylight
 from sailenv_ros.scene_import.scene_parts import asset_of_parts
 
 __all__ = ["import_gltf"]

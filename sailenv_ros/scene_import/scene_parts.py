@@ -119,7 +119,8 @@ def _hulls(mesh: RawMesh) -> tuple[ConvexShape, ...]:
         own = of_triangle == number
         corners = mesh.positions[mesh.triangles[own]]
         size = np.ptp(corners.reshape(-1, 3), axis=0)
-        volume = abs(float(np.einsum("ni,ni->n", corners[:, 0], _cross(corners)).sum())) / 6.0
+        # Below 0 where its triangles face inwards, as in a room.
+        volume = float(np.einsum("ni,ni->n", corners[:, 0], _cross(corners)).sum()) / 6.0
         if float(size.max()) >= LARGE_M and volume < HOLLOW * float(
             np.prod(np.maximum(size, 0.01))
         ):

@@ -23,13 +23,13 @@ from sailenv_ros.assets.model_files import LARGEST_TEXTURE_PX, RawPart, texture_
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import ConvexShape, Material, ModelPart, Texture
+from sailenv_ros.scene_import.default_light import ENVIRONMENT, SUN
 from sailenv_ros.scene_import.home_furniture import HomeFurniture
 from sailenv_ros.scene_import.home_plan import Home, HomePiece, HomeRoom, HomeWall, Paint, read_home
 from sailenv_ros.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_ros.scene_import.plan_slabs import inside, slab
 from sailenv_ros.scene_import.plan_walls import Opening, wall_solid
 from sailenv_ros.scene_import.safe_xml import read_xml
-from sailenv_ros.scene_import.scene_light import ENVIRONMENT, SUN
 
 __all__ = ["import_sweet_home"]
 
