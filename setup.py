@@ -66,6 +66,9 @@ BAKE = ["embreex>=4.4.0", "xatlas>=0.0.9"]
 # The SAILenv client, which is timed at the gateway and tested there, declares no dependencies.
 BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
+# What some formats of data sets and remote places for them need, and the engine of many machines.
+DATASET = ["fsspec>=2024.2", "pyarrow>=15"]
+RAY = [*DATASET, "ray>=2.40"]
 DEV = [
     # The notebook among the examples is executed by a test.
     "ipykernel>=6.29",
@@ -81,6 +84,8 @@ DEV = [
     "jsonschema",
     "matplotlib>=3.8",
     "mcap-ros2-support",
+    # A server of S3's protocol on this machine, for the tests of data sets at remote places.
+    "moto[server]>=5",
     "mypy",
     "onnxruntime>=1.17",
     # Drives Debian's Chromium, for the tests of the web viewer.
@@ -89,8 +94,10 @@ DEV = [
     "pytest>=8.0",
     "pytest-timeout",
     "pytest-xdist",
+    *RAY,
     "rosbags",
     "ruff",
+    "s3fs>=2024.2",
     # The SAILenv client, which the gateway's tests drive; it declares no dependencies.
     "sailenv==0.5b0",
     "types-jsonschema",
@@ -208,9 +215,11 @@ setup(
         "assets": ASSETS,
         "bake": BAKE,
         "bench": BENCH,
+        "dataset": DATASET,
+        "ray": RAY,
         "eval": EVAL,
         # Everything but ROS, which may be there already, and the tools for developers.
-        "all": sorted({*ASSETS, *BAKE, *BENCH, *EVAL}),
+        "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL}),
         "dev": DEV,
     },
     entry_points={

@@ -26,6 +26,9 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "yolo": "yolo_export.YoloExport",
         "yolo_segments": "yolo_export.YoloSegmentsExport",
         "voc": "voc_export.VocExport",
+        "webdataset": "webdataset_export.WebDatasetExport",
+        "parquet": "parquet_export.ParquetExport",
+        "mcap": "mcap_export.McapExport",
     }
 )
 """Module in this folder and class of each format, by its name."""
