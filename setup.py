@@ -85,7 +85,9 @@ DEV = [
     "matplotlib>=3.8",
     "mcap-ros2-support",
     # A server of S3's protocol on this machine, for the tests of data sets at remote places.
-    "moto[server]>=5",
+    "flask>=3.0",
+    "flask-cors>=5.0",
+    "moto[s3]>=5",
     "mypy",
     "onnxruntime>=1.17",
     # Drives Debian's Chromium, for the tests of the web viewer.
@@ -113,6 +115,7 @@ def data_files() -> list[tuple[str, list[str]]]:
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
         (f"{share}/config", sorted(path for kind in CONFIG for path in glob(f"config/*.{kind}"))),
+        (f"{share}/config/recipes", sorted(glob("config/recipes/*.yaml"))),
         (f"{share}/config/rooms", sorted(glob("config/rooms/*.yaml"))),
         (f"{share}/config/rooms/library", sorted(glob("config/rooms/library/*.yaml"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
