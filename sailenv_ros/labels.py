@@ -155,6 +155,10 @@ class Instance:
         Id of the object that it is a part of; 0 for none.
     keypoints : tuple of Keypoint
         Those that its asset names, its scale applied.
+    materials : tuple of str
+        Names of its own materials, which `set_material` takes; none of a part of a room.
+    painted : str
+        JSON: a list of its materials as a scene file has them; empty while all are its own.
     """
 
     id: int
@@ -167,6 +171,8 @@ class Instance:
     high_m: Vector3 = (0.0, 0.0, 0.0)
     parent: int = 0
     keypoints: tuple[Keypoint, ...] = ()
+    materials: tuple[str, ...] = ()
+    painted: str = ""
 
 
 def instance_colours() -> NDArray[np.uint8]:

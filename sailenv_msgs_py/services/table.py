@@ -211,6 +211,8 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     Service(Operations.despawn_object, srv.DespawnObject),
     Service(Operations.move_object, srv.MoveObject, write=_write_moved, read=_read_moved),
     Service(Operations.change_object, srv.ChangeObject),
+    Service(Operations.set_material, srv.SetMaterial),
+    Service(Operations.upload_picture, srv.UploadPicture),
     Service(
         Operations.get_object,
         srv.GetObject,

@@ -11,6 +11,7 @@ from sailenv_ros.operations.clock_operations import ClockOperations
 from sailenv_ros.operations.environment import EnvironmentOperations
 from sailenv_ros.operations.frame_pictures import FramePictures
 from sailenv_ros.operations.light_operations import LightOperations
+from sailenv_ros.operations.material_operations import MaterialOperations
 from sailenv_ros.operations.models import ModelOperations
 from sailenv_ros.operations.movers import MoverOperations
 from sailenv_ros.operations.object_operations import ObjectOperations
@@ -24,6 +25,7 @@ __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 class WorldOperations(
     AgentOperations,
     ObjectOperations,
+    MaterialOperations,
     LightOperations,
     EnvironmentOperations,
     MoverOperations,

@@ -27,6 +27,7 @@ _TITLES = {
     "DirectionalLightSpec": "A directional light",
     "DoorSpec": "A door",
     "EnvironmentSpec": "The environment",
+    "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",
     "PictureSpec": "A picture",

@@ -7,6 +7,7 @@ the same bytes.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -21,7 +22,7 @@ from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.scene.spec import RoomSpec, SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable
@@ -154,8 +155,14 @@ class World:
 
     @property
     def room_changed(self) -> bool:
-        """True if the room that is described is another than that of the start."""
-        return self.described is not None and self.described.room != self._first_room
+        """True if what stands at the walls would stand elsewhere than in the room of the start."""
+        now = None if self.described is None else self.described.room
+        return _walls_of(now) != _walls_of(self._first_room)
+
+    @property
+    def first_room(self) -> RoomSpec | None:
+        """The room of the start, as its file describes it."""
+        return self._first_room
 
     @property
     def first_bodies(self) -> Mapping[str, Body]:
@@ -249,11 +256,20 @@ class World:
         self._bodies.remove(instance_id)
         self._changed()
 
-    def replace_body(self, instance_id: int, placement: Placement) -> None:
+    def replace_body(
+        self, instance_id: int, placement: Placement, described: SceneSpec | None = None
+    ) -> None:
         """Make of an object what another placement says; it stays where it is, and its id too.
 
         It keeps its motion and its behaviours. Another scale cuts its past off: a point of its
         surface has no place of before.
+
+        Parameters
+        ----------
+        instance_id : int
+        placement : Placement
+        described : SceneSpec or None
+            What a scene file says of it all from now on; None leaves it.
 
         Raises
         ------
@@ -267,6 +283,7 @@ class World:
         if placement.scale != old.placement.scale:
             self._bodies.cut_off_past(instance_id)
             self._forget_chart(instance_id)
+        self.described = described or self.described
         self._changed()
 
     def replace_room(
@@ -406,12 +423,35 @@ class World:
             low_m=_scaled(low, placement.scale),
             high_m=_scaled(high, placement.scale),
             parent=self._parent_of(placement),
+            materials=_material_names(placement),
+            painted=_painted(placement, self.described),
             keypoints=tuple(
                 Keypoint(name=point, position_m=_scaled(place, placement.scale))
                 for point, place in placement.asset.keypoints
             ),
         )
         return DrawnInstance(instance=instance, model=placement.asset.model, scale=placement.scale)
+
+
+def _material_names(placement: Placement) -> tuple[str, ...]:
+    """Return the names of an object's own materials; none of a part of a room."""
+    if placement.entry is None:
+        return ()
+    return placement.materials
+
+
+def _painted(placement: Placement, described: SceneSpec | None) -> str:
+    """Return as JSON what a scene file says of an object's materials; empty for the asset's own."""
+    if placement.entry is not None:
+        entries = [m.model_dump(mode="json", exclude_unset=True) for m in placement.entry.materials]
+        return json.dumps(entries, sort_keys=True) if entries else ""
+    look = None if described is None else described.room and described.room.look_of(placement.name)
+    return "" if not look else json.dumps([look], sort_keys=True)
+
+
+def _walls_of(room: RoomSpec | None) -> tuple[object, ...] | None:
+    """Return what decides where things at a room's walls stand."""
+    return None if room is None else (room.size, room.skirting and room.skirting.depth)
 
 
 def _scaled(point: Sequence[float], scale: Sequence[float]) -> tuple[float, float, float]:
