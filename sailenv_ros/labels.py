@@ -20,6 +20,7 @@ __all__ = [
     "BACKGROUND",
     "MAX_CATEGORY_ID",
     "MAX_INSTANCE_ID",
+    "PART_MARK",
     "UNLABELLED_CATEGORY",
     "Category",
     "CategoryTable",
@@ -36,6 +37,13 @@ UNLABELLED_CATEGORY = 255
 """Category id of an object that has none (the largest value, as vision_msgs/LabelInfo says)."""
 
 MAX_INSTANCE_ID = 65535
+
+PART_MARK = "/"
+"""Stands between an object's name and that of a part of its model, and no name holds it.
+
+The object ``bed`` of the asset ``bed_02`` has the part ``bed/left pillow`` of the asset
+``bed_02/left pillow``.
+"""
 
 MAX_CATEGORY_ID = 65535
 
@@ -159,6 +167,8 @@ class Instance:
         Names of its own materials, which `set_material` takes; none of a part of a room.
     painted : str
         JSON: a list of its materials as a scene file has them; empty while all are its own.
+
+    A part of an object's model is an instance like others; see `is_part`.
     """
 
     id: int
@@ -173,6 +183,11 @@ class Instance:
     keypoints: tuple[Keypoint, ...] = ()
     materials: tuple[str, ...] = ()
     painted: str = ""
+
+    @property
+    def is_part(self) -> bool:
+        """True for a part of an object's model: it moves with its parent, and only with it."""
+        return PART_MARK in self.asset
 
 
 def instance_colours() -> NDArray[np.uint8]:

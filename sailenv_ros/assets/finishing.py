@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Sequence
+from dataclasses import replace
 
 from sailenv_ros.assets.box_mapping import box_mapped
 from sailenv_ros.assets.material_stock import Finish, MaterialStock
@@ -77,7 +78,7 @@ def _part(
     mesh = part.mesh
     if finish.tile_m is not None and spec.mapping == "box":
         mesh = box_mapped(mesh, finish.tile_m, turn_deg=finish.turn_deg, scale=scale)
-    return ModelPart(mesh=mesh, material=finish.material)
+    return replace(part, mesh=mesh, material=finish.material)
 
 
 def _look_key(part: ModelPart) -> tuple[object, ...]:

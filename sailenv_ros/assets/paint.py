@@ -9,7 +9,7 @@ import dataclasses
 import threading
 import weakref
 
-from sailenv_ros.model import Material, Model, ModelPart, Texture
+from sailenv_ros.model import Material, Model, Texture
 
 __all__ = ["painted", "painted_material"]
 
@@ -54,7 +54,7 @@ def painted(
         found = variants.get(paint)
         if found is None:
             parts = tuple(
-                ModelPart(mesh=part.mesh, material=painted_material(part.material, *paint))
+                dataclasses.replace(part, material=painted_material(part.material, *paint))
                 for part in model.parts
             )
             found = variants[paint] = Model(name=model.name, parts=parts)

@@ -79,8 +79,8 @@ class MaterialSpec(LookSpec):
 
     part: Annotated[str, Text(r"[^\x00-\x1f]{1,200}", "the name of one of its materials")] = Field(
         default=ALL_PARTS,
-        description="name of one of the object's materials, see `sailenv assets list --materials`; "
-        "`all` for every one",
+        description="name of one of the object's materials, as the window and `info.instances` "
+        "list them; `all` for every one",
     )
     mapping: Annotated[str, Choice(MAPPINGS)] = Field(
         default="box",

@@ -30,9 +30,11 @@ from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
 from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.space_queries import SpaceQueries
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.space import FreeSpace
 from sailenv_ros.world.world import World
 
 __all__ = ["SimulationCore"]
@@ -74,6 +76,9 @@ class SimulationCore(WorldOperations):
         What a scenario added to the scene's own objects.
     editor : SceneEditor
     scene_writer : SceneWriter
+    space : SpaceQueries
+    on_free_space : callable
+        Told each `FreeSpace` that somebody asked for.
     on_info, on_step : callable
         Told each new `SceneInfo`, and the simulated time [ns] after physics advanced.
     run_later : callable
@@ -103,6 +108,8 @@ class SimulationCore(WorldOperations):
         self.more_objects: Entries = ()
         self.editor = SceneEditor(self)
         self.scene_writer = SceneWriter(self)
+        self.space = SpaceQueries(lambda: self.world)
+        self.on_free_space: Callable[[FreeSpace], None] = lambda space: None
         self.on_info: Callable[[SceneInfo], None] = lambda info: None
         self.on_step: Callable[[int], None] = lambda sim_time_ns: None
         self.run_later: Callable[[Callable[[], AmodalMasks]], AmodalMasks] = lambda draw: draw()

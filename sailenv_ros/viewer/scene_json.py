@@ -65,6 +65,8 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
                 "moves": instance.id in info.moving,
                 "materials": list(instance.materials),
                 "painted": json.loads(instance.painted or "[]"),
+                "parent": instance.parent,
+                "is_part": instance.is_part,
             }
             for instance in info.instances
         ],

@@ -152,6 +152,8 @@ def make_placement(
     """
     names = material_names(asset)
     asset = _painted(entry, asset, materials)
+    for part in asset.parts:
+        categories.named(part.category)  # which must be there
     behaviours = [
         start_behaviour(
             b.type,
