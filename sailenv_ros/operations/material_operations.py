@@ -47,7 +47,7 @@ class MaterialOperations(Caller):
         UnknownName, InvalidEntry, InvalidRequest, AssetError
             If it cannot be such a material; it is as it was then.
 
-        >>> agent.set_material("couch", "fabric", material="carpet")  # doctest: +SKIP
+        >>> agent.set_material("couch", "Sit", material="carpet")  # doctest: +SKIP
         >>> agent.set_material("floor", material="oak_parquet", turn=45)  # doctest: +SKIP
         """
         core.editor.set_material(core.world.find(obj), part, changes)
