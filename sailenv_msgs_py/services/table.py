@@ -30,7 +30,7 @@ from sailenv_msgs_py.space_msgs import (
     triples_from_msg,
 )
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
-from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg
+from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
 from sailenv_ros.agents import AgentPose
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
@@ -40,6 +40,7 @@ from sailenv_ros.operations import Operations
 from sailenv_ros.operations.argument_checks import pose_of
 from sailenv_ros.picture_settings import NAMES
 from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.viewpoints import CameraView
 
 __all__ = ["AGENT_SERVICES", "SERVICES", "SIMULATOR_SERVICES"]
 
@@ -176,6 +177,12 @@ def _read_random_pose(given: Arguments) -> Arguments:
     return given
 
 
+def _read_sampling(given: Arguments) -> Arguments:
+    if given.pop("keep_seed"):
+        given["seed"] = None
+    return given
+
+
 def _write_rays(given: Arguments) -> Arguments:
     return {
         **given,
@@ -224,6 +231,11 @@ def _fill_masks(response: Any, masks: AmodalMasks, info: SceneInfo) -> None:
 def _fill_path(response: Any, positions: Any, info: SceneInfo) -> None:
     response.positions = points_to_msg(positions)
     response.length_m = float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
+
+
+def _fill_views(response: Any, views: tuple[CameraView, ...], info: SceneInfo) -> None:
+    response.poses = [pose_to_msg(view.pose) for view in views]
+    response.ids = [view.target_id for view in views]
 
 
 SIMULATOR_SERVICES: tuple[Service, ...] = (
@@ -386,6 +398,17 @@ AGENT_SERVICES: tuple[Service, ...] = (
     ),
     Service(Operations.get_picture, srv.GetPicture),
     Service(Operations.set_picture, srv.SetPicture, write=_write_picture),
+    Service(
+        Operations.sample_cameras,
+        srv.SampleCameras,
+        write=lambda given: {**given, "keep_seed": given["seed"] is None},
+        read=_read_sampling,
+        fill=_fill_views,
+        result=lambda response: tuple(
+            CameraView(pose=pose_from_msg(pose), target_id=target)
+            for pose, target in zip(response.poses, response.ids, strict=True)
+        ),
+    ),
     Service(Operations.capture, srv.Capture, none={"views": []}, fill=_fill_frame),
     Service(
         Operations.get_amodal_masks,

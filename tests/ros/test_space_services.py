@@ -15,6 +15,8 @@ from rclpy.serialization import serialize_message
 from rosbags.typesys import Stores, get_typestore
 
 from sailenv_ros import Agent, Simulation
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.nodes.free_space_topic import FreeSpaceTopic
 from sailenv_ros.space import FreeSpace
@@ -128,3 +130,17 @@ def test_the_topic_is_an_occupancy_grid_of_ros_2(monkeypatch: pytest.MonkeyPatch
     assert (back.info.origin.position.x, back.info.origin.position.y) == (-1.5, 2.25)
     assert back.info.origin.orientation.w == 1.0
     assert np.array_equal(back.data.reshape(2, 3), cells)
+
+
+def test_cameras_by_rules_are_the_same_over_ros(both: tuple[Agent, Simulation]) -> None:
+    """Pose and target of each, with settings of every type."""
+    agent, simulation = both
+    lens = CameraIntrinsics(width=32, height=24)
+    simulation.register_agent(AgentSpec(name="eye", intrinsics=lens, following=False, rate_hz=0.0))
+    asked = {"cover": (0.01, 0.5), "visible": 0.5, "attempts": 80, "seed": 3}
+    far = agent.sample_cameras("object_view", 3, **asked)
+    near = simulation.sample_cameras("object_view", 3, agent="eye", **asked)
+    assert len(near) == 3
+    assert far == near
+    with pytest.raises(InvalidRequest, match="is not a setting of coverage"):
+        agent.sample_cameras("coverage", coverage=1)
