@@ -5,6 +5,7 @@ Only messages whose fields are not simply the operation's arguments need functio
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from typing import Any
@@ -39,6 +40,7 @@ from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import Operations
 from sailenv_ros.operations.argument_checks import pose_of
 from sailenv_ros.picture_settings import NAMES
+from sailenv_ros.scene.entries import plain_value
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.viewpoints import CameraView
 
@@ -70,6 +72,35 @@ def _write_seed(given: Arguments) -> Arguments:
 
 def _read_seed(given: Arguments) -> Arguments:
     return {"seed": None if given["keep_seed"] else given["seed"]}
+
+
+def _write_chance(given: Arguments) -> Arguments:
+    things, record = given["things"], given["record"]
+    return {
+        "keep_seed": given["seed"] is None,
+        "seed": given["seed"],
+        "next_index": given["index"] is None,
+        "index": given["index"],
+        "document": things if isinstance(things, str) or things is None else _json(things),
+        "record": record if isinstance(record, str) or record is None else _json(record),
+    }
+
+
+def _json(value: Any) -> str:
+    return json.dumps(plain_value(value))
+
+
+def _read_chance(given: Arguments) -> Arguments:
+    return {
+        "seed": None if given["keep_seed"] else given["seed"],
+        "index": None if given["next_index"] else given["index"],
+        "things": given["document"] or None,
+        "record": given["record"] or None,
+    }
+
+
+def _fill_chance(response: Any, record: Any, info: SceneInfo) -> None:
+    response.chosen = json.dumps(record)
 
 
 def _write_spawned(given: Arguments) -> Arguments:
@@ -251,6 +282,14 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     # scene and time
     Service(Operations.change_scene, srv.ChangeScene),
     Service(Operations.reset, srv.Reset, write=_write_seed, read=_read_seed),
+    Service(
+        Operations.randomise,
+        srv.Randomise,
+        write=_write_chance,
+        read=_read_chance,
+        fill=_fill_chance,
+        result=lambda response: json.loads(response.chosen),
+    ),
     Service(Operations.step, srv.Step, names={"count": "steps"}),
     Service(Operations.pause, srv.Pause),
     Service(Operations.resume, srv.Resume),

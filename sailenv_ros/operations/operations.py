@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sailenv_ros.operations.agent_operations import AgentOperations
+from sailenv_ros.operations.chance_operations import ChanceOperations
 from sailenv_ros.operations.clock_operations import ClockOperations
 from sailenv_ros.operations.environment import EnvironmentOperations
 from sailenv_ros.operations.frame_pictures import FramePictures
@@ -33,6 +34,7 @@ class WorldOperations(
     SpaceOperations,
     SavingOperations,
     ClockOperations,
+    ChanceOperations,
 ):
     """Every operation on the world and its agents."""
 

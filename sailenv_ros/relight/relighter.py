@@ -102,7 +102,14 @@ class Relighter:
         self._scene, self._light, self._seen, self._of = None, None, None, None
         self._places, self._refining, self._changes, self._painted = {}, None, [], {}
 
-    def lit(self, snapshot: WorldSnapshot, *, wanted: bool, lockstep: bool) -> WorldSnapshot:
+    def lit(
+        self,
+        snapshot: WorldSnapshot,
+        *,
+        wanted: bool,
+        lockstep: bool,
+        changed_ns: int | None = None,
+    ) -> WorldSnapshot:
         """Return the same instant with the light that belongs to it.
 
         Parameters
@@ -113,12 +120,15 @@ class Relighter:
             False if no picture is made: light that is out of date will do.
         lockstep : bool
             True refines light within a frame, so that frames do not depend on the wall clock.
+        changed_ns : int or None
+            When what stands still changed last [ns]: in lockstep light then depends on the world
+            alone, not on which frames were rendered. None takes the frame that shows it first.
         """
         self.watch(snapshot)
         if self._original is None or not self._usable:
             return snapshot
         if wanted:
-            self._bring_up_to_date(snapshot, lockstep=lockstep)
+            self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
         if self._light is None:
             return snapshot
         contents, light = snapshot.contents, self._light.light
@@ -136,7 +146,9 @@ class Relighter:
 
     # -- inside --------------------------------------------------------------------------------
 
-    def _bring_up_to_date(self, snapshot: WorldSnapshot, *, lockstep: bool) -> None:
+    def _bring_up_to_date(
+        self, snapshot: WorldSnapshot, *, lockstep: bool, changed_ns: int | None
+    ) -> None:
         if snapshot is not self._seen:
             self._changes = self._changed(snapshot, lockstep=lockstep)
             self._seen = snapshot
@@ -145,8 +157,10 @@ class Relighter:
             self._light = None
             return
         if self._light is None or self._light.key != key:
-            light = self._relit(QUICK)
-            self._light = _Relit(key, light, refined=False, since_ns=snapshot.sim_time_ns)
+            since_ns = snapshot.sim_time_ns if changed_ns is None else changed_ns
+            rested = lockstep and snapshot.sim_time_ns - since_ns >= REST_NS
+            light = self._relit(FINE if rested else QUICK)
+            self._light = _Relit(key, light, refined=rested, since_ns=since_ns)
         elif not self._light.refined:
             self._refine(self._light, snapshot, lockstep=lockstep)
 

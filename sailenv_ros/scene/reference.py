@@ -32,6 +32,12 @@ _TITLES = {
     "ObjectSpec": "An object",
     "PictureSpec": "A picture",
     "PointLightSpec": "A point light",
+    "RandomCamera": "Random cameras",
+    "RandomDistractors": "Random distractors",
+    "RandomEnvironment": "Random surroundings",
+    "RandomLight": "Random lights",
+    "RandomMaterial": "Random materials",
+    "RandomObject": "Random objects",
     "RoomSpec": "The room",
     "SkirtingSpec": "The skirting",
     "SpotLightSpec": "A spot light",
@@ -107,6 +113,8 @@ def _takes(entry: Mapping[str, Any]) -> str:
 
 def _plain(entry: Mapping[str, Any]) -> str:
     kind = entry.get("type")
+    if "log_uniform" in entry.get("properties", ()):
+        return "[a distribution](randomisation.md#distributions)"
     if kind == "array":
         items = entry.get("items")
         each = _takes(items) if isinstance(items, Mapping) else "values"

@@ -17,6 +17,8 @@ from sailenv_ros.scene.field_types import FIELD_ERROR
 from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
+from sailenv_ros.scene.randomise.random_rules import drawn_names
+from sailenv_ros.scene.randomise.thing import Thing
 from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
 from sailenv_ros.scene.spec_materials import LookSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
@@ -111,6 +113,8 @@ def _unknown_names(
             yield from _unknown_surfaces(loc, model, entry, knowledge)
         elif issubclass(model, LookSpec):
             yield from _unknown_looks(loc, entry, knowledge)
+        elif issubclass(model, Thing):
+            yield from _unknown_drawn(loc, entry, knowledge)
         elif issubclass(model, EnvironmentSpec):
             if entry.get("sky_map"):
                 yield from _unknown(loc, entry, "sky_map", knowledge.skies)
@@ -132,6 +136,26 @@ def _unknown(
     name = entry.get(key)
     if isinstance(name, str) and name not in known:
         yield Diagnostic((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
+
+
+def _unknown_drawn(
+    loc: Loc, entry: Mapping[str, Any], knowledge: SceneKnowledge
+) -> Iterator[Diagnostic]:
+    """Check the names that may be drawn at random."""
+    listed = entry.get("assets")
+    for index, name in enumerate(listed if isinstance(listed, list) else ()):
+        for found in _unknown((), {"asset": name}, "asset", knowledge.assets):
+            yield Diagnostic((*loc, "assets", index), found.message)
+    for key, known in (("asset", knowledge.assets), ("sky_map", ("", *knowledge.skies))):
+        for name in drawn_names(entry.get(key)):
+            yield from (
+                Diagnostic((*loc, key), found.message)
+                for found in _unknown((), {key: name}, key, known)
+            )
+    for key in ("material", "picture"):
+        for name in drawn_names(entry.get(key)):
+            for found in _unknown_looks((), {key: name}, knowledge):
+                yield Diagnostic((*loc, key), found.message)
 
 
 def _unknown_surfaces(

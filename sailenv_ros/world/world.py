@@ -88,6 +88,7 @@ class World:
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
+        self._changed_step = 0
         self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
@@ -132,6 +133,16 @@ class World:
     def contents(self) -> SceneContents:
         """What exists now, apart from poses."""
         return self._contents
+
+    @property
+    def changed_ns(self) -> int:
+        """When what stands still was last moved, painted, put there or taken away [ns]."""
+        return sim_time_ns(self._changed_step)
+
+    @property
+    def numbered_bodies(self) -> Iterable[tuple[int, Body]]:
+        """All bodies with their instance ids."""
+        return self._bodies.items()
 
     @property
     def client(self) -> BulletClient:
@@ -260,12 +271,14 @@ class World:
             If an object of that name is there.
         """
         instance_id = self._bodies.add(placement)
+        self._changed_step = self._step
         self._changed()
         return instance_id
 
     def despawn(self, instance_id: int) -> None:
         """Take an object out of the world with its parts; their ids are not used again."""
         self._bodies.remove(instance_id)
+        self._changed_step = self._step
         self._changed()
 
     def replace_body(
@@ -296,6 +309,7 @@ class World:
             self._bodies.cut_off_past(instance_id)
             self._forget_chart(instance_id)
         self.described = described or self.described
+        self._changed_step = self._step
         self._changed()
 
     def replace_room(
@@ -335,6 +349,8 @@ class World:
         moved = self.body(instance_id)
         self._bodies.rouse_beside(moved)
         moved.put(pose)
+        if moved.placement.static:
+            self._changed_step = self._step
         if teleport:
             self._bodies.cut_off_past(instance_id)
         self._snapshot = self._states = None
