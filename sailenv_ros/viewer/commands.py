@@ -17,6 +17,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import Operations
 from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.viewer.chance_commands import CHANCE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
 from sailenv_ros.viewer.material_commands import MATERIAL_COMMANDS
@@ -32,7 +33,7 @@ __all__ = ["COMMANDS"]
 MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
-_commands = CommandTable({**LIGHT_COMMANDS, **ROOM_COMMANDS, **MATERIAL_COMMANDS})
+_commands = CommandTable({**LIGHT_COMMANDS, **ROOM_COMMANDS, **MATERIAL_COMMANDS, **CHANCE_COMMANDS})
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""

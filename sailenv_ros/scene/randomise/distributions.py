@@ -162,8 +162,12 @@ class Choice:
         weighted = {
             "type": "object",
             "properties": {
-                "of": listed,
-                "weights": {"type": "array", "items": {"type": "number", "minimum": 0}},
+                "of": {**listed, "description": "the values"},
+                "weights": {
+                    "type": "array",
+                    "items": {"type": "number", "minimum": 0},
+                    "description": "how likely each is, against the others",
+                },
             },
             "required": ["of", "weights"],
             "additionalProperties": False,

@@ -112,7 +112,10 @@ class Drawn:
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         value = self._adapter.json_schema()
-        kinds = {name: kind.json_schema(value) for name, kind in DISTRIBUTIONS.items()}
+        kinds = {
+            name: {**kind.json_schema(value), "description": kind.takes}
+            for name, kind in DISTRIBUTIONS.items()
+        }
         mapping = {
             "type": "object",
             "properties": kinds,
