@@ -18,6 +18,7 @@ from sailenv_msgs_py.object_msgs import (
     keys_to_json,
     object_state_from_response,
     object_state_to_response,
+    to_json,
 )
 from sailenv_msgs_py.object_truth_msgs import amodal_mask_to_msgs, amodal_masks_from_msgs
 from sailenv_msgs_py.services.service import Arguments, Service
@@ -40,7 +41,6 @@ from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import Operations
 from sailenv_ros.operations.argument_checks import pose_of
 from sailenv_ros.picture_settings import NAMES
-from sailenv_ros.scene.entries import plain_value
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.viewpoints import CameraView
 
@@ -75,19 +75,18 @@ def _read_seed(given: Arguments) -> Arguments:
 
 
 def _write_chance(given: Arguments) -> Arguments:
-    things, record = given["things"], given["record"]
     return {
         "keep_seed": given["seed"] is None,
         "seed": given["seed"],
         "next_index": given["index"] is None,
         "index": given["index"],
-        "document": things if isinstance(things, str) or things is None else _json(things),
-        "record": record if isinstance(record, str) or record is None else _json(record),
+        "document": _as_text("things", given["things"]),
+        "record": _as_text("record", given["record"]),
     }
 
 
-def _json(value: Any) -> str:
-    return json.dumps(plain_value(value))
+def _as_text(what: str, value: Any) -> str | None:
+    return value if value is None or isinstance(value, str) else to_json(what, value)
 
 
 def _read_chance(given: Arguments) -> Arguments:

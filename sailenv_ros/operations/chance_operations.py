@@ -54,7 +54,7 @@ class ChanceOperations(Caller):
         seed : int or None
             0 or more; None keeps the present one.
         index : int or None
-            Which of the seed's epochs, 0 or more; None takes 0 where a seed is given, else the next.
+            Which of the seed's epochs; None takes 0 where a seed is given, else the next one.
         things : sequence of mapping, str or None
             What is drawn, as the list under `randomise` in a scene file, or its YAML or JSON text;
             None leaves it as it is. They hold until the scene is changed.

@@ -33,7 +33,9 @@ __all__ = ["COMMANDS"]
 MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
-_commands = CommandTable({**LIGHT_COMMANDS, **ROOM_COMMANDS, **MATERIAL_COMMANDS, **CHANCE_COMMANDS})
+_commands = CommandTable(
+    {**LIGHT_COMMANDS, **ROOM_COMMANDS, **MATERIAL_COMMANDS, **CHANCE_COMMANDS}
+)
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""
