@@ -1,6 +1,6 @@
 """Materials by name: those made for rooms, those of the catalogue's models, users' pictures.
 
-What a scene file says of a look in, a `Finish` out: a material and the size at which it is true.
+What a scene file says of a look in, a `LaidMaterial` out: with the size at which it is true.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sailenv_ros.model import Asset, Material, ModelPart
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.spec_materials import LookSpec
 
-__all__ = ["Finish", "MaterialStock", "material_names"]
+__all__ = ["LaidMaterial", "MaterialStock", "material_names"]
 
 PICTURE_TILE_M = 1.0
 """Side of a picture that says nothing of its size [m]."""
@@ -29,7 +29,7 @@ _PLAIN = Material(name="plain")
 
 
 @dataclass(frozen=True, slots=True)
-class Finish:
+class LaidMaterial:
     """A material, and how it is laid.
 
     Attributes
@@ -67,7 +67,7 @@ class MaterialStock:
         self._assets, self._pictures = assets, pictures or Pictures()
         self._folders = tuple(folders)
 
-    def finish(self, look: LookSpec, own: Material = _PLAIN) -> Finish:
+    def finish(self, look: LookSpec, own: Material = _PLAIN) -> LaidMaterial:
         """Return what a look makes of a material.
 
         Raises
@@ -84,7 +84,7 @@ class MaterialStock:
             material = replace(material, base_colour=(red, green, blue, material.base_colour[3]))
         material = painted_material(material, None, look.metallic, look.roughness)
         tile = made.tile_m if made.tile_m is None or look.tile is None else look.tile
-        return Finish(material, tile, made.turn_deg + look.turn)
+        return LaidMaterial(material, tile, made.turn_deg + look.turn)
 
     def fault(self, name: str) -> str:
         """Return why no model's material has this name, empty if one has."""
@@ -100,7 +100,7 @@ class MaterialStock:
         """Return why a picture cannot be used, empty if it can."""
         return self._pictures.fault(name, self._folders)
 
-    def _begun(self, look: LookSpec, own: Material) -> Finish:
+    def _begun(self, look: LookSpec, own: Material) -> LaidMaterial:
         if look.picture is not None:
             texture = self._pictures.texture(look.picture, self._folders)
             red, green, blue = look.colour or (1.0, 1.0, 1.0)
@@ -112,14 +112,14 @@ class MaterialStock:
                 metallic_roughness_texture=None,
                 normal_texture=None,
             )
-            return Finish(shown, (PICTURE_TILE_M, PICTURE_TILE_M))
+            return LaidMaterial(shown, (PICTURE_TILE_M, PICTURE_TILE_M))
         if look.material is None:
-            return Finish(painted_material(own, look.colour, None, None))
+            return LaidMaterial(painted_material(own, look.colour, None, None))
         if look.material in surface_names():
             made = surface(look.material, colour=look.colour, seed=look.seed)
-            return Finish(made.material, made.tile_m, made.turn_deg)
+            return LaidMaterial(made.material, made.tile_m, made.turn_deg)
         part = self._of_model(look.material)
-        return Finish(painted_material(part.material, look.colour, None, None), _size_m(part))
+        return LaidMaterial(painted_material(part.material, look.colour, None, None), _size_m(part))
 
     def _of_model(self, name: str) -> ModelPart:
         """Return the part of a model that has a material of the name ``asset/material``."""

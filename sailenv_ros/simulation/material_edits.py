@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.entries import checked_scene, plain_value
-from sailenv_ros.scene.room_rules import room_part_names
+from sailenv_ros.scene.room_rules import WALLS, room_part_names
 from sailenv_ros.scene.spec import RoomSpec
 from sailenv_ros.scene.spec_materials import ALL_PARTS, LookSpec, MaterialSpec
 from sailenv_ros.world.build import room_placements
@@ -134,17 +134,31 @@ def _keys_of(room: RoomSpec, name: str) -> dict[str, Any]:
 def _with_keys(room: RoomSpec, name: str, keys: Mapping[str, Any]) -> dict[str, Any]:
     """Return the room as a file would have it, with another look of one of its parts."""
     entry: dict[str, Any] = room.model_dump(mode="json", exclude_unset=True)
-    if name.endswith(_WALL):
+    if name.removesuffix(_WALL) in WALLS and name.endswith(_WALL):
         walls = dict(entry.get("wall_materials", {}))
         walls[name.removesuffix(_WALL)] = dict(keys)
         entry["wall_materials"] = walls
     elif name in ("floor", "ceiling"):
         entry[name] = dict(keys)
+    elif any(area.name == name for area in room.floors):
+        for area in entry["floors"]:
+            if area["name"] == name:
+                area["surface"] = dict(keys)
+    elif any(partition.name == name for partition in room.partitions):
+        for partition in entry["partitions"]:
+            if partition["name"] == name:
+                partition.update({wall: dict(keys) for wall in _sides(partition)})
     else:
         place = _colour_place(room, name, entry)
         place.pop("colour", None)
         place.update(keys)
     return entry
+
+
+def _sides(partition: Mapping[str, Any]) -> tuple[str, str]:
+    """Return where the two sides of a wall inside the room look."""
+    (x0, y0), (x1, y1) = partition["start"], partition["end"]
+    return ("north", "south") if abs(x1 - x0) > abs(y1 - y0) else ("east", "west")
 
 
 def _colour_place(room: RoomSpec, name: str, entry: dict[str, Any]) -> dict[str, Any]:

@@ -18,8 +18,8 @@ from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import light_named
 from sailenv_ros.scene.entries import checked_scene, plain_value
-from sailenv_ros.scene.randomise.sampling import sampled
-from sailenv_ros.scene.randomise.thing import Targets, Thing, Values
+from sailenv_ros.scene.randomise.random_values import sampled
+from sailenv_ros.scene.randomise.thing import RandomTargets, Thing, Values
 from sailenv_ros.scene.serialisation import PLACE_KEYS
 from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
 from sailenv_ros.simulation.material_edits import set_material
@@ -166,12 +166,12 @@ class Randomiser:
             step=step,
         )
 
-    def _targets(self) -> Targets:
+    def _targets(self) -> RandomTargets:
         core, described = self._core, self._core.world.described
         objects = () if described is None else tuple(entry.name for entry in described.objects)
         lights = () if described is None else described.lights
         surfaces = [b.placement.name for b in core.world.bodies if b.placement.entry is None]
-        return Targets(
+        return RandomTargets(
             objects=objects,
             surfaces=tuple(surfaces),
             agents=tuple(spec.name for spec in core.agents.specs),

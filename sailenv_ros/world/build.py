@@ -9,8 +9,8 @@ from pathlib import Path
 
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.finishing import finished
 from sailenv_ros.assets.material_stock import MaterialStock, material_names
+from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.assets.skies import load_sky

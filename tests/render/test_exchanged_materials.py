@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.finishing import finished
 from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import Pictures
 from sailenv_ros.geometry import Pose
 from sailenv_ros.model import Model

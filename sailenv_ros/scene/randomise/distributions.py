@@ -124,7 +124,7 @@ class Normal:
         return {"type": "array", "items": either, "minItems": 2, "maxItems": 2}
 
 
-class Choice:
+class OneOf:
     """One of some values; each as likely, or by its weight."""
 
     takes = "a list of values, or {of: [...], weights: [...]}"
@@ -180,7 +180,7 @@ DISTRIBUTIONS: Mapping[str, Distribution] = MappingProxyType(
         "uniform": Uniform(),
         "log_uniform": LogUniform(),
         "normal": Normal(),
-        "choice": Choice(),
+        "choice": OneOf(),
     }
 )
 """Every distribution by the name that it has in a scene file."""

@@ -18,7 +18,7 @@ from sailenv_ros.scene.fields import Name, SceneModel
 from sailenv_ros.scene.messages import shown
 from sailenv_ros.scene.randomise.drawn import Draw
 
-__all__ = ["EVERY", "Pick", "Targets", "Thing", "ThingOfEpochs", "Values", "Which"]
+__all__ = ["EVERY", "Pick", "RandomTargets", "Thing", "ThingOfEpochs", "Values", "Which"]
 
 Values: TypeAlias = dict[str, Any]
 """What was drawn, in plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
@@ -31,7 +31,7 @@ EVERY = ("epoch", "frame")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Targets:
+class RandomTargets:
     """What there is to be drawn for, by name.
 
     Attributes
@@ -92,7 +92,7 @@ class Thing(SceneModel):
         description="`epoch`: drawn when the scene begins; `frame`: for each instant that is drawn",
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return what is drawn for all its targets."""
         raise NotImplementedError
 

@@ -6,12 +6,12 @@ from typing import Annotated, TypeAlias
 
 from pydantic import Field
 
-from sailenv_ros.scene.randomise.things.cameras import RandomCamera
-from sailenv_ros.scene.randomise.things.distractors import RandomDistractors
-from sailenv_ros.scene.randomise.things.lights import RandomLight
-from sailenv_ros.scene.randomise.things.materials import RandomMaterial
-from sailenv_ros.scene.randomise.things.objects import RandomObject
-from sailenv_ros.scene.randomise.things.surroundings import RandomEnvironment
+from sailenv_ros.scene.randomise.things.random_camera import RandomCamera
+from sailenv_ros.scene.randomise.things.random_distractors import RandomDistractors
+from sailenv_ros.scene.randomise.things.random_environment import RandomEnvironment
+from sailenv_ros.scene.randomise.things.random_light import RandomLight
+from sailenv_ros.scene.randomise.things.random_material import RandomMaterial
+from sailenv_ros.scene.randomise.things.random_object import RandomObject
 
 __all__ = ["RandomThing"]
 

@@ -13,8 +13,8 @@ from PIL import Image
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.box_mapping import box_mapped
-from sailenv_ros.assets.finishing import finished
 from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES, Pictures, checked_picture
 from sailenv_ros.errors import AssetError, InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.scene.spec_materials import LookSpec, MaterialSpec

@@ -16,13 +16,13 @@ from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.scene.randomise.distributions import DISTRIBUTIONS
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.sampling import merged, sampled
-from sailenv_ros.scene.randomise.thing import Targets
+from sailenv_ros.scene.randomise.random_values import merged, sampled
+from sailenv_ros.scene.randomise.thing import RandomTargets
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
 
 SCENES = Path(__file__).parents[3] / "scenes"
-TARGETS = Targets(
+TARGETS = RandomTargets(
     objects=("box 1", "box 2", "lid"),
     surfaces=("floor",),
     agents=("eye",),
@@ -145,7 +145,7 @@ class TestSeeds:
 
     def test_values_are_what_json_holds(self) -> None:
         spec = load_scene(SCENES / "random_shapes.yaml")
-        targets = Targets(
+        targets = RandomTargets(
             objects=tuple(entry.name for entry in spec.objects),
             agents=("eye",),
             lights={light.name: (0.0, 0.0, 0.0) for light in spec.lights},

@@ -172,6 +172,27 @@ def test_objects_at_walls_keep_their_words(core: SimulationCore) -> None:
     assert "wall: south" in core.scene_text()
 
 
+def test_walls_and_floors_inside_take_materials(core: SimulationCore, tmp_path: Path) -> None:
+    (tmp_path / "flat.yaml").write_text(
+        """version: 1
+room:
+  size: [6, 4, 3]
+  partitions: [{name: divide, start: [0, -2], end: [0, 2], doorways: [{at: 1}], east: carpet}]
+  floors: [{name: wet floor, start: [1, 0], end: [3, 2], surface: white_tiles}]
+""",
+        encoding="utf-8",
+    )
+    core.change_scene("flat")
+    assert painted(core, "wet floor") == [{"material": "white_tiles"}]
+    core.set_material("wet floor", material="stone_tiles")
+    core.set_material("divide", material="metro_tiles", tint="#808080")
+    assert painted(core, "wet floor") == [{"material": "stone_tiles"}]
+    assert painted(core, "divide") == [{"material": "metro_tiles", "tint": "#808080"}]
+    core.set_material("divide")
+    assert painted(core, "divide") == [{"material": "carpet"}]
+    assert "stone_tiles" in core.scene_text()
+
+
 def test_saved_scene_has_materials_and_pictures(core: SimulationCore, tmp_path: Path) -> None:
     content = picture()
     name = core.upload_picture(content)

@@ -11,7 +11,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Several, Text
 from sailenv_ros.scene.fields import LinearColour, Position, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, Targets, ThingOfEpochs, Values
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, ThingOfEpochs, Values
 
 __all__ = ["RandomDistractors"]
 
@@ -57,7 +57,7 @@ class RandomDistractors(ThingOfEpochs):
         default=None, description="paints each of them; drawn in linear numbers"
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return entries of objects as a scene file has them."""
         one = Drawn(_Share).check({"uniform": [0.0, 1.0]})
         which = Drawn(_Asset).check({"choice": list(self.assets)})

@@ -9,7 +9,14 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Switch, Text
 from sailenv_ros.scene.fields import Position
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, Targets, ThingOfEpochs, Values, Which, chosen
+from sailenv_ros.scene.randomise.thing import (
+    Pick,
+    RandomTargets,
+    ThingOfEpochs,
+    Values,
+    Which,
+    chosen,
+)
 
 __all__ = ["RandomObject"]
 
@@ -42,7 +49,7 @@ class RandomObject(ThingOfEpochs):
         default=None, description="about the vertical, counter-clockwise [deg]"
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return asset, there, scale, offset and turn for each object."""
         draws = self.draws()
         return {

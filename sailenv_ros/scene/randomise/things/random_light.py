@@ -9,7 +9,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Direction, Position, Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, Targets, Thing, Values, Which, chosen
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
 
 __all__ = ["RandomLight"]
 
@@ -39,7 +39,7 @@ class RandomLight(Thing):
         default=None, description="where the light travels to, any length but 0"
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return attributes of `Light` for each target."""
         draws = self.draws("offset")
         lights: Values = {}

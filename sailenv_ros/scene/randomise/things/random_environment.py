@@ -9,7 +9,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Fraction, Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, Targets, Thing, Values
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values
 
 __all__ = ["RandomEnvironment"]
 
@@ -48,6 +48,6 @@ class RandomEnvironment(Thing):
         default=None, description="below the horizon"
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return keys of `environment`."""
         return {"environment": {key: pick("", key, draw) for key, draw in self.draws().items()}}

@@ -10,7 +10,7 @@ from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Position, Rotation, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, Targets, Thing, Values, Which, chosen
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
 from sailenv_ros.scene.rules import at_most_one, only_beside
 
 __all__ = ["RandomCamera"]
@@ -51,7 +51,7 @@ class RandomCamera(Thing):
         default=None, description="of its pictures, see the keys of a picture; 0: no noise"
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return position, look_at or rotation, and settings, for each camera."""
         draws = self.draws()
         return {

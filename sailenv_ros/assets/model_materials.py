@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sailenv_ros.assets.box_mapping import box_mapped
-from sailenv_ros.assets.material_stock import Finish, MaterialStock
+from sailenv_ros.assets.material_stock import LaidMaterial, MaterialStock
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.model import Model, ModelPart
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialSpec
@@ -74,7 +74,7 @@ def _part(
     """Return a part with another look; None for one that cannot have it."""
     if part.material.alpha != "opaque" and (spec.material or spec.picture):
         return None
-    finish: Finish = stock.finish(spec, part.material)
+    finish: LaidMaterial = stock.finish(spec, part.material)
     mesh = part.mesh
     if finish.tile_m is not None and spec.mapping == "box":
         mesh = box_mapped(mesh, finish.tile_m, turn_deg=finish.turn_deg, scale=scale)

@@ -9,7 +9,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Fraction, LinearColour
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, Targets, Thing, Values, Which, chosen
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialName, PictureName
 
 __all__ = ["RandomMaterial"]
@@ -53,7 +53,7 @@ class RandomMaterial(Thing):
         default=None, description="of the grain, clouds and tones of a material of rooms"
     )
 
-    def values(self, targets: Targets, pick: Pick) -> Values:
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return the keys of a material for each target."""
         draws = self.draws()
         names = chosen(self.of, (*targets.objects, *targets.surfaces))

@@ -13,14 +13,14 @@ from typing import Literal
 import numpy as np
 
 from sailenv_ros.scene.randomise.drawn import Draw
-from sailenv_ros.scene.randomise.thing import Targets, Thing, Values
+from sailenv_ros.scene.randomise.thing import RandomTargets, Thing, Values
 
 __all__ = ["merged", "sampled"]
 
 
 def sampled(
     things: Sequence[Thing],
-    targets: Targets,
+    targets: RandomTargets,
     *,
     seed: int,
     index: int,
@@ -33,7 +33,7 @@ def sampled(
     ----------
     things : sequence of Thing
         As under `randomise` in a scene file.
-    targets : Targets
+    targets : RandomTargets
         What there is.
     seed : int
         0 or more.
