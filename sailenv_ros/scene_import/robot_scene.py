@@ -76,7 +76,7 @@ def import_robot_scene(path: Path, names: Names, ours: Mapping[str, PackEntry]) 
     kind = "URDF" if root.tag == "robot" else "MJCF"
     title = root.text("name") or root.text("model") or path.stem
     scene = ImportedScene(title=title, description=f"Imported from the {kind} file {path.name}.")
-    builder = _Builder(scene, names, read, arrays, visuals_apart=root.tag == "robot")
+    builder = _RobotBuilder(scene, names, read, arrays, visuals_apart=root.tag == "robot")
     builder.add_bodies()
     builder.add_lights()
     builder.add_cameras()
@@ -153,7 +153,7 @@ def _read_apart(path: Path) -> tuple[dict[str, Any], dict[str, Doubles]]:
 # -- the scene -----------------------------------------------------------------------------
 
 
-class _Builder:
+class _RobotBuilder:
     def __init__(
         self,
         scene: ImportedScene,
