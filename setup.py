@@ -62,6 +62,8 @@ ASSETS = [
 ]
 # What only baking light needs; light that was baked before is read without.
 BAKE = ["embreex>=4.4.0", "xatlas>=0.0.9"]
+# What only importing URDF and MJCF scenes needs.
+IMPORT = ["mujoco>=3.3"]
 # What the experiments compare with and draw with: `sailenv bench`, `report`, and `sailenv eval`.
 # The SAILenv client, which is timed at the gateway and tested there, declares no dependencies.
 BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
@@ -88,6 +90,7 @@ DEV = [
     "flask>=3.0",
     "flask-cors>=5.0",
     "moto[s3]>=5",
+    "mujoco>=3.3",
     "mypy",
     "onnxruntime>=1.17",
     # Drives Debian's Chromium, for the tests of the web viewer.
@@ -217,12 +220,13 @@ setup(
         "ros": ROS,
         "assets": ASSETS,
         "bake": BAKE,
+        "import": IMPORT,
         "bench": BENCH,
         "dataset": DATASET,
         "ray": RAY,
         "eval": EVAL,
         # Everything but ROS, which may be there already, and the tools for developers.
-        "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL}),
+        "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL, *IMPORT}),
         "dev": DEV,
     },
     entry_points={
