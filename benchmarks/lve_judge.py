@@ -24,7 +24,10 @@ import numpy as np
 FACTORS = np.concatenate([np.arange(0.5, 1.5, 0.01), np.arange(1.5, 8.0, 0.1)])
 
 LEAST_PIXELS = 200
-"""Frames in which less moves are not asked."""
+"""Frames in which fewer pixels move are not asked."""
+
+LEAST_MOTION = 0.15
+"""What moves by less is not looked at: interpolation blurs more than it moves [px]."""
 
 
 def main() -> None:
@@ -44,8 +47,9 @@ def main() -> None:
         frames += 1
         moves = (motion != 0.0).any(axis=-1)
         moving += int(moves.sum())
-        if before is not None and frames % options.every == 0 and moves.sum() >= LEAST_PIXELS:
-            factor, share = _best_factor(before, picture, motion, moves)
+        fast = np.hypot(motion[..., 0], motion[..., 1]) > LEAST_MOTION
+        if before is not None and frames % options.every == 0 and fast.sum() >= LEAST_PIXELS:
+            factor, share = _best_factor(before, picture, motion, fast)
             best.append(factor)
             left.append(share)
         before = picture
