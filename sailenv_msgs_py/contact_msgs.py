@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from std_msgs.msg import Header
+
 import sailenv_msgs.msg as msgs
+from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import point_to_msg, vector_to_msg, xyz_from_msg
 from sailenv_ros.contacts import Contact
 
-__all__ = ["contact_from_msg", "contact_to_msg"]
+__all__ = ["contact_from_msg", "contact_to_msg", "contacts_to_msg"]
 
 
 def contact_to_msg(contact: Contact) -> msgs.Contact:
@@ -35,4 +40,15 @@ def contact_from_msg(message: msgs.Contact) -> Contact:
         impulse_n_s=message.impulse_n_s,
         depth_m=message.depth_m,
         sim_time_ns=ns_from_stamp(message.stamp),
+    )
+
+
+def contacts_to_msg(
+    contacts: Sequence[Contact], *, sim_time_ns: int, revision: int
+) -> msgs.Contacts:
+    """Make the message of all contacts up to an instant [ns]."""
+    return msgs.Contacts(
+        header=Header(stamp=stamp_from_ns(sim_time_ns), frame_id=WORLD_FRAME_ID),
+        revision=revision,
+        contacts=[contact_to_msg(contact) for contact in contacts],
     )

@@ -9,12 +9,9 @@ import threading
 from collections.abc import Callable
 
 from rclpy.node import Node
-from std_msgs.msg import Header
 
 from sailenv_msgs.msg import Contacts
-from sailenv_msgs_py.contact_msgs import contact_to_msg
-from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
-from sailenv_msgs_py.stamps import stamp_from_ns
+from sailenv_msgs_py.contact_msgs import contacts_to_msg
 from sailenv_ros.nodes.qos import frame_qos
 from sailenv_ros.simulation import Simulation
 
@@ -59,9 +56,5 @@ class ContactTopic:
             touching = simulation.contacts_of_steps(seconds)
             if touching:
                 self._topic.publish(
-                    Contacts(
-                        header=Header(stamp=stamp_from_ns(now_ns), frame_id=WORLD_FRAME_ID),
-                        revision=simulation.info.revision,
-                        contacts=[contact_to_msg(contact) for contact in touching],
-                    )
+                    contacts_to_msg(touching, sim_time_ns=now_ns, revision=simulation.info.revision)
                 )
