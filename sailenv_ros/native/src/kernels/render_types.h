@@ -94,6 +94,12 @@ struct LayerSum {
     uint8_t* states;                // RunState of each run; zeros at first
 };
 
+// From where a room was looked at for what is mirrored.
+struct ReflectionPoint {
+    float position[3];
+    float light[4];  // irradiance / pi there: c0, cx, cy, cz; luma
+};
+
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
     float main_colour[3];
@@ -117,12 +123,13 @@ struct Light {
     int32_t light_map_width, light_map_height;
     const float* instance_light;  // (ids, 3, 4): c0, cx, cy, cz of red, green, blue
     float main_baked, main_clear;
-    const uint16_t* reflections;  // halves (layers, edge, edge, 4)
+    const uint16_t* reflections;  // halves (points, layers, edge, edge, 4)
     int32_t reflection_edge, reflection_layers;
     float reflection_scale;  // share of the square without its border
     float layers_per_roughness;
-    float reflection_from[3], room_low[3], room_high[3];
-    float room_light[4];
+    const ReflectionPoint* reflection_points;
+    const int32_t* reflection_table;  // (ids,): the point that an instance uses
+    float room_low[3], room_high[3];
 };
 
 struct View {
