@@ -151,9 +151,10 @@ def find_ambient_visibility(
     np.divide(np.where(is_baked, F32(-1.0), F32(1.0)), depth, out=inverse, where=hit)
     tiles = _live_tiles(inverse > 0.0, int(numbers[5]) // TILE)
     share = np.where(tiles, _raw_visibility(inverse, numbers, pattern), np.uint8(255))
-    same_surface = numbers[8]
-    for axis in (1, 0):
-        share = np.where(tiles, _mean_of_four(share, inverse, same_surface, axis), np.uint8(255))
+    same_surface, wide = numbers[8], int(numbers[9])
+    for step, axis in ((1, 1), (1, 0), (wide, 1), (wide, 0)):
+        mean = _mean_of_four(share, inverse, same_surface, step, axis)
+        share = np.where(tiles, mean, np.uint8(255))
     return share, inverse
 
 
@@ -172,7 +173,7 @@ def _live_tiles(live: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
 
 
 def _raw_visibility(inverse: Floats, numbers: Floats, pattern: Floats) -> NDArray[np.uint8]:
-    focal, cx, cy, radius_m, least_reach_px, reach_px, bias, scale, _ = numbers
+    focal, cx, cy, radius_m, least_reach_px, reach_px, bias, scale, _, _ = numbers
     rows, columns = inverse.shape
     one, zero, half = F32(1.0), F32(0.0), F32(0.5)
     per_f, per_r2 = one / focal, one / (radius_m * radius_m)
@@ -223,17 +224,21 @@ def _slope(w: Floats, axis: int) -> Floats:
 
 
 def _mean_of_four(
-    share: NDArray[np.uint8], inverse: Floats, same_surface: np.float32, axis: int
+    share: NDArray[np.uint8], inverse: Floats, same_surface: np.float32, step: int, axis: int
 ) -> NDArray[np.uint8]:
-    """Average over four neighbours in a line that lie on one surface."""
-    w = np.abs(np.moveaxis(inverse, axis, 1))
-    size = w.shape[1]
-    beside = np.pad(w, ((0, 0), (1, 2)), constant_values=np.inf)
-    shares = np.pad(np.moveaxis(share, axis, 1).astype(np.int32), ((0, 0), (1, 2)))
-    off = same_surface * w
-    total, count = np.zeros(w.shape, np.int32), np.zeros(w.shape, np.int32)
-    for first in range(4):
-        same = np.abs(beside[:, first : first + size] - w) <= off
+    """Average over four samples in a line, `step` apart, that lie on one surface.
+
+    Of unlike sign are surfaces with and without baked light, which do not count as one.
+    """
+    own = np.moveaxis(inverse, axis, 1)
+    size = own.shape[1]
+    around = ((0, 0), (step, 2 * step))
+    beside = np.pad(own, around, constant_values=np.inf)
+    shares = np.pad(np.moveaxis(share, axis, 1).astype(np.int32), around)
+    off = same_surface * np.abs(own)
+    total, count = np.zeros(own.shape, np.int32), np.zeros(own.shape, np.int32)
+    for first in range(0, 4 * step, step):
+        same = np.abs(beside[:, first : first + size] - own) <= off
         total += np.where(same, shares[:, first : first + size], 0)
         count += same
     return np.moveaxis(((total + (count >> 1)) // count).astype(np.uint8), 1, axis)

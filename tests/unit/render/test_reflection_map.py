@@ -38,7 +38,9 @@ def test_rougher_is_flatter_about_the_same_place() -> None:
     """A bright spot spreads with roughness, and its middle stays."""
     directions = octahedral_directions(64)
     spot = np.where(directions[..., :1] > 0.97, 10.0, 0.0) * np.ones(3, np.float32)
-    layers = prefilter(spot.astype(np.float32), blur=blur_with_numba)[:, 1:-1, 1:-1, 0].astype(float)
+    layers = prefilter(spot.astype(np.float32), blur=blur_with_numba)[:, 1:-1, 1:-1, 0].astype(
+        float
+    )
     peaks = layers.max(axis=(1, 2))
     assert (np.diff(peaks) <= 0.0).all()
     assert peaks[-1] < 0.8 * peaks[0]
