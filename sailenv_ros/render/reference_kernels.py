@@ -30,6 +30,9 @@ FAR_M = F32(1e9)
 TILE = 16
 """Edge of the tiles of samples that are left out where everything around them is baked."""
 
+LEAST_BEND = F32(0.0005)
+"""Share of 1 / depth by which something narrower than a pixel lies off what is beside it."""
+
 ROUNDING_PX = 1e-3
 """How far from a pixel's centre that pixel alone decides whether a point was hidden."""
 
@@ -263,7 +266,7 @@ def make_picture(
         factors = _arriving_factors(bits[..., 3], visibility, inverse, surface, 1, same_surface)
         light = _bits(_small_numbers(light) * factors[..., None])
     rgb = table[light]
-    return _smooth_edges(rgb, least_contrast, reach_px) if least_contrast > 0 else rgb
+    return _smooth_edges(rgb, surface, least_contrast, reach_px) if least_contrast > 0 else rgb
 
 
 def resolve_samples(
@@ -407,7 +410,9 @@ def _arriving_factors(
     return factors
 
 
-def _smooth_edges(rgb: NDArray[np.uint8], least_contrast: int, reach_px: int) -> NDArray[np.uint8]:
+def _smooth_edges(
+    rgb: NDArray[np.uint8], surface: Floats | None, least_contrast: int, reach_px: int
+) -> NDArray[np.uint8]:
     weighted = rgb.astype(np.int32) * np.array([77, 150, 29], np.int32)
     luma = (weighted.sum(axis=2) + 128) >> 8
     height, width = luma.shape
@@ -436,7 +441,41 @@ def _smooth_edges(rgb: NDArray[np.uint8], least_contrast: int, reach_px: int) ->
     share = np.where(crosses & (near < reach_px), np.maximum(share, 0.0), 0.0)
     own, across = rgb[v, u].astype(np.float64), rgb[v + dv, u + du].astype(np.float64)
     result[v, u] = (own + (across - own) * share[:, None] + 0.5).astype(np.uint8)
+    if surface is not None:
+        _smooth_thin(rgb, luma, surface, v, u, least_contrast, result)
     return result
+
+
+def _smooth_thin(
+    rgb: NDArray[np.uint8],
+    luma: NDArray[np.int32],
+    surface: Floats,
+    v: NDArray[np.intp],
+    u: NDArray[np.intp],
+    least_contrast: int,
+    result: NDArray[np.uint8],
+) -> None:
+    """Mix what is narrower than a pixel with what lies on both sides."""
+
+    def stands_out(dv: int, du: int) -> NDArray[np.int32]:
+        own, before, after = luma[v, u], luma[v - dv, u - du], luma[v + dv, u + du]
+        above, below = own - np.maximum(before, after), np.minimum(before, after) - own
+        least = np.maximum(np.maximum(above, below), 0)
+        return np.where(2 * np.abs(before - after) <= least, least, 0)
+
+    across, down = stands_out(0, 1), stands_out(1, 0)
+    found = np.maximum(across, down) >= least_contrast
+    du = (across >= down).astype(np.intp)
+    dv = 1 - du
+    with np.errstate(all="ignore"):
+        nearness = F32(1.0) / surface[..., 0]
+        own = nearness[v, u]
+        both = nearness[v - dv, u - du] + nearness[v + dv, u + du]
+        found &= np.abs(both - (own + own)) > LEAST_BEND * own
+    v, u, dv, du = v[found], u[found], dv[found], du[found]
+    wide = rgb.astype(np.int32)
+    mixed = 2 * wide[v, u] + wide[v - dv, u - du] + wide[v + dv, u + du] + 2
+    result[v, u] = (mixed >> 2).astype(np.uint8)
 
 
 def _end(
