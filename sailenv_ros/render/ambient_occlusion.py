@@ -6,7 +6,8 @@ rises above its tangent plane hides a part of the half space before it, the less
 (after McGuire et al. 2011, "The alchemy screen-space ambient obscurance algorithm"). With x hidden,
 1 / (1 + x) of the light is left: what hides light gives some of it back, so nothing gets black.
 Which twelve differs from pixel to pixel in blocks of four by four; averaging over such a block on
-one surface removes the pattern, and averaging once more over four by four samples farther apart what is left of it.
+one surface removes the pattern, and averaging once more over four by four samples farther apart
+removes what is left of it.
 """
 
 from __future__ import annotations

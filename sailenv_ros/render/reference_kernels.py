@@ -461,7 +461,7 @@ def _smooth_thin(
         own, before, after = luma[v, u], luma[v - dv, u - du], luma[v + dv, u + du]
         above, below = own - np.maximum(before, after), np.minimum(before, after) - own
         least = np.maximum(np.maximum(above, below), 0)
-        return np.where(2 * np.abs(before - after) <= least, least, 0)
+        return np.where(np.abs(before - after) <= least, least, 0)
 
     across, down = stands_out(0, 1), stands_out(1, 0)
     found = np.maximum(across, down) >= least_contrast
@@ -473,9 +473,16 @@ def _smooth_thin(
         both = nearness[v - dv, u - du] + nearness[v + dv, u + du]
         found &= np.abs(both - (own + own)) > LEAST_BEND * own
     v, u, dv, du = v[found], u[found], dv[found], du[found]
+    steps = [(k - 1, j - 1) for k, j in np.ndindex(3, 3) if (k, j) != (1, 1)]
+    ring = np.array([luma[v + k, u + j] for k, j in steps])
+    low, high = ring.min(axis=0), ring.max(axis=0)
+    least = np.where(luma[v, u] > high, luma[v, u] - high, low - luma[v, u])
+    dot = ((least >= least_contrast) & (high - low <= least))[:, None]
     wide = rgb.astype(np.int32)
-    mixed = 2 * wide[v, u] + wide[v - dv, u - du] + wide[v + dv, u + du] + 2
-    result[v, u] = (mixed >> 2).astype(np.uint8)
+    beside = wide[v - dv, u - du] + wide[v + dv, u + du]
+    around = wide[v, u - 1] + wide[v, u + 1] + wide[v - 1, u] + wide[v + 1, u]
+    line, point = 2 * wide[v, u] + beside + 2 >> 2, around + 2 >> 2
+    result[v, u] = np.where(dot, point, line).astype(np.uint8)
 
 
 def _end(

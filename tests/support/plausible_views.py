@@ -6,12 +6,13 @@ import itertools
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import look_at
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.snapshot import DrawnInstance, WorldSnapshot
 
 __all__ = ["plausible_views", "room_at_rest"]
 
@@ -44,22 +45,22 @@ def plausible_views(
     height: int,
     vertical_fov_deg: float = 58.0,
 ) -> Iterator[Camera]:
-    """Choose cameras in a baked room: upright, at the height of eyes, each turned to an object."""
+    """Choose cameras in a room: upright, at the height of eyes, each turned to an object."""
     contents = snapshot.contents
-    assert contents.baked is not None
-    probes = contents.baked.probes
-    low = np.asarray(probes.origin_m) + 0.3
-    high = low + np.asarray(probes.spacing_m) * (np.array(probes.shape[::-1]) - 1) - 0.6
+    boxes = np.array(
+        [
+            _box(drawn, pose)
+            for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True)
+        ]
+    )
+    middles = boxes.mean(axis=1)
+    floor = [drawn.instance.category == "floor" for drawn in contents.instances]
+    low, high = boxes[floor][:, 0].min(axis=0) + 0.35, boxes[floor][:, 1].max(axis=0) - 0.35
     rng = np.random.default_rng([*str(seed).encode()])
-    middles = [
-        pose[:3, :3] @ (drawn.model.bounds().mean(axis=0) * np.asarray(drawn.scale)) + pose[:3, 3]
-        for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True)
-    ]
     small = CameraIntrinsics(width=48, height=36, vertical_fov_deg=vertical_fov_deg)
     lens = CameraIntrinsics(width=width, height=height, vertical_fov_deg=vertical_fov_deg)
     while True:
-        eye = rng.uniform(low, high)
-        eye[2] = rng.uniform(*EYES_M)
+        eye = np.array([*rng.uniform(low[:2], high[:2]), rng.uniform(*EYES_M)])
         target = middles[rng.integers(len(middles))] + rng.normal(0.0, 0.15, 3)
         if np.linalg.norm((target - eye)[:2]) < 0.6:
             continue
@@ -70,3 +71,13 @@ def plausible_views(
         if seen["depth"].min() < NEAREST_M or counts.max() > LARGEST_SHARE * seen["depth"].size:
             continue
         yield Camera(intrinsics=lens, pose=pose)
+
+
+def _box(drawn: DrawnInstance, pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return (2, 3): lowest and highest corner [m]."""
+    bounds = drawn.model.bounds() * np.asarray(drawn.scale)
+    corners = np.array(
+        [[bounds[i, 0], bounds[j, 1], bounds[k, 2]] for i, j, k in np.ndindex(2, 2, 2)]
+    )
+    world = corners @ pose[:3, :3].T + pose[:3, 3]
+    return np.stack([world.min(axis=0), world.max(axis=0)])

@@ -201,7 +201,7 @@ LANES_INLINE int32_t stands_out(int32_t own, int32_t before, int32_t after) {
     if (own > before && own > after) least = own - (before > after ? before : after);
     if (own < before && own < after) least = (before < after ? before : after) - own;
     const int32_t unlike = before > after ? before - after : after - before;
-    return 2 * unlike <= least ? least : 0;
+    return unlike <= least ? least : 0;
 }
 
 // Tells if a pixel's surface lies off that between its neighbours: over a plane 1 / depth is linear.
@@ -211,8 +211,8 @@ LANES_INLINE bool bends(const float* surface, int64_t next) {
     return __builtin_fabsf(both - (own + own)) > LEAST_BEND * own;
 }
 
-// Where something narrower than a pixel is seen in one pixel and missed in the next, each is half
-// of what it shows and half of what lies on both sides. Tells if the pixel was one.
+// Something narrower than a pixel is seen in one pixel and missed in the next. Of a line half is
+// left, half is what lies on both sides; of a dot nothing. Tells if the pixel was one.
 bool smooth_thin(const Edges& e, int64_t v, int64_t u, uint8_t* out) {
     if (e.surface == nullptr) return false;
     const uint8_t* row = e.rows + v * e.row_stride + PAD + u;
@@ -223,8 +223,24 @@ bool smooth_thin(const Edges& e, int64_t v, int64_t u, uint8_t* out) {
     const int64_t at = v * e.width + u;
     if (!bends(e.surface + 2 * at, next)) return false;
     const uint8_t* own = e.four + 4 * at;
+    int32_t low = 255, high = 0;
+    for (int64_t k = -1; k <= 1; k++) {
+        for (int64_t j = -1; j <= 1; j++) {
+            if (k == 0 && j == 0) continue;
+            const int32_t there = row[k * e.row_stride + j];
+            low = there < low ? there : low;
+            high = there > high ? there : high;
+        }
+    }
+    // A dot stands out from all that is around it, by more than that differs.
+    const int32_t least = row[0] > high ? row[0] - high : low - row[0];
+    const bool dot = least >= e.least_contrast && high - low <= least;
     for (int c = 0; c < 3; c++) {
-        out[c] = static_cast<uint8_t>((2 * own[c] + own[c - 4 * next] + own[c + 4 * next] + 2) >> 2);
+        const uint8_t* p = own + c;
+        const int32_t beside = p[-4 * next] + p[4 * next];
+        const int32_t around = p[-4] + p[4] + p[-4 * e.width] + p[4 * e.width];
+        const int32_t mixed = dot ? (around + 2) >> 2 : (2 * *p + beside + 2) >> 2;
+        out[c] = static_cast<uint8_t>(mixed);
     }
     return true;
 }
