@@ -20,6 +20,7 @@ __all__ = [
     "BACKGROUND",
     "MAX_CATEGORY_ID",
     "MAX_INSTANCE_ID",
+    "PART_MARK",
     "UNLABELLED_CATEGORY",
     "Category",
     "CategoryTable",
@@ -36,6 +37,13 @@ UNLABELLED_CATEGORY = 255
 """Category id of an object that has none (the largest value, as vision_msgs/LabelInfo says)."""
 
 MAX_INSTANCE_ID = 65535
+
+PART_MARK = "/"
+"""Stands between an object's name and that of a part of its model, and no name holds it.
+
+The object ``bed`` of the asset ``bed_02`` has the part ``bed/left pillow`` of the asset
+``bed_02/left pillow``.
+"""
 
 MAX_CATEGORY_ID = 65535
 
@@ -155,6 +163,8 @@ class Instance:
         Id of the object that it is a part of; 0 for none.
     keypoints : tuple of Keypoint
         Those that its asset names, its scale applied.
+
+    A part of an object's model is an instance like others; see `is_part`.
     """
 
     id: int
@@ -167,6 +177,11 @@ class Instance:
     high_m: Vector3 = (0.0, 0.0, 0.0)
     parent: int = 0
     keypoints: tuple[Keypoint, ...] = ()
+
+    @property
+    def is_part(self) -> bool:
+        """True for a part of an object's model: it moves with its parent, and only with it."""
+        return PART_MARK in self.asset
 
 
 def instance_colours() -> NDArray[np.uint8]:

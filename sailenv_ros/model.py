@@ -18,6 +18,7 @@ from sailenv_ros.errors import AssetError
 
 __all__ = [
     "Asset",
+    "AssetPart",
     "BoxShape",
     "CollisionShape",
     "ConvexShape",
@@ -113,10 +114,19 @@ class Material:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class ModelPart:
-    """One mesh with its material."""
+    """One mesh with its material.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    material : Material
+    names : tuple of str
+        Of the mesh and its node in the file that it came from; empty where they are not known.
+    """
 
     mesh: Mesh
     material: Material
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -150,6 +160,24 @@ class Model:
     def triangle_count(self) -> int:
         """How many triangles all parts have."""
         return sum(len(part.mesh.triangles) for part in self.parts)
+
+    def only(self, meshes: tuple[int, ...]) -> Model:
+        """Return a model of some of the parts; the same object for the same ones.
+
+        Parameters
+        ----------
+        meshes : tuple of int
+            Their places in `parts`, ascending.
+        """
+        if len(meshes) == len(self.parts):
+            return self
+        made = Model(name=self.name, parts=tuple(self.parts[place] for place in meshes))
+        # One step, so that two threads get the same object.
+        return self._made.setdefault(meshes, made)
+
+    @cached_property
+    def _made(self) -> dict[tuple[int, ...], Model]:
+        return {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,6 +231,28 @@ class TriangleShape:
 CollisionShape: TypeAlias = BoxShape | SphereShape | CylinderShape | ConvexShape | TriangleShape
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AssetPart:
+    """Some meshes of an asset's model that are labelled as an object of their own.
+
+    Physics knows one body. The part has an instance id, a category and a mask of its own, and the
+    body's instance is its parent.
+
+    Attributes
+    ----------
+    name : str
+        Unique in its asset, e.g. ``"left pillow"``.
+    category : str
+        Name in the category table.
+    meshes : tuple of int
+        Their places in ``Asset.model.parts``, ascending.
+    """
+
+    name: str
+    category: str
+    meshes: tuple[int, ...]
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Asset:
     """An entry of the catalogue: all that is needed to place an object.
@@ -216,8 +266,8 @@ class Asset:
     category : str
         Name in the category table.
     model : Model
-        Body frame: x forward, y left, z up; origin at the centre of mass for primitives, at the
-        centre of the base for furniture.
+        All of it, its parts too. Body frame: x forward, y left, z up; origin at the centre of mass
+        for primitives, at the centre of the base for furniture.
     collision : tuple of CollisionShape
         Compound of shapes; empty for what nothing collides with.
     mass_kg : float
@@ -226,6 +276,13 @@ class Asset:
         In the body frame [m].
     keypoints : tuple of (str, (3,) tuple of float)
         Named points in the body frame [m].
+    parts : tuple of AssetPart
+        No mesh belongs to two of them, and one at least to none: that is the body.
+
+    Raises
+    ------
+    AssetError
+        If that is not so.
     """
 
     name: str
@@ -237,3 +294,29 @@ class Asset:
     centre_of_mass_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     tags: tuple[str, ...] = field(default=())
     keypoints: tuple[tuple[str, tuple[float, float, float]], ...] = ()
+    parts: tuple[AssetPart, ...] = ()
+
+    def __post_init__(self) -> None:
+        taken = [place for part in self.parts for place in part.meshes]
+        if len(set(taken)) != len(taken):
+            raise AssetError(self.name, "a mesh belongs to two of its parts; one is accepted")
+        if any(not part.meshes for part in self.parts):
+            raise AssetError(self.name, "a part has no mesh; at least one is accepted")
+        if len({part.name for part in self.parts}) != len(self.parts):
+            raise AssetError(self.name, "two of its parts have the same name")
+        if taken and not self._body_meshes:
+            raise AssetError(self.name, "its parts take all meshes; one must be left to the body")
+
+    @property
+    def body_model(self) -> Model:
+        """What is drawn as the body: the model without its parts; the model where it has none."""
+        return self.model.only(self._body_meshes)
+
+    def part_model(self, part: AssetPart) -> Model:
+        """Return what is drawn as one of its parts; the same object each time."""
+        return self.model.only(part.meshes)
+
+    @property
+    def _body_meshes(self) -> tuple[int, ...]:
+        taken = {place for part in self.parts for place in part.meshes}
+        return tuple(place for place in range(len(self.model.parts)) if place not in taken)

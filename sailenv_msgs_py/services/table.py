@@ -5,8 +5,11 @@ Only messages whose fields are not simply the operation's arguments need functio
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 import sailenv_msgs.srv as srv
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
@@ -17,8 +20,17 @@ from sailenv_msgs_py.object_msgs import (
 )
 from sailenv_msgs_py.object_truth_msgs import amodal_mask_to_msgs, amodal_masks_from_msgs
 from sailenv_msgs_py.services.service import Arguments, Service
+from sailenv_msgs_py.space_msgs import (
+    free_space_from_response,
+    free_space_to_response,
+    points_to_msg,
+    ray_cast_from_response,
+    ray_cast_to_response,
+    reach_to_msg,
+    triples_from_msg,
+)
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
-from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg
+from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
 from sailenv_ros.agents import AgentPose
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
@@ -28,6 +40,7 @@ from sailenv_ros.operations import Operations
 from sailenv_ros.operations.argument_checks import pose_of
 from sailenv_ros.picture_settings import NAMES
 from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.viewpoints import CameraView
 
 __all__ = ["AGENT_SERVICES", "SERVICES", "SIMULATOR_SERVICES"]
 
@@ -151,6 +164,40 @@ def _read_intrinsics(given: Arguments) -> Arguments:
 _LENS = ("width", "height", "vertical_fov_deg", "near_m", "far_m")
 
 
+def _write_random_pose(given: Arguments) -> Arguments:
+    seed, place = given["seed"], given["reachable_from"]
+    return {**given, "keep_seed": seed is None, "anywhere": place is None}
+
+
+def _read_random_pose(given: Arguments) -> Arguments:
+    if given.pop("keep_seed"):
+        given["seed"] = None
+    if given.pop("anywhere"):
+        given["reachable_from"] = None
+    return given
+
+
+def _read_sampling(given: Arguments) -> Arguments:
+    if given.pop("keep_seed"):
+        given["seed"] = None
+    return given
+
+
+def _write_rays(given: Arguments) -> Arguments:
+    return {
+        **given,
+        "max_distance_m": reach_to_msg(given["max_distance_m"]),
+    }
+
+
+def _read_rays(given: Arguments) -> Arguments:
+    reach = given["max_distance_m"]
+    return {
+        **given,
+        "max_distance_m": math.inf if reach == 0.0 else reach,
+    }
+
+
 # -- responses of several fields -------------------------------------------------------------
 
 
@@ -179,6 +226,16 @@ def _fill_frame(response: Any, frame: Frame, info: SceneInfo) -> None:
 def _fill_masks(response: Any, masks: AmodalMasks, info: SceneInfo) -> None:
     response.height, response.width = masks.height, masks.width
     response.masks = amodal_mask_to_msgs(masks)
+
+
+def _fill_path(response: Any, positions: Any, info: SceneInfo) -> None:
+    response.positions = points_to_msg(positions)
+    response.length_m = float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
+
+
+def _fill_views(response: Any, views: tuple[CameraView, ...], info: SceneInfo) -> None:
+    response.poses = [pose_to_msg(view.pose) for view in views]
+    response.ids = [view.target_id for view in views]
 
 
 SIMULATOR_SERVICES: tuple[Service, ...] = (
@@ -269,6 +326,35 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
         read=_read_waypoints,
     ),
     Service(Operations.get_mover_pose, srv.GetMoverPose),
+    # space
+    Service(
+        Operations.free_space,
+        srv.GetFreeSpace,
+        name="get_free_space",
+        fill=lambda response, space, info: free_space_to_response(response, space),
+        result=free_space_from_response,
+    ),
+    Service(
+        Operations.find_path,
+        srv.FindPath,
+        fill=_fill_path,
+        result=lambda response: triples_from_msg(response.positions),
+    ),
+    Service(
+        Operations.random_pose,
+        srv.GetRandomPose,
+        name="get_random_pose",
+        write=_write_random_pose,
+        read=_read_random_pose,
+    ),
+    Service(
+        Operations.cast_rays,
+        srv.CastRays,
+        write=_write_rays,
+        read=_read_rays,
+        fill=lambda response, cast, info: ray_cast_to_response(response, cast),
+        result=ray_cast_from_response,
+    ),
     # saving and models
     Service(Operations.scene_text, srv.GetSceneText, name="get_scene_text", none={"title": ""}),
     Service(Operations.save_scene, srv.SaveScene, none={"title": ""}),
@@ -310,6 +396,17 @@ AGENT_SERVICES: tuple[Service, ...] = (
     ),
     Service(Operations.get_picture, srv.GetPicture),
     Service(Operations.set_picture, srv.SetPicture, write=_write_picture),
+    Service(
+        Operations.sample_cameras,
+        srv.SampleCameras,
+        write=lambda given: {**given, "keep_seed": given["seed"] is None},
+        read=_read_sampling,
+        fill=_fill_views,
+        result=lambda response: tuple(
+            CameraView(pose=pose_from_msg(pose), target_id=target)
+            for pose, target in zip(response.poses, response.ids, strict=True)
+        ),
+    ),
     Service(Operations.capture, srv.Capture, none={"views": []}, fill=_fill_frame),
     Service(
         Operations.get_amodal_masks,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import os
 import threading
 import time
@@ -136,8 +137,19 @@ class Connection:
 
     # -- requests --------------------------------------------------------------------------
 
-    def call(self, srv_type: Any, service: str, request: Any, timeout_s: float) -> Any:
+    def call(
+        self,
+        srv_type: Any,
+        service: str,
+        request: Any,
+        timeout_s: float,
+        resend_s: float = math.inf,
+    ) -> Any:
         """Ask a service of the simulator.
+
+        Discovery can lose a request or its response without a word: the request goes to the
+        service's predecessor of the same name, which has just ended, or the server waits in vain
+        (100 ms in rmw_fastrtps) for the client's reader to be known.
 
         Parameters
         ----------
@@ -147,6 +159,10 @@ class Connection:
         request : message
         timeout_s : float
             Deadline for everything [s].
+        resend_s : float
+            Send the request again when there was no answer for so long [s], then for twice as
+            long, and so on; for requests that do no harm when they are carried out twice. The
+            first answer to any of them is taken.
 
         Returns
         -------
@@ -169,19 +185,33 @@ class Connection:
         what = f"the service {self.namespace}/{service}"
         self.wait_until(client.service_is_ready, what, timeout_s)
         answered = threading.Event()
+        futures: list[Any] = []
+        due = -math.inf
+
+        def met(interval_s: float) -> bool:
+            nonlocal due
+            if time.monotonic() >= due:
+                due = time.monotonic() + resend_s * 2 ** len(futures)
+                futures.append(self._sent(client, service, request))
+                futures[-1].add_done_callback(lambda _: answered.set())
+            return answered.wait(interval_s)
+
         try:
-            future = client.call_async(request)
+            self._wait(met, f"an answer of {what}", deadline, timeout_s)
+        finally:
+            for future in futures:
+                if not future.done():
+                    client.remove_pending_request(future)
+        return next(future.result() for future in futures if future.done())
+
+    def _sent(self, client: Any, service: str, request: Any) -> Any:
+        """Send a request and return the future of its answer."""
+        try:
+            return client.call_async(request)
         except (SystemError, TypeError, OverflowError, UnicodeError) as error:
             # The messages' C code tells a wrong type or size in these ways.
             accepted = "of numbers and texts that the service's fields can hold"
             raise InvalidRequest(f"request to {service}", request, accepted) from error
-        future.add_done_callback(lambda _: answered.set())
-        try:
-            self._wait(answered.wait, f"an answer of {what}", deadline, timeout_s)
-        except DeadlineExceeded:
-            client.remove_pending_request(future)
-            raise
-        return future.result()
 
     def forget_services(self, prefix: str) -> None:
         """Free the clients of the services below that name."""

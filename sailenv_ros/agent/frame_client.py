@@ -41,6 +41,9 @@ QUIET_S = 1.0
 Our transport profiles repair a loss in some 30 ms, but a user's own may take 3 s for it.
 """
 
+RESEND_S = 2.0
+"""A capture by service that is unanswered for so long is asked for once more [s]."""
+
 
 class FrameClient:
     """Frames of one agent.
@@ -157,7 +160,9 @@ class FrameClient:
         self._topics.clear()
         request = Capture.Request(views=list(views))
         service = f"{self._spec.name}/capture"
-        response = self._remote.connection.call(Capture, service, request, _left_s(deadline))
+        response = self._remote.connection.call(
+            Capture, service, request, _left_s(deadline), RESEND_S
+        )
         if not response.success:
             raise error_from_response(response)
         bundle = self._topics.take(response.sequence, _left_s(deadline), QUIET_S)

@@ -11,7 +11,8 @@ from typing import Protocol
 
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import NameTaken, UnknownName
-from sailenv_ros.model import Asset
+from sailenv_ros.labels import PART_MARK
+from sailenv_ros.model import Asset, Model
 
 __all__ = ["AssetLibrary", "AssetSource"]
 
@@ -119,6 +120,28 @@ class AssetLibrary:
         with self._lock:
             loaded = self._loaded.get(name)
         return loaded or self._source_of[name].load(name)
+
+    def drawn_model(self, name: str) -> Model:
+        """Return what is drawn of an instance by its ``asset``; keeps none that was not in use.
+
+        Parameters
+        ----------
+        name : str
+            Of an asset, whose parts are left out then, or of a part: ``bed_02/left pillow``.
+
+        Raises
+        ------
+        UnknownName, AssetError
+            As `get`, also if the asset has no such part.
+        """
+        whole, mark, wanted = name.partition(PART_MARK)
+        asset = self.peek(whole)
+        if not mark:
+            return asset.body_model
+        for part in asset.parts:
+            if part.name == wanted:
+                return asset.part_model(part)
+        raise UnknownName(f"part of {whole!r}", wanted, [part.name for part in asset.parts])
 
     def source(self, name: str) -> AssetSource:
         """Return what an asset comes from, by its catalogue or display name.

@@ -20,7 +20,10 @@ from sailenv_ros.assets.meshes import smooth_mesh
 from sailenv_ros.assets.model_files import read_parts
 from sailenv_ros.model import ConvexShape, Material, Mesh, ModelPart, Texture
 
-__all__ = ["glb_bytes", "read_glb"]
+__all__ = ["DRAWN", "glb_bytes", "read_glb"]
+
+DRAWN = "part_"
+"""Begins the names that `glb_bytes` gives meshes; their places in the model follow."""
 
 COLLISION = "collision_"
 JPEG_QUALITY = 92
@@ -49,7 +52,8 @@ def read_glb(path: Path) -> tuple[tuple[ModelPart, ...], tuple[ConvexShape, ...]
             hulls.append((_number(raw.name), ConvexShape(points=raw.mesh.positions)))
         else:
             material = materials.setdefault(id(raw.material), raw.material)
-            parts.append(ModelPart(mesh=smooth_mesh(raw.mesh), material=material))
+            names = tuple(dict.fromkeys((raw.name, raw.node)))
+            parts.append(ModelPart(mesh=smooth_mesh(raw.mesh), material=material, names=names))
     return tuple(parts), tuple(hull for _, hull in sorted(hulls, key=lambda entry: entry[0]))
 
 
@@ -57,7 +61,7 @@ def glb_bytes(parts: Sequence[ModelPart], hulls: Sequence[ConvexShape]) -> bytes
     """Return the bytes of a binary glTF file; the same model gives the same bytes."""
     scene = trimesh.Scene()
     for number, part in enumerate(parts):
-        _add(scene, f"part_{number}", _drawn(part))
+        _add(scene, f"{DRAWN}{number}", _drawn(part))
     for number, hull in enumerate(hulls):
         solid = trimesh.convex.convex_hull(hull.points @ _FILE_FROM_BODY.T)
         solid.visual = trimesh.visual.ColorVisuals()

@@ -6,6 +6,7 @@ front towards +z, as glTF prescribes and furniture catalogues do. Knows no pack.
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import warnings
 from collections.abc import Iterator
@@ -46,12 +47,15 @@ class RawPart:
     material : Material
     textured : bool
         True if the file gives texture coordinates.
+    node : str
+        Name of the node that places it; empty where there is none.
     """
 
     name: str
     mesh: RawMesh
     material: Material
     textured: bool
+    node: str = ""
 
 
 def read_parts(path: Path) -> tuple[RawPart, ...]:
@@ -82,7 +86,8 @@ def _parts(scene: trimesh.Scene) -> Iterator[RawPart]:
         file_from_part, geometry = scene.graph[node]
         mesh = scene.geometry[geometry]
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
-            yield _part(str(geometry), mesh, np.asarray(file_from_part, dtype=np.float64))
+            pose = np.asarray(file_from_part, dtype=np.float64)
+            yield dataclasses.replace(_part(str(geometry), mesh, pose), node=str(node))
 
 
 def texture_of(picture: Image.Image | None) -> Texture | None:

@@ -65,6 +65,7 @@ def add_to_own_pack(
             mass=asset.mass_kg,
             collision="hulls",
             tags=asset.tags,
+            labelled=asset.parts,
             author=author,
             licence=licence,
             source=source,

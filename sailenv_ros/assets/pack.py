@@ -5,14 +5,15 @@ A folder in, `Asset`s out; a source of the `AssetLibrary`. Writing lies in `pack
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import fnmatch
+from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Literal
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from sailenv_ros.assets.checksums import file_checksum
 from sailenv_ros.assets.folders import own_pack_folder, standard_pack_folder
@@ -20,16 +21,18 @@ from sailenv_ros.assets.glb import read_glb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.model import (
     Asset,
+    AssetPart,
     BoxShape,
     CollisionShape,
     ConvexShape,
     CylinderShape,
     Model,
+    ModelPart,
     SphereShape,
 )
 from sailenv_ros.scene.spec import CategorySpec
 
-__all__ = ["BUILD_COMMAND", "PACK_FILE", "AssetPack", "PackContent", "PackEntry"]
+__all__ = ["BUILD_COMMAND", "PACK_FILE", "AssetPack", "PackContent", "PackEntry", "PackPart"]
 
 PACK_FILE = "pack.yaml"
 
@@ -39,6 +42,8 @@ AssetName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,62}$")]
 Text = Annotated[str, Field(max_length=300)]
 Checksum = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 FilePath = Annotated[str, Field(pattern=r"^[^/\x00-\x1f][^\x00-\x1f]{0,299}$")]
+PartName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]{0,39}$")]
+Pattern = Annotated[str, Field(min_length=1, max_length=100)]
 KeypointName = Annotated[str, Field(pattern=r"^[^\x00-\x1f]{1,63}$")]
 Coordinate = Annotated[float, Field(ge=-100.0, le=100.0)]
 Metres = Annotated[float, Field(gt=0.0, le=100.0)]
@@ -46,6 +51,32 @@ Metres = Annotated[float, Field(gt=0.0, le=100.0)]
 
 class _PackModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PackPart(_PackModel):
+    """Meshes of a model that are an object of their own in labels, with the body as its parent.
+
+    Attributes
+    ----------
+    category : str
+    meshes, materials : tuple of str
+        Names, or patterns with ``*`` and ``?``: a mesh belongs to the part if its name, its node's
+        or its material's fits one.
+    """
+
+    category: Annotated[str, Field(min_length=1, max_length=63)]
+    meshes: Annotated[tuple[Pattern, ...], Field(max_length=256)] = ()
+    materials: Annotated[tuple[Pattern, ...], Field(max_length=256)] = ()
+
+    @model_validator(mode="after")
+    def _names_something(self) -> PackPart:
+        if not self.meshes and not self.materials:
+            raise ValueError("a part needs meshes or materials")
+        return self
+
+    def takes(self, mesh: ModelPart) -> bool:
+        """Return whether a mesh belongs to it."""
+        return _fits(mesh.names, self.meshes) or _fits((mesh.material.name,), self.materials)
 
 
 class PackEntry(_PackModel):
@@ -56,6 +87,8 @@ class PackEntry(_PackModel):
     name, display_name, category : str
     keypoints : mapping of str to (3,) tuple of float
         Named points in the body frame [m]: ``{left front foot: [0.2, 0.2, 0.0]}``.
+    parts : mapping of str to PackPart
+        What of it is labelled apart: ``{left pillow: {category: pillow, meshes: [pillow_l*]}}``.
     file : str
         Of the model, in the pack's folder.
     sha256 : str
@@ -82,6 +115,7 @@ class PackEntry(_PackModel):
     keypoints: dict[KeypointName, tuple[Coordinate, Coordinate, Coordinate]] = Field(
         default_factory=dict, max_length=256
     )
+    parts: dict[PartName, PackPart] = Field(default_factory=dict, max_length=256)
     author: Text = ""
     licence: Text = ""
     source: Text = ""
@@ -177,6 +211,7 @@ class AssetPack:
             centre_of_mass_m=(x, y, z),
             tags=entry.tags,
             keypoints=tuple(entry.keypoints.items()),
+            parts=_labelled(entry, parts),
         )
 
     def check_file(self, path: Path) -> None:
@@ -224,6 +259,21 @@ class AssetPack:
         if self.folder == own_pack_folder():
             return f"add it anew with: sailenv assets add FILE --name {name} --category CATEGORY"
         return "install the pack anew"
+
+
+def _labelled(entry: PackEntry, meshes: Sequence[ModelPart]) -> tuple[AssetPart, ...]:
+    """Find the meshes of each part."""
+    made = []
+    for name, part in entry.parts.items():
+        taken = tuple(place for place, mesh in enumerate(meshes) if part.takes(mesh))
+        if not taken:
+            raise AssetError(entry.name, f"no mesh of {entry.file} is of its part {name!r}")
+        made.append(AssetPart(name=name, category=part.category, meshes=taken))
+    return tuple(made)
+
+
+def _fits(names: Sequence[str], patterns: Sequence[str]) -> bool:
+    return any(fnmatch.fnmatchcase(name, pattern) for name in names for pattern in patterns)
 
 
 def _read(path: Path) -> PackContent:

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from sailenv_ros.assets.glb import body_bounds, glb_bytes, triangle_count
-from sailenv_ros.assets.pack import PACK_FILE, PackContent, PackEntry
-from sailenv_ros.model import ConvexShape, ModelPart
+from sailenv_ros.assets.glb import DRAWN, body_bounds, glb_bytes, triangle_count
+from sailenv_ros.assets.pack import PACK_FILE, PackContent, PackEntry, PackPart
+from sailenv_ros.model import AssetPart, ConvexShape, ModelPart
 from sailenv_ros.system.files import write_file
 
 __all__ = ["packed", "write_content"]
@@ -28,6 +28,7 @@ def packed(
     mass: float,
     collision: str,
     tags: Sequence[str] = (),
+    labelled: Sequence[AssetPart] = (),
     author: str = "",
     licence: str = "",
     source: str = "",
@@ -37,6 +38,8 @@ def packed(
 
     Parameters
     ----------
+    labelled : sequence of AssetPart
+        What of it is labelled apart.
     unique_file : bool
         True puts the checksum into the file's name, so that the file of an entry of before stays
         as it is until `pack.yaml` names the new one.
@@ -63,6 +66,12 @@ def packed(
         collision=collision,  # type: ignore[arg-type]
         triangles=triangle_count(parts),
         tags=tuple(tags),
+        parts={
+            part.name: PackPart(
+                category=part.category, meshes=tuple(f"{DRAWN}{place}" for place in part.meshes)
+            )
+            for part in labelled
+        },
         author=author,
         licence=licence,
         source=source,

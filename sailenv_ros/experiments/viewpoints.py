@@ -10,24 +10,18 @@ import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.experiments.viewpoint_targets import (
-    Rule,
-    Target,
-    between_deg,
-    boxes_of,
-    cameras,
-    stands_in_something,
-    targets_of,
-)
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.viewpoints.object_targets import Rule, Target, boxes_of, targets_of
+from sailenv_ros.viewpoints.object_view import SeenTarget, views_in_turn
 
 __all__ = ["ROOMS", "Rule", "Stage", "Viewpoint", "rule_as_data"]
 
@@ -36,6 +30,9 @@ SETTLE_STEPS = 480
 """Physics steps after which everything has come to rest: 2 s."""
 
 VERTICAL_FOV_DEG = 50.0
+
+Measured: TypeAlias = tuple[float, float, NDArray[np.uint16]]
+"""Cover, visible share, the instance view."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -157,13 +154,13 @@ class Stage:
         name = int.from_bytes(category.encode(), "little") % 2**63
         random = np.random.default_rng((rule.seed, name))
         chosen: list[Viewpoint] = []
-        for number in range(rule.viewpoints):
-            # One after another; who has no viewpoint left passes the turn on.
-            for target in (*targets[number % max(1, len(targets)) :], *targets)[: len(targets)]:
-                viewpoint = self._viewpoint_of(target, chosen, rule, random)
-                if viewpoint is not None:
-                    chosen.append(viewpoint)
-                    break
+
+        def measure(target: Target, camera: Camera) -> Measured | None:
+            return self._measured(target, camera, rule)
+
+        for view in views_in_turn(targets, rule, self._lens, random, measure):
+            if view is not None:
+                chosen.append(self._pictured(view))
             on_viewpoint()
         return chosen
 
@@ -174,34 +171,7 @@ class Stage:
             for target in targets_of(room, snapshot, self._boxes[room], category)
         ]
 
-    def _viewpoint_of(
-        self,
-        target: Target,
-        taken: Sequence[Viewpoint],
-        rule: Rule,
-        random: np.random.Generator,
-    ) -> Viewpoint | None:
-        used = [
-            viewpoint.azimuth_deg
-            for viewpoint in taken
-            if (viewpoint.room, viewpoint.name) == (target.room, target.drawn.instance.name)
-        ]
-        for azimuth_deg, camera, distance_m in cameras(target, rule, self._lens, random):
-            if stands_in_something(target, np.asarray(camera.pose.position_m)):
-                continue
-            if any(between_deg(azimuth_deg, other) < rule.apart_deg for other in used):
-                continue
-            found = self._measured(target, camera, rule)
-            if found is not None:
-                cover, visible, instance = found
-                return self._pictured(
-                    target, camera, instance, (azimuth_deg, distance_m, cover, visible)
-                )
-        return None
-
-    def _measured(
-        self, target: Target, camera: Camera, rule: Rule
-    ) -> tuple[float, float, NDArray[np.uint16]] | None:
+    def _measured(self, target: Target, camera: Camera, rule: Rule) -> Measured | None:
         """Return cover, visible share and the instance view if they meet the rule."""
         views = self._renderer.render(target.snapshot, None, camera, ("instance",)).views
         number = target.drawn.instance.id
@@ -214,14 +184,9 @@ class Stage:
         visible = pixels / max(1, int((alone["instance"] == number).sum()))
         return None if visible < rule.visible else (cover, visible, views["instance"])
 
-    def _pictured(
-        self,
-        target: Target,
-        camera: Camera,
-        instance: NDArray[np.uint16],
-        place: tuple[float, float, float, float],
-    ) -> Viewpoint:
-        azimuth_deg, distance_m, cover, visible = place
+    def _pictured(self, view: SeenTarget) -> Viewpoint:
+        target, camera = view.target, view.camera
+        cover, visible, instance = view.measured
         picture = self._renderer.render(target.snapshot, None, camera, ("rgb",)).views["rgb"]
         contents = target.snapshot.contents
         shown = target.drawn.instance
@@ -233,8 +198,8 @@ class Stage:
             target=instance == shown.id,
             of_category=contents.category_of_instance[instance] == shown.category_id,
             eye_m=camera.pose.position_m,
-            azimuth_deg=azimuth_deg,
-            distance_m=distance_m,
+            azimuth_deg=view.azimuth_deg,
+            distance_m=view.distance_m,
             cover=cover,
             visible=visible,
         )

@@ -23,6 +23,7 @@ from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree
 from sailenv_ros.render.kernels import build_tree, cast_rays
 from sailenv_ros.snapshot import SceneContents
+from sailenv_ros.space import RayCast
 
 __all__ = ["SceneGeometry", "SurfaceHits"]
 
@@ -102,7 +103,53 @@ class SceneGeometry:
         InvalidRequest
             If there is an instance whose model is not known.
         """
+        hits = self._met(self._placed(states), origins, directions)
+        ids = np.append(states.ids, 0).astype(np.int64)
+        return SurfaceHits(distance=hits.distance, instance=ids[hits.instance])
+
+    def cast_surfaces(
+        self, states: InstanceStates, origins: Doubles, directions: Doubles
+    ) -> RayCast:
+        """Find what rays meet first at one instant, where, and how it is turned there.
+
+        Parameters
+        ----------
+        states : InstanceStates
+            Where the instances are.
+        origins, directions : (R, 3) float64
+            In the world [m]; directions of any length but 0.
+
+        Raises
+        ------
+        InvalidRequest
+            If there is an instance whose model is not known.
+        """
         placed = self._placed(states)
+        hits = self._met(placed, origins, directions)
+        met = hits.instance >= 0
+        normals = np.zeros((len(hits.distance), 3))
+        # An instance's own axes to the world's: normals take the transpose of the way back.
+        corners = self._ray_models.corners[hits.triangle[met]]
+        own = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        turned = np.einsum("nji,nj->ni", placed[0][hits.instance[met], :, :3], own)
+        normals[met] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
+        away = np.einsum("ni,ni->n", normals, directions) > 0.0
+        normals[away] *= -1.0
+        with np.errstate(invalid="ignore"):
+            points = np.where(met[:, None], origins + hits.distance[:, None] * directions, np.nan)
+        return RayCast(
+            instance_ids=np.append(states.ids, 0).astype(np.uint16)[hits.instance],
+            distances_m=hits.distance * np.linalg.norm(directions, axis=1),
+            points_m=points,
+            normals=normals,
+        )
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _met(
+        self, placed: tuple[Doubles, NDArray[np.int32]], origins: Doubles, directions: Doubles
+    ) -> RayHits:
+        """Return what rays meet first, holes passed; -1 is no instance."""
         models, threads = self._ray_models, thread_count()
         origins, directions = (
             np.ascontiguousarray(array, np.float64).reshape(-1, 3)
@@ -121,10 +168,7 @@ class SceneGeometry:
             )
             hits.distance[open_], hits.weights[open_] = again.distance, again.weights
             hits.instance[open_], hits.triangle[open_] = again.instance, again.triangle
-        ids = np.append(states.ids, 0).astype(np.int64)
-        return SurfaceHits(distance=hits.distance, instance=ids[hits.instance])
-
-    # -- inside ----------------------------------------------------------------------------
+        return hits
 
     def _placed(self, states: InstanceStates) -> tuple[Doubles, NDArray[np.int32]]:
         """Return model_from_world and the models' numbers."""

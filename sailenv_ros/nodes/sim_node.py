@@ -32,6 +32,7 @@ from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.capture_server import CaptureServer
 from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
+from sailenv_ros.nodes.free_space_topic import FreeSpaceTopic
 from sailenv_ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
 from sailenv_ros.nodes.lifecycle import StopRequest, stop_at_end_of
 from sailenv_ros.nodes.live_parameters import LiveParameters
@@ -92,6 +93,7 @@ class SimNode:
         self._announcements = Announcements(
             node, publish_clock=publish_clock, on_info=self._scene_changed
         )
+        self._stop_maps = simulation.on_free_space(FreeSpaceTopic(node).publish)
         self._leases = AgentLeases(node, runner)
         self._services = SimulatorServices(
             node, runner, self._reconcile, before_registration=self._forget_ended_clients
@@ -125,6 +127,7 @@ class SimNode:
         self._capture_server.close()
         self._spinning.stop(0.5)
         self._announcements.end()
+        self._stop_maps()
         self._endpoints.close()
         return self._hosted.close_simulation(timeout_s)
 

@@ -17,6 +17,7 @@ from sailenv_ros.operations.object_operations import ObjectOperations
 from sailenv_ros.operations.operation import Operation
 from sailenv_ros.operations.saving_operations import SavingOperations
 from sailenv_ros.operations.scene_tables import SceneTables
+from sailenv_ros.operations.space_operations import SpaceOperations
 
 __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 
@@ -27,6 +28,7 @@ class WorldOperations(
     LightOperations,
     EnvironmentOperations,
     MoverOperations,
+    SpaceOperations,
     SavingOperations,
     ClockOperations,
 ):

@@ -23,7 +23,7 @@ from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
 from sailenv_ros.scene.traversal import Entry, entries
 from sailenv_ros.scene.yaml_nodes import Loc
 
-__all__ = ["Diagnostic", "diagnose"]
+__all__ = ["Diagnostic", "diagnose", "model_diagnostics"]
 
 
 Models: TypeAlias = Mapping[Loc, type[SceneModel]]
@@ -62,18 +62,35 @@ def diagnose(
     knowledge : SceneKnowledge or None
         Names are not checked without it.
     """
-    found = list(entries(SceneSpec, data))
+    yield from model_diagnostics(SceneSpec, data, error)
+    if knowledge is not None:
+        yield from _unknown_names(data, list(entries(SceneSpec, data)), knowledge)
+
+
+def model_diagnostics(
+    model: type[SceneModel], data: Mapping[str, Any], error: ValidationError | None
+) -> Iterator[Diagnostic]:
+    """Yield what is wrong by a model alone: values, unknown and missing keys, broken rules.
+
+    Parameters
+    ----------
+    model : type of SceneModel
+        Of the whole.
+    data : mapping
+        Plain data.
+    error : ValidationError or None
+        What pydantic found wrong with it.
+    """
+    found = list(entries(model, data))
     if error is not None:
-        models = {loc: model for loc, model, _ in found}
+        models = {loc: part for loc, part, _ in found}
         for details in error.errors(include_url=False):
             if details["type"] != BROKEN_RULE:
                 yield _translated(details, data, models)
-    for loc, model, entry in found:
-        for rule in model.rules:
+    for loc, part, entry in found:
+        for rule in part.rules:
             for place, sentence in rule(entry):
                 yield Diagnostic((*loc, *place), sentence)
-    if knowledge is not None:
-        yield from _unknown_names(data, found, knowledge)
 
 
 def _unknown_names(

@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
+from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import Frame, checked_views
@@ -28,11 +28,14 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.present_scene import PresentScene
 from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.space_queries import SpaceQueries
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.space import FreeSpace
 from sailenv_ros.world.world import World
 
 __all__ = ["SimulationCore"]
@@ -74,6 +77,9 @@ class SimulationCore(WorldOperations):
         What a scenario added to the scene's own objects.
     editor : SceneEditor
     scene_writer : SceneWriter
+    space : SpaceQueries
+    on_free_space : callable
+        Told each `FreeSpace` that somebody asked for.
     on_info, on_step : callable
         Told each new `SceneInfo`, and the simulated time [ns] after physics advanced.
     run_later : callable
@@ -103,6 +109,8 @@ class SimulationCore(WorldOperations):
         self.more_objects: Entries = ()
         self.editor = SceneEditor(self)
         self.scene_writer = SceneWriter(self)
+        self.space = SpaceQueries(lambda: self.world)
+        self.on_free_space: Callable[[FreeSpace], None] = lambda space: None
         self.on_info: Callable[[SceneInfo], None] = lambda info: None
         self.on_step: Callable[[int], None] = lambda sim_time_ns: None
         self.run_later: Callable[[Callable[[], AmodalMasks]], AmodalMasks] = lambda draw: draw()
@@ -291,6 +299,15 @@ class SimulationCore(WorldOperations):
                 lambda: self.draw_alone(snapshot, camera, only)
             ),
         )
+
+    def look(self, camera: Camera, view: str) -> NDArray[Any]:
+        """Render one view of the scene as it stands now, through a camera that is no agent's."""
+        rendered = self._renderer.render(self.world.snapshot(), None, camera, (view,))
+        return rendered.views[view]
+
+    def view_scene(self, lens: CameraIntrinsics) -> PresentScene:
+        """Return the scene as it stands now, for rules of cameras."""
+        return PresentScene(self, lens)
 
     def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.

@@ -154,7 +154,7 @@ class SceneEditor:
         viewer = next((agent.name for agent in self._core.agents.specs), "")
         more = scenario_entries(wanted, viewer=viewer)
         self._core.begin(scene, self._core.seed, as_registered=False, more=more)
-        ids = [drawn.instance.id for drawn in self._core.world.contents.instances]
+        ids = list(self._core.world.bodies_by_id)
         return tuple(ids[len(ids) - len(more) :])
 
     # -- inside ----------------------------------------------------------------------------

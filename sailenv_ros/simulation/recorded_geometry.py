@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import count
 
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.labels import PART_MARK
 from sailenv_ros.model import Model
 from sailenv_ros.motion.scene_geometry import SceneGeometry
 from sailenv_ros.scene_info import SceneInfo
@@ -39,15 +40,22 @@ def recorded_geometry(info: SceneInfo, library: SceneLibrary | None = None) -> S
     world = library.build(info.scene, 0, 1, lambda: next(numbers))
     try:
         own = {drawn.instance.name: drawn for drawn in world.contents.instances}
+        bodies = {body.placement.name: body.placement.asset for body in world.bodies}
     finally:
         world.close()
+    # Before parts were told apart, recordings knew whole objects alone.
+    divided = {instance.parent for instance in info.instances if instance.is_part}
     models: dict[int, Model] = {}
     for instance in info.instances:
         drawn = own.get(instance.name)
         if drawn is not None and drawn.instance.asset == instance.asset:
-            models[instance.id] = drawn.model
-        elif instance.asset in library.spawnables:
-            models[instance.id] = library.peek_asset(instance.asset).model
+            whole = not instance.is_part and instance.id not in divided
+            models[instance.id] = bodies[instance.name].model if whole else drawn.model
+        elif instance.asset.partition(PART_MARK)[0] in library.spawnables:
+            if instance.is_part or instance.id in divided:
+                models[instance.id] = library.drawn_model(instance.asset)
+            else:
+                models[instance.id] = library.peek_asset(instance.asset).model
         else:
             raise UnknownName("asset", instance.asset, library.spawnables)
     return SceneGeometry(models)

@@ -92,13 +92,12 @@ class RoomOperations(Caller):
         """Tell the room and its objects as they lie in a plan now."""
         assert core.world.described is not None
         room = core.world.described.room
-        listed = zip(core.world.contents.instances, core.world.bodies, strict=True)
         return FloorPlan(
             size_m=None if room is None else room.size,
             openings=() if room is None else room.openings,
             objects=tuple(
-                PlanObject(id=drawn.instance.id, name=drawn.instance.name, corners_m=_corners(body))
-                for drawn, body in listed
+                PlanObject(id=id_, name=body.placement.name, corners_m=_corners(body))
+                for id_, body in core.world.bodies_by_id.items()
                 if body.placement.entry is not None
             ),
         )
@@ -141,11 +140,11 @@ class RoomOperations(Caller):
         if world.missing_parts:
             before = _checked(core, present)
         replaced = tuple(
-            record_of(core, drawn.instance.id)
-            for drawn, body in zip(world.contents.instances, world.bodies, strict=True)
+            record_of(core, id_)
+            for id_, body in world.bodies_by_id.items()
             if body.placement.entry is not None
             and body.placement.static
-            and drawn.instance.name in parts
+            and body.placement.name in parts
         )
         records = RoomRecord(room=before, objects=replaced), RoomRecord(room=room)
         _exchange(core, *records)
@@ -169,9 +168,9 @@ def _exchange(core: SimulationCore, present: RoomRecord, wanted: RoomRecord) -> 
     assert world.described is not None
     going = [world.find(record.name) for record in present.objects]
     staying = {
-        drawn.instance.name
-        for drawn, body in zip(world.contents.instances, world.bodies, strict=True)
-        if body.placement.entry is not None and drawn.instance.id not in going
+        body.placement.name
+        for id_, body in world.bodies_by_id.items()
+        if body.placement.entry is not None and id_ not in going
     }
     for record in wanted.objects:
         if record.name in staying:

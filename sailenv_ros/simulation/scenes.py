@@ -30,7 +30,7 @@ from sailenv_ros.behaviours import (
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.lights import Environment, Light
-from sailenv_ros.model import Asset
+from sailenv_ros.model import Asset, Model
 from sailenv_ros.scene.entries import checked_object, checked_objects, checked_scene, free_name
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.scene_catalogue import SceneCatalogue
@@ -231,6 +231,10 @@ class SceneLibrary:
     def peek_asset(self, name: str) -> Asset:
         """Return an asset without keeping one that no world needs; see `AssetLibrary.get`."""
         return self._assets.peek(name)
+
+    def drawn_model(self, asset: str) -> Model:
+        """Return what is drawn of an instance; see `AssetLibrary.drawn_model`."""
+        return self._assets.drawn_model(asset)
 
     def add_upload(self, asset: Asset, *, rename: bool) -> str:
         """Add a user's asset to the catalogue; return its name there.

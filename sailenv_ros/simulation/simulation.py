@@ -34,6 +34,7 @@ from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.snapshot import SceneContents
+from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.world.world import World
 
@@ -118,6 +119,7 @@ class Simulation(Operations):
         self._sim_time_ns = 0
         self._info_listeners: list[Callable[[SceneInfo], None]] = []
         self._step_listeners: list[Callable[[int], None]] = []
+        self._map_listeners: list[Callable[[FreeSpace], None]] = []
         self.background_task = ""
         self._pacer = Pacer(real_time_factor)
         self._workers = ModelWorkers(
@@ -289,6 +291,11 @@ class Simulation(Operations):
         self._step_listeners.append(listener)
         return lambda: _discard(self._step_listeners, listener)
 
+    def on_free_space(self, listener: Callable[[FreeSpace], None]) -> Callable[[], None]:
+        """Have a quick function called with each map that `free_space` makes."""
+        self._map_listeners.append(listener)
+        return lambda: _discard(self._map_listeners, listener)
+
     def refresh(self) -> Future[None]:
         """Begin to take up furniture and baked light that were built since the start."""
         return self._submit(lambda core: core.refresh())
@@ -326,6 +333,7 @@ class Simulation(Operations):
             return
         self._core = core
         core.on_info, core.on_step = self._take_info, self._take_step
+        core.on_free_space = self._take_map
         core.run_later = self._run_in_loop
         self._take_info(core.info)
         why = "it was closed"
@@ -398,6 +406,10 @@ class Simulation(Operations):
         self._sim_time_ns = sim_time_ns
         for listener in tuple(self._step_listeners):
             listener(sim_time_ns)
+
+    def _take_map(self, space: FreeSpace) -> None:
+        for listener in tuple(self._map_listeners):
+            listener(space)
 
     def _submit(self, call: Callable[[SimulationCore], T]) -> Future[T]:
         future: Future[T] = Future()

@@ -73,9 +73,16 @@ class FrameMessages:
             ],
         }
         if "instance" in self.frame.views:
-            head["outline"] = outline(self.frame["instance"], selected) if selected else []
+            head["outline"] = self._outline(selected) if selected else []
         text = f"{_json(head)[:-1]},{self._about[1:]}"
         return _packed(text, (data for _, data in pictures))
+
+    def _outline(self, selected: int) -> list[list[int]]:
+        """Return the lines around an instance and the parts of its model."""
+        own, info = [selected], self.frame.info
+        if info is not None:
+            own += [one.id for one in info.instances if one.is_part and one.parent == selected]
+        return outline(np.isin(self.frame["instance"], own).astype(np.uint16), 1)
 
     def _picture(self, view: str) -> tuple[str, bytes]:
         if view not in self._pictures:

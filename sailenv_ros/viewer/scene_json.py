@@ -60,6 +60,8 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
                 "category": instance.category,
                 "static": instance.static,
                 "moves": instance.id in info.moving,
+                "parent": instance.parent,
+                "is_part": instance.is_part,
             }
             for instance in info.instances
         ],

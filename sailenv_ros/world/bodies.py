@@ -17,6 +17,7 @@ from sailenv_ros.behaviours import BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, InvalidState, PhysicsError
 from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
+from sailenv_ros.model import Model
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
@@ -148,10 +149,19 @@ class Body:
             vx, vy, vz = vx - (wy * z - wz * y), vy - (wz * x - wx * z), vz - (wx * y - wy * x)
         return (vx, vy, vz), (wx, wy, wz)
 
-    def state(self, instance: Instance, sim_time_ns: int) -> ObjectState:
-        """Return all that clients may know of it now."""
+    def state(self, instance: Instance, sim_time_ns: int, model: Model) -> ObjectState:
+        """Return all that clients may know now of it, or of the part that is such an instance.
+
+        Parameters
+        ----------
+        instance : Instance
+        sim_time_ns : int
+            Now [ns].
+        model : Model
+            What it looks like, with all its parts: for its size.
+        """
         placement = self.placement
-        low, high = placement.asset.model.bounds()
+        low, high = model.bounds()
         linear, angular = self.velocity()
         return ObjectState(
             id=instance.id,

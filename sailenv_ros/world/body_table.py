@@ -6,30 +6,59 @@ Knows neither time nor lights: what is changed here, `World` tells.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, UnknownName
 from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import MAX_INSTANCE_ID
+from sailenv_ros.labels import MAX_INSTANCE_ID, PART_MARK
+from sailenv_ros.model import AssetPart
 from sailenv_ros.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.placement import Placement
 
-__all__ = ["BodyTable"]
+__all__ = ["BodyTable", "LabelledPiece"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LabelledPiece:
+    """What one instance id stands for: a body without its parts, or one part of it.
+
+    Attributes
+    ----------
+    id : int
+    body_id : int
+        Of the body; the same as `id` unless this is a part.
+    body : Body
+    part : AssetPart or None
+        None for the body.
+    """
+
+    id: int
+    body_id: int
+    body: Body
+    part: AssetPart | None
+
+    @property
+    def name(self) -> str:
+        """Its name in the scene."""
+        name = self.body.placement.name
+        return name if self.part is None else f"{name}{PART_MARK}{self.part.name}"
 
 
 class BodyTable:
-    """The bodies that there are, in the order of their ids.
+    """The bodies that there are, in the order of their ids, and the labelled parts of each.
 
     Parameters
     ----------
     client : BulletClient
         The engine that they live in.
     placements : iterable of Placement
-        What is there from the start; get the ids 1, 2, 3 … in this order.
+        What is there from the start; get the ids 1, 2, 3 … in this order. Parts of their models
+        get the ids that follow.
     """
 
     def __init__(
@@ -39,11 +68,15 @@ class BodyTable:
     ) -> None:
         self._client = client
         self._bodies: dict[int, Body] = {}
+        self._parts: dict[int, tuple[int, ...]] = {}
+        self._pieces: tuple[LabelledPiece, ...] | None = None
         self._histories: dict[int, int] = {}
         self._last_id = 0
         self._last_history = 0
         for placement in placements:
-            self.add(placement)
+            self._add_body(placement)
+        for body_id in self._bodies:
+            self._number_parts(body_id)
         self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
         self._room_parts = frozenset(
             body.placement.name for body in self if body.placement.entry is None
@@ -53,23 +86,64 @@ class BodyTable:
         return iter(self._bodies.values())
 
     def __getitem__(self, instance_id: int) -> Body:
-        """Find the body of an instance.
+        """Find the body of an object.
+
+        Raises
+        ------
+        InvalidRequest
+            If no object has that id now, also if a part of one has it.
+        """
+        if instance_id not in self._bodies:
+            for piece in self.pieces:
+                if piece.id == instance_id:
+                    whole = piece.body.placement.name
+                    accepted = (
+                        f"an object of its own; this goes with {whole!r}, of which it is a part"
+                    )
+                    raise InvalidRequest("object", piece.name, accepted)
+            raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
+        return self._bodies[instance_id]
+
+    def piece(self, instance_id: int) -> LabelledPiece:
+        """Find what an instance id stands for.
 
         Raises
         ------
         InvalidRequest
             If no instance has that id now.
         """
-        if instance_id not in self._bodies:
-            raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
-        return self._bodies[instance_id]
+        for piece in self.pieces:
+            if piece.id == instance_id:
+                return piece
+        raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
 
     def items(self) -> Iterable[tuple[int, Body]]:
         """Return ids and bodies."""
         return self._bodies.items()
 
+    @property
+    def pieces(self) -> tuple[LabelledPiece, ...]:
+        """Bodies and parts, in the order of their ids: a row of labels for each."""
+        if self._pieces is None:
+            made = [
+                LabelledPiece(id_, body_id, body, part)
+                for body_id, body in self._bodies.items()
+                for id_, part in (
+                    (body_id, None),
+                    *zip(self._parts[body_id], body.placement.asset.parts, strict=True),
+                )
+            ]
+            self._pieces = tuple(sorted(made, key=lambda piece: piece.id))
+        return self._pieces
+
+    def ids_of(self, body_id: int) -> tuple[int, ...]:
+        """Return the ids of a body and its parts."""
+        return (body_id, *self._parts[body_id])
+
     def find(self, obj: int | str) -> int:
-        """Return the instance id of an object that is named by its id, also as a text, or its name.
+        """Return the instance id of what is named by its id, also as a text, or its name.
+
+        Parts are found too, as ``bed/left pillow``.
 
         Raises
         ------
@@ -77,14 +151,13 @@ class BodyTable:
             If there is no such object now.
         """
         if is_integer(obj):
-            self[int(obj)]
-            return int(obj)
+            return self.piece(int(obj)).id
         if not isinstance(obj, str):
             raise InvalidRequest("object", obj, "an instance id, or the name of an object")
-        ids = {body.placement.name: id_ for id_, body in self._bodies.items()}
+        ids = {piece.name: piece.id for piece in self.pieces}
         if obj in ids:
             return ids[obj]
-        if obj.isdecimal() and int(obj) in self._bodies:
+        if obj.isdecimal() and int(obj) in ids.values():
             return int(obj)  # scripts of the SAILenv client hold ids as texts
         raise UnknownName("object", obj, ids)
 
@@ -104,54 +177,55 @@ class BodyTable:
         return self._room_parts.difference(body.placement.name for body in self)
 
     def world_from_body(self) -> NDArray[np.float64]:
-        """Return the (N, 4, 4) poses now."""
-        rows = [body.world_from_body() for body in self]
+        """Return the (N, 4, 4) poses now, a row for each of `pieces`."""
+        poses = {body_id: body.world_from_body() for body_id, body in self._bodies.items()}
+        rows = [poses[piece.body_id] for piece in self.pieces]
         return np.stack(rows) if rows else np.zeros((0, 4, 4))
 
     def states(self, world_from_body: NDArray[np.float64]) -> InstanceStates:
-        """Return where the bodies are and how they move, at poses (N, 4, 4) that were just read."""
-        quats = [body.orientation_of_matrix() for body in self]
+        """Return where all pieces are and how they move, at poses (N, 4, 4) that were just read."""
+        quats = [piece.body.orientation_of_matrix() for piece in self.pieces]
         moving = [
-            body.origin_velocity(matrix) for body, matrix in zip(self, world_from_body, strict=True)
+            piece.body.origin_velocity(matrix)
+            for piece, matrix in zip(self.pieces, world_from_body, strict=True)
         ]
         velocities = np.array(moving, np.float64).reshape(-1, 2, 3)
         return InstanceStates(
-            ids=np.array(list(self._bodies), np.uint16),
+            ids=np.array([piece.id for piece in self.pieces], np.uint16),
             positions=world_from_body[:, :3, 3],
             orientations=np.array(quats, np.float64).reshape(-1, 4),
             linear_velocities=velocities[:, 0],
             angular_velocities=velocities[:, 1],
-            scales=np.array([body.placement.scale for body in self], np.float64).reshape(-1, 3),
+            scales=np.array(
+                [piece.body.placement.scale for piece in self.pieces], np.float64
+            ).reshape(-1, 3),
             histories=self.histories(),
         )
 
     def histories(self) -> NDArray[np.int64]:
-        """Return (N,) numbers; a body's past before its number changed has been cut off."""
-        return np.array([self._histories[id_] for id_ in self._bodies], dtype=np.int64)
+        """Return (N,) numbers; a piece's past before its number changed has been cut off."""
+        return np.array([self._histories[piece.body_id] for piece in self.pieces], dtype=np.int64)
 
     def add(self, placement: Placement) -> int:
-        """Put a body into the engine; return its instance id.
+        """Put a body into the engine; return its instance id. Its parts get the next ones.
 
         Raises
         ------
         NameTaken, InvalidRequest
             If there is one of that name, or no id is left.
         """
-        self._require_free_name(placement.name)
-        self._require_ids(1)
-        body = Body(self._client, placement)
-        self._last_id += 1
-        self._bodies[self._last_id] = body
-        self.cut_off_past(self._last_id)
-        return self._last_id
+        self._require_ids(1 + len(placement.asset.parts))
+        body_id = self._add_body(placement)
+        self._number_parts(body_id)
+        return body_id
 
     def remove(self, instance_id: int) -> None:
         """Take a body out of the engine, and wake what rests upon it."""
         gone = self[instance_id]
         self.rouse_beside(gone)
         gone.remove()
-        del self._bodies[instance_id]
-        del self._histories[instance_id]
+        del self._bodies[instance_id], self._histories[instance_id], self._parts[instance_id]
+        self._pieces = None
 
     def rebuild(self, instance_id: int, placement: Placement) -> None:
         """Make of a body what another placement says; it keeps its id, its place, its motion.
@@ -168,6 +242,7 @@ class BodyTable:
         self.rouse_beside(old)
         old.remove()
         self._bodies[instance_id] = new
+        self._pieces = None
 
     def replace_room(self, placements: Iterable[Placement], without: Collection[int] = ()) -> None:
         """Exchange all parts of the room; a part of the same name keeps its id.
@@ -207,10 +282,12 @@ class BodyTable:
                 self._last_id += 1
                 id_ = self._last_id
             self._bodies[id_] = body
+            self._parts[id_] = ()  # what makes rooms labels all of a wall alike
             self.cut_off_past(id_)
             leaving.discard(id_)
         for id_ in leaving:
-            del self._bodies[id_], self._histories[id_]
+            del self._bodies[id_], self._histories[id_], self._parts[id_]
+        self._pieces = None
         self._room_parts = frozenset(placement.name for placement in wanted)
 
     def rouse_beside(self, body: Body) -> None:
@@ -224,6 +301,23 @@ class BodyTable:
         """Begin a new history: flow does not see where the body was before."""
         self._last_history += 1
         self._histories[instance_id] = self._last_history
+
+    def _add_body(self, placement: Placement) -> int:
+        self._require_free_name(placement.name)
+        self._require_ids(1)
+        body = Body(self._client, placement)
+        self._last_id += 1
+        self._bodies[self._last_id] = body
+        self._parts[self._last_id] = ()
+        self.cut_off_past(self._last_id)
+        return self._last_id
+
+    def _number_parts(self, body_id: int) -> None:
+        count = len(self._bodies[body_id].placement.asset.parts)
+        self._require_ids(count)
+        self._parts[body_id] = tuple(range(self._last_id + 1, self._last_id + 1 + count))
+        self._last_id += count
+        self._pieces = None
 
     def _require_free_name(self, name: str) -> None:
         if any(body.placement.name == name for body in self):

@@ -138,6 +138,8 @@ def make_placement(
         If something does not exist or does not fit.
     """
     asset = _painted(entry, asset)
+    for part in asset.parts:
+        categories.named(part.category)  # which must be there
     behaviours = [
         start_behaviour(
             b.type,

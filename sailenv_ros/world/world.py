@@ -18,13 +18,13 @@ from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import CategoryTable, Instance, Keypoint
+from sailenv_ros.labels import PART_MARK, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
-from sailenv_ros.world.body_table import BodyTable
+from sailenv_ros.world.body_table import BodyTable, LabelledPiece
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.mover import Mover, MoverCommand
@@ -143,6 +143,11 @@ class World:
         return tuple(self._bodies)
 
     @property
+    def bodies_by_id(self) -> Mapping[int, Body]:
+        """All bodies by their instance ids, in the order of these."""
+        return dict(self._bodies.items())
+
+    @property
     def movers(self) -> Mapping[str, Mover]:
         """The movers by name, in the scene's order; read-only."""
         return MappingProxyType(self._movers)
@@ -165,7 +170,7 @@ class World:
     @property
     def moving_ids(self) -> frozenset[int]:
         """Ids of the instances that a behaviour moves."""
-        return frozenset(id_ for id_, body in self._bodies.items() if body.behaviours)
+        return frozenset(piece.id for piece in self._bodies.pieces if piece.body.behaviours)
 
     def snapshot(self) -> WorldSnapshot:
         """Copy the poses; the same object until something changes."""
@@ -200,17 +205,17 @@ class World:
         return self._movers[name]
 
     def body(self, instance_id: int) -> Body:
-        """Find the body of an instance.
+        """Find the body of an object.
 
         Raises
         ------
         InvalidRequest
-            If no instance has that id now.
+            If no object has that id now, also if a part of one has it.
         """
         return self._bodies[instance_id]
 
     def find(self, obj: int | str) -> int:
-        """Return the instance id of an object that is named by its id or its name.
+        """Return the instance id of an object, or a part of one, that is named by its id or name.
 
         Raises
         ------
@@ -220,10 +225,17 @@ class World:
         return self._bodies.find(obj)
 
     def object_state(self, instance_id: int) -> ObjectState:
-        """Say what and where an object is now; see `body` for errors."""
-        body = self.body(instance_id)
-        instance = self._drawn(instance_id, body.placement).instance
-        return body.state(instance, self.sim_time_ns)
+        """Say what and where an object, or a part of one, is now.
+
+        Raises
+        ------
+        InvalidRequest
+            If no instance has that id now.
+        """
+        piece = self._bodies.piece(instance_id)
+        drawn = self._drawn(piece)
+        model = drawn.model if piece.part else piece.body.placement.asset.model
+        return piece.body.state(drawn.instance, self.sim_time_ns, model)
 
     # -- what is changed -------------------------------------------------------------------
 
@@ -245,7 +257,7 @@ class World:
         return instance_id
 
     def despawn(self, instance_id: int) -> None:
-        """Take an object out of the world; its id is not used again."""
+        """Take an object out of the world with its parts; their ids are not used again."""
         self._bodies.remove(instance_id)
         self._changed()
 
@@ -369,8 +381,9 @@ class World:
 
     def _forget_chart(self, instance_id: int) -> None:
         """Take the baked light off an instance whose surface is another now."""
-        if self._baked is not None and instance_id in self._baked.charts:
-            charts = {id_: c for id_, c in self._baked.charts.items() if id_ != instance_id}
+        if self._baked is not None:
+            gone = self._bodies.ids_of(instance_id)
+            charts = {id_: c for id_, c in self._baked.charts.items() if id_ not in gone}
             self._baked = replace(self._baked, charts=charts)
 
     def _changed(self) -> None:
@@ -382,7 +395,7 @@ class World:
             scene=self.scene,
             epoch=self.epoch,
             revision=self._next_revision(),
-            instances=tuple(self._drawn(id_, body.placement) for id_, body in self._bodies.items()),
+            instances=tuple(self._drawn(piece) for piece in self._bodies.pieces),
             categories=self.categories,
             lights=self._lights,
             environment=self._environment,
@@ -394,24 +407,35 @@ class World:
         name = "" if placement.entry is None else placement.entry.part_of
         return self._bodies.id_of_name(name) if name else 0
 
-    def _drawn(self, instance_id: int, placement: Placement) -> DrawnInstance:
-        low, high = placement.asset.model.bounds().tolist()
+    def _drawn(self, piece: LabelledPiece) -> DrawnInstance:
+        placement = piece.body.placement
+        asset, part, category_id = placement.asset, piece.part, placement.category_id
+        model, name, parent = asset.body_model, asset.name, self._parent_of(placement)
+        keypoints = asset.keypoints
+        if part is not None:
+            model, name, parent = (
+                asset.part_model(part),
+                f"{name}{PART_MARK}{part.name}",
+                piece.body_id,
+            )
+            category_id, keypoints = self.categories.named(part.category).id, ()
+        low, high = model.bounds().tolist()
         instance = Instance(
-            id=instance_id,
-            name=placement.name,
-            asset=placement.asset.name,
-            category_id=placement.category_id,
-            category=self.categories[placement.category_id].name,
+            id=piece.id,
+            name=piece.name,
+            asset=name,
+            category_id=category_id,
+            category=self.categories[category_id].name,
             static=placement.static,
             low_m=_scaled(low, placement.scale),
             high_m=_scaled(high, placement.scale),
-            parent=self._parent_of(placement),
+            parent=parent,
             keypoints=tuple(
                 Keypoint(name=point, position_m=_scaled(place, placement.scale))
-                for point, place in placement.asset.keypoints
+                for point, place in keypoints
             ),
         )
-        return DrawnInstance(instance=instance, model=placement.asset.model, scale=placement.scale)
+        return DrawnInstance(instance=instance, model=model, scale=placement.scale)
 
 
 def _scaled(point: Sequence[float], scale: Sequence[float]) -> tuple[float, float, float]:

@@ -205,14 +205,15 @@ def test_one_stamp_and_the_promised_encodings(probe: Probe) -> None:
 
 def test_the_motion_to_the_next_frame_comes_with_it(probe: Probe) -> None:
     """One frame late, each once, with its own frame's stamp; where it ends is where flow began."""
-    late = probe.listen(Image, "agent/flow_forward")
     flow = probe.listen(Image, "agent/flow")
+    # Discovery may take longer for one topic than for the other.
+    step_until(probe, lambda: flow.messages, "a frame's flow")
+    late = probe.listen(Image, "agent/flow_forward")
     step_until(probe, lambda: len(late.messages) > 2, "three motions")
     first, second = late.stamps()[-2:]
     assert second - first in (33_333_333, 33_333_334)
-    until(lambda: len(set(flow.stamps())) > 3, "the last frame's flow")
+    until(lambda: max(flow.stamps()) > max(late.stamps()), "the last frame's flow")
     assert set(late.stamps()) < set(flow.stamps())
-    assert max(flow.stamps()) > max(late.stamps())
     forward = np.frombuffer(late.last.data, np.float32)
     assert np.isfinite(forward).mean() > 0.9
     assert np.nanmax(np.abs(forward)) > 0.01

@@ -19,6 +19,7 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame
+from sailenv_ros.labels import PART_MARK
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
 from sailenv_ros.recording.export.bop_models import MM_PER_M, ObjectModel
@@ -60,7 +61,7 @@ class BopExport(DatasetFormat):
         truths: list[dict[str, Any]] = []
         infos: list[dict[str, Any]] = []
         for row, instance_id in enumerate(table.ids.tolist()):
-            if table.assets[row] not in self._assets:
+            if table.assets[row].partition(PART_MARK)[0] not in self._assets:
                 left_out["not in the catalogue"] += 1
                 continue
             mask_name = f"{sample.stem}_{len(truths):06d}.png"
@@ -75,6 +76,7 @@ class BopExport(DatasetFormat):
                     "asset": table.assets[row],
                     "scale": frame.states.scales[frame.states.row(instance_id)].tolist(),
                     "instance_id": instance_id,
+                    "parent_id": int(table.parents[row]),
                 }
             )
             infos.append(_truth_info(frame, found.masks, instance_id, seen))
@@ -117,6 +119,7 @@ class BopExport(DatasetFormat):
                         "cam_t_m2c": truth["cam_t_m2c"],
                         "obj_id": numbers[_key(truth)],
                         "instance_id": truth["instance_id"],
+                        "parent_id": truth["parent_id"],
                     }
                     for truth in value["truths"]
                 ]
@@ -153,7 +156,7 @@ class BopExport(DatasetFormat):
         numbers = {}
         for number, key in enumerate(keys, 1):
             asset, scale = key
-            model = ObjectModel(self._library.peek(asset).model, np.array(scale))
+            model = ObjectModel(self._library.drawn_model(asset), np.array(scale))
             data = model.ply()
             # The same mesh serves to draw and to measure.
             for folder in ("models", "models_eval"):

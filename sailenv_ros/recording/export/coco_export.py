@@ -1,7 +1,8 @@
 """Frames → COCO's instance annotations: masks as run lengths, boxes, categories.
 
 The format is that of https://cocodataset.org/#format-data. An annotation is one object in one
-picture; `instance_id` joins those of one object. With amodal masks `amodal_segmentation`, its box
+picture; `instance_id` joins those of one object, and `parent_id` is that of the object that it is a
+part of, 0 for none. With amodal masks `amodal_segmentation`, its box
 and area, and `occlusion` (the share of the object that is hidden) are added.
 """
 
@@ -48,6 +49,7 @@ class CocoExport(DatasetFormat):
                 "category_id": int(table.category_ids[row]),
                 "instance_id": instance_id,
                 "instance_name": table.names[row],
+                "parent_id": int(table.parents[row]),
                 "segmentation": _segmentation(seen, left, top, height, width),
                 "area": int(table.visible_pixels[row]),
                 "bbox": _bbox(table.visible_boxes[row]),

@@ -255,7 +255,9 @@ class App {
 
   // ---- objects
 
-  select(id) {
+  select(chosen) {
+    const instance = this.instances.get(chosen);
+    const id = instance?.is_part ? instance.parent : chosen;  // a part is edited with its body
     this.selected = id;
     document.body.dataset.selected = id;
     this.try("select", { object: id });

@@ -70,7 +70,7 @@ export class ObjectPanel {
           },
           chip,
           el("span", { class: "name" }, instance.name),
-          el("span", { class: "count" }, instance.moves ? "moves" : ""),
+          el("span", { class: "count" }, instance.is_part ? "part" : instance.moves ? "moves" : ""),
           el("span", { class: "share" }, instance.category),
         );
       }),

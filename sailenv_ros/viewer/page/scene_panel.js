@@ -72,7 +72,7 @@ export class ScenePanel {
     );
     this.about.replaceChildren(...pairs([
       ["renderer", scene.renderer],
-      ["objects", String(scene.instances.length)],
+      ["objects", String(scene.instances.filter(({ is_part }) => !is_part).length)],
       ["mode", scene.mode],
     ]));
   }

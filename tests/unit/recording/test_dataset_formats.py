@@ -131,6 +131,7 @@ def test_coco_evaluates_ground_truth_as_perfect(
             row = table.row(id_)
             amodal = coco_mask.decode(annotation["amodal_segmentation"]).astype(bool)
             assert (amodal == frame.amodal.mask(id_)).all()
+            assert annotation["parent_id"] == table.parents[row]
             assert annotation["amodal_area"] == amodal.sum()
             assert annotation["occlusion"] == 1.0 - table.visible_share[row]
             assert min(annotation["bbox"][2:]) > 0
@@ -176,6 +177,7 @@ def test_bop_files_hold_poses_masks_and_models(
         assert np.abs(error).max() <= 0.5 * DEPTH_STEP_MM + 1e-3
         for place, (truth, about) in enumerate(zip(truths[image], infos[image], strict=True)):
             row = table.row(truth["instance_id"])
+            assert truth["parent_id"] == table.parents[row]
             rotation = np.array(truth["cam_R_m2c"]).reshape(3, 3)
             np.testing.assert_allclose(rotation, table.camera_from_object[row, :3, :3])
             centre = np.array(truth["cam_t_m2c"]) / 1000.0

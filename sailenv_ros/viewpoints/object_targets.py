@@ -23,6 +23,7 @@ __all__ = [
     "boxes_of",
     "cameras",
     "stands_in_something",
+    "target_of_row",
     "targets_of",
 ]
 
@@ -102,26 +103,32 @@ def targets_of(
     room: str, snapshot: WorldSnapshot, boxes: NDArray[np.float64], category: str
 ) -> Iterator[Target]:
     """Yield the objects of a category in a room."""
+    for row, drawn in enumerate(snapshot.contents.instances):
+        if drawn.instance.category == category:
+            yield target_of_row(room, snapshot, boxes, row)
+
+
+def target_of_row(
+    room: str, snapshot: WorldSnapshot, boxes: NDArray[np.float64], row: int
+) -> Target:
+    """Return the object of a row of a snapshot."""
     contents = snapshot.contents
-    for row, drawn in enumerate(contents.instances):
-        if drawn.instance.category != category:
-            continue
-        low, high = boxes[row]
-        pose = snapshot.world_from_body[row]
-        yield Target(
-            room=room,
-            row=row,
-            snapshot=snapshot,
-            alone=replace(
-                snapshot,
-                contents=replace(contents, instances=(drawn,), lights=(), baked=None),
-                world_from_body=snapshot.world_from_body[row : row + 1].copy(),
-                histories=snapshot.histories[row : row + 1].copy(),
-            ),
-            boxes=boxes,
-            middle=pose[:3, :3] @ (0.5 * (low + high)) + pose[:3, 3],
-            size_m=float(np.linalg.norm(high - low)),
-        )
+    low, high = boxes[row]
+    pose = snapshot.world_from_body[row]
+    return Target(
+        room=room,
+        row=row,
+        snapshot=snapshot,
+        alone=replace(
+            snapshot,
+            contents=replace(contents, instances=(contents.instances[row],), lights=(), baked=None),
+            world_from_body=snapshot.world_from_body[row : row + 1].copy(),
+            histories=snapshot.histories[row : row + 1].copy(),
+        ),
+        boxes=boxes,
+        middle=pose[:3, :3] @ (0.5 * (low + high)) + pose[:3, 3],
+        size_m=float(np.linalg.norm(high - low)),
+    )
 
 
 def cameras(

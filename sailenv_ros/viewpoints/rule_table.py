@@ -1,0 +1,96 @@
+"""Which camera rules exist, and how one is checked and used."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from pydantic import ValidationError
+
+from sailenv_ros.errors import InvalidEntry, UnknownName
+from sailenv_ros.space.free_space import named_generator
+from sailenv_ros.validation import checked_integer
+from sailenv_ros.viewpoints.free_view import free_view
+from sailenv_ros.viewpoints.object_view import object_view
+from sailenv_ros.viewpoints.scene_coverage import coverage
+from sailenv_ros.viewpoints.view_scene import CameraRule, CameraView, RuleSettings, ViewScene
+
+__all__ = ["MOST_VIEWS", "camera_rules", "checked_rule", "sample_cameras"]
+
+_RULES: Mapping[str, CameraRule] = MappingProxyType(
+    {rule.type: rule for rule in (object_view, free_view, coverage)}
+)
+
+MOST_VIEWS = 10_000
+
+
+def camera_rules() -> Mapping[str, CameraRule]:
+    """Return every rule by its name; read-only."""
+    return _RULES
+
+
+def checked_rule(rule: str, settings: Mapping[str, Any]) -> tuple[CameraRule, RuleSettings]:
+    """Return a rule with its settings.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such rule.
+    InvalidEntry
+        If a setting is wrong, with all that are.
+    """
+    if rule not in _RULES:
+        raise UnknownName("camera rule", rule, _RULES)
+    kind = _RULES[rule]
+    try:
+        return kind, kind.settings.model_validate(dict(settings))
+    except ValidationError as problem:
+        known = ", ".join(kind.settings.model_fields)
+        wrong = []
+        for error in problem.errors():
+            name = ".".join(str(part) for part in error["loc"])
+            told = f"{error['msg'][0].lower()}{error['msg'][1:]}, got {error['input']!r}"
+            if error["type"] == "extra_forbidden":
+                told = f"is not a setting of {rule}; its settings are: {known}"
+            wrong.append((name, told))
+        raise InvalidEntry(f"camera rule {rule!r}", dict(settings), wrong) from None
+
+
+def sample_cameras(
+    scene: ViewScene,
+    rule: str,
+    count: int = 1,
+    *,
+    seed: int = 0,
+    name: str = "",
+    settings: Mapping[str, Any] | None = None,
+) -> list[CameraView]:
+    """Choose camera poses by a rule.
+
+    Parameters
+    ----------
+    scene : ViewScene
+    rule : str
+        One of `camera_rules`.
+    count : int
+        How many, 1 to 10,000.
+    seed : int
+    name : str
+        What they are for: other names have other random numbers.
+    settings : mapping of str to object
+        Those of the rule that shall differ from its own.
+
+    Returns
+    -------
+    views : list of CameraView
+        Fewer than `count` if no more were found in as many attempts as the settings allow.
+
+    Raises
+    ------
+    UnknownName, InvalidEntry, InvalidRequest
+        If there is no such rule, or a setting is wrong.
+    """
+    kind, checked = checked_rule(rule, settings or {})
+    wanted = checked_integer("count", count, 1, MOST_VIEWS)
+    return kind.choose(scene, checked, wanted, named_generator(seed, rule, name))
