@@ -1,10 +1,11 @@
-"""Time what several reflection points cost, beside one point in the middle of each room.
+"""Time what contact shadows, smooth edges and several reflection points cost.
 
-    python benchmarks/reflections.py [--frames N] [--size WxH]
+    python benchmarks/picture_costs.py [--frames N] [--size WxH]
 
-Two native renderers draw the same views in turn, so that what disturbs the machine disturbs both;
-processor times of all threads are compared. The first picture of a room includes the reflection
-maps of all its lights.
+Native renderers draw the same views in turn, so that what disturbs the machine disturbs all; the
+medians of the processor times are compared. Effects are timed in ``room_01`` on one thread, with
+and without baked light; reflections beside one point in the middle of each room, where the first
+picture includes the reflection maps of all lights.
 """
 
 from __future__ import annotations
@@ -13,11 +14,13 @@ import argparse
 import itertools
 import statistics
 import time
+from dataclasses import replace
 from unittest import mock
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.geometry import look_at
+from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.render import reflection_points
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
@@ -36,6 +39,7 @@ def main() -> None:
     parser.add_argument("--size", default="1024x768")
     arguments = parser.parse_args()
     width, height = (int(number) for number in arguments.size.split("x"))
+    _effects(arguments.frames)
     print("room, points: first picture [ms]; a frame [ms CPU]")
     for room, (eye, target) in VIEWS.items():
         snapshot = _snapshot(room)
@@ -53,6 +57,31 @@ def main() -> None:
             middle = statistics.median(times[most])
             print(f"{room}, {most}: {1e3 * first[most]:.0f}; {1e3 * middle:.2f}")
             renderer.close()
+
+
+def _effects(frames: int) -> None:
+    baked = _snapshot("room_01")
+    plain = replace(baked, contents=replace(baked.contents, baked=None))
+    eye, target = VIEWS["room_01"]
+    lens = CameraIntrinsics(width=640, height=480, vertical_fov_deg=62.0)
+    whole = Camera(intrinsics=lens, pose=look_at(eye, target))
+    without = {
+        "occlusion": replace(whole, picture=PictureSettings(occlusion_strength=0.0)),
+        "smooth edges": replace(whole, picture=PictureSettings(smooth_edges=False)),
+    }
+    print("effect, room_01 at 640x480 on one thread [ms CPU]")
+    for name, snapshot in (("baked", baked), ("not baked", plain)):
+        renderer = NativeRenderer(threads=1)
+        _cpu(renderer, snapshot, whole)
+        times: dict[str, list[float]] = {effect: [] for effect in ("", *without)}
+        for _ in range(frames):
+            times[""].append(_cpu(renderer, snapshot, whole))
+            for effect, camera in without.items():
+                times[effect].append(_cpu(renderer, snapshot, camera))
+        full = statistics.median(times.pop(""))
+        for effect, spent in times.items():
+            print(f"{effect}, {name}: {1e3 * (full - statistics.median(spent)):.2f}")
+        renderer.close()
 
 
 def _snapshot(room: str) -> WorldSnapshot:
