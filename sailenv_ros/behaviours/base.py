@@ -7,7 +7,7 @@ with plain numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, TypeAlias
 
@@ -22,10 +22,13 @@ __all__ = [
     "MAX_SPEED_M_S",
     "STEP_S",
     "Action",
+    "Actions",
     "BehaviourKind",
     "BehaviourParameters",
     "BodyState",
+    "BodyStates",
     "RunningBehaviour",
+    "batch_behaviour",
     "behaviour",
 ]
 
@@ -132,9 +135,88 @@ class Action:
         return any(part is not None for part in done)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyStates:
+    """The motion of N bodies at one instant, in the world frame; see `BodyState`.
+
+    Attributes
+    ----------
+    positions_m, linear_velocities, angular_velocities, inertias_kg_m2 : (N, 3) float64
+        Positions are those of the body frames.
+    orientations : (N, 4) float64
+        Unit quaternions x, y, z, w.
+    masses_kg : (N,) float64
+    frustum_planes : tuple of (M, 4) float64
+        Of each body.
+    """
+
+    positions_m: NDArray[np.float64]
+    orientations: NDArray[np.float64]
+    linear_velocities: NDArray[np.float64]
+    angular_velocities: NDArray[np.float64]
+    masses_kg: NDArray[np.float64]
+    inertias_kg_m2: NDArray[np.float64]
+    frustum_planes: tuple[NDArray[np.float64], ...]
+
+    @classmethod
+    def of(cls, body: BodyState) -> BodyStates:
+        """Return the states of one body alone."""
+        return cls(
+            positions_m=np.array([body.pose.position_m]),
+            orientations=np.array([body.pose.orientation_xyzw]),
+            linear_velocities=np.array([body.linear_velocity]),
+            angular_velocities=np.array([body.angular_velocity]),
+            masses_kg=np.array([body.mass_kg]),
+            inertias_kg_m2=np.array([body.inertia_kg_m2]),
+            frustum_planes=(body.frustum_planes,),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Actions:
+    """What the engine does to N bodies during the next step; see `Action`.
+
+    Attributes
+    ----------
+    acts : (N,) bool
+        False leaves a body alone, whatever the other rows say.
+    forces_n, torques_nm, linear_velocities, angular_velocities : (N, 3) float64 or None
+        None leaves that part alone for all of them.
+    idle_until_s : (N,) float64 or None
+        Times on the behaviours' clocks before which they need not be asked again [s].
+    """
+
+    acts: NDArray[np.bool_]
+    forces_n: NDArray[np.float64] | None = None
+    torques_nm: NDArray[np.float64] | None = None
+    linear_velocities: NDArray[np.float64] | None = None
+    angular_velocities: NDArray[np.float64] | None = None
+    idle_until_s: NDArray[np.float64] | None = None
+
+    def row(self, number: int) -> Action:
+        """Return the action of one body."""
+
+        def part(values: NDArray[np.float64] | None) -> Vector3 | None:
+            if values is None or not self.acts[number]:
+                return None
+            x, y, z = values[number].tolist()
+            return x, y, z
+
+        idle = None if self.idle_until_s is None else float(self.idle_until_s[number])
+        return Action(
+            force_n=part(self.forces_n),
+            torque_nm=part(self.torques_nm),
+            linear_velocity=part(self.linear_velocities),
+            angular_velocity=part(self.angular_velocities),
+            idle_until_s=idle or None,
+        )
+
+
 ParametersType: TypeAlias = type[BehaviourParameters]
 
 BehaviourFunction = Callable[[Any, float, BodyState, dict[str, Any], np.random.Generator], Action]
+
+BatchFunction = Callable[["Sequence[RunningBehaviour]", NDArray[np.float64], BodyStates], Actions]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,11 +232,15 @@ class BehaviourKind:
     function : callable
         ``function(parameters, time_s, body, memory, rng) -> Action``; `time_s` counts from the
         behaviour's start, `memory` is a dict that lasts as long as the behaviour.
+    batch : callable or None
+        ``batch(running, times_s, bodies) -> Actions``: the same for N bodies at once, where that
+        is faster; what becomes of one body must not depend on the others.
     """
 
     type: str
     parameters: ParametersType
     function: BehaviourFunction
+    batch: BatchFunction | None = None
 
     @property
     def summary(self) -> str:
@@ -175,14 +261,17 @@ class RunningBehaviour:
 
     def is_idle(self, time_s: float) -> bool:
         """Say if it does nothing in the step that begins at `time_s` [s of simulated time]."""
-        own_s = time_s - self.start_s - self.parameters.start
-        return own_s < self.idle_until_s - 1e-9
+        return self.own_time_s(time_s) < self.idle_until_s - 1e-9
+
+    def own_time_s(self, time_s: float) -> float:
+        """Return the time since its start [s]."""
+        return time_s - self.start_s - self.parameters.start
 
     def act(self, time_s: float, body: BodyState) -> Action:
         """Ask for the action of the step that begins at `time_s` [s of simulated time]."""
         if self.is_idle(time_s):
             return Action()
-        own_s = time_s - self.start_s - self.parameters.start
+        own_s = self.own_time_s(time_s)
         action = self.kind.function(self.parameters, own_s, body, self.memory, self.rng)
         self.idle_until_s = action.idle_until_s or 0.0
         return action
@@ -195,5 +284,28 @@ def behaviour(
 
     def decorate(function: BehaviourFunction) -> BehaviourKind:
         return BehaviourKind(type=type_, parameters=parameters, function=function)
+
+    return decorate
+
+
+def batch_behaviour(
+    type_: str, parameters: type[BehaviourParameters]
+) -> Callable[[BatchFunction], BehaviourKind]:
+    """Turn a function of many bodies into a behaviour kind of that name; used as a decorator."""
+
+    def decorate(batch: BatchFunction) -> BehaviourKind:
+        def alone(
+            given: BehaviourParameters,
+            time_s: float,
+            body: BodyState,
+            memory: dict[str, Any],
+            rng: np.random.Generator,
+        ) -> Action:
+            one = RunningBehaviour(kind=kind, parameters=given, rng=rng, memory=memory)
+            return batch([one], np.array([time_s]), BodyStates.of(body)).row(0)
+
+        alone.__doc__ = batch.__doc__
+        kind = BehaviourKind(type=type_, parameters=parameters, function=alone, batch=batch)
+        return kind
 
     return decorate

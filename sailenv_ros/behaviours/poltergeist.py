@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BehaviourParameters, BodyState, behaviour
-from sailenv_ros.behaviours.steering import random_direction, vector3
+from sailenv_ros.behaviours.base import (
+    Actions,
+    BehaviourParameters,
+    BodyStates,
+    RunningBehaviour,
+    batch_behaviour,
+)
+from sailenv_ros.behaviours.steering import random_direction, torques
 from sailenv_ros.scene.field_types import Number
 
 __all__ = ["Poltergeist", "poltergeist"]
@@ -33,24 +41,36 @@ class Poltergeist(BehaviourParameters):
     )
 
 
-@behaviour("poltergeist", Poltergeist)
+@batch_behaviour("poltergeist", Poltergeist)
 def poltergeist(
-    parameters: Poltergeist,
-    time_s: float,
-    body: BodyState,
-    memory: dict[str, Any],
-    rng: np.random.Generator,
-) -> Action:
+    running: Sequence[RunningBehaviour], times_s: NDArray[np.float64], bodies: BodyStates
+) -> Actions:
     """Push and twist the object in random directions at random instants."""
-    if memory.pop("due", False):
+    idle = np.zeros(len(running))
+    pushes, twists = np.zeros((len(running), 3)), np.zeros((len(running), 3))
+    for number, (one, time_s) in enumerate(zip(running, times_s.tolist(), strict=True)):
+        _go_on(one, time_s)
+        if "until" in one.memory:
+            pushes[number], twists[number] = one.memory["push"], one.memory["twist"]
+        else:
+            idle[number] = one.memory["next"]
+    return Actions(
+        acts=idle == 0.0,
+        forces_n=pushes * bodies.masses_kg[:, None],
+        torques_nm=torques(bodies.orientations, bodies.inertias_kg_m2, twists),
+        idle_until_s=idle,
+    )
+
+
+def _go_on(running: RunningBehaviour, time_s: float) -> None:
+    """Begin a push that is due, or end one and draw the time of the next."""
+    parameters, memory, rng = running.parameters, running.memory, running.rng
+    assert isinstance(parameters, Poltergeist)
+    if memory.pop("next", None) is not None:
         memory.update(_push(parameters, rng), until=time_s + parameters.duration)
-    if "until" in memory and time_s < memory["until"] - 1e-9:
-        axes = body.pose.matrix()[:3, :3]
-        torque = axes @ (body.inertia_kg_m2 * (axes.T @ memory["twist"]))
-        return Action(force_n=vector3(memory["push"] * body.mass_kg), torque_nm=vector3(torque))
-    memory.clear()
-    memory["due"] = True
-    return Action(idle_until_s=time_s + rng.exponential(parameters.mean_interval))
+    if "until" not in memory or time_s >= memory["until"] - 1e-9:
+        memory.clear()
+        memory["next"] = time_s + rng.exponential(parameters.mean_interval)
 
 
 def _push(parameters: Poltergeist, rng: np.random.Generator) -> dict[str, Any]:

@@ -13,7 +13,17 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours.base import MAX_SPEED_M_S, STEP_S, Action, BodyState
 from sailenv_ros.geometry import Pose
 
-__all__ = ["MAX_TURN_RAD_S", "limited", "random_direction", "towards", "turn_vector", "vector3"]
+__all__ = [
+    "MAX_TURN_RAD_S",
+    "dots",
+    "lengths",
+    "limited",
+    "random_direction",
+    "torques",
+    "towards",
+    "turn_vector",
+    "vector3",
+]
 
 MAX_TURN_RAD_S = 30.0
 """No behaviour turns a body faster."""
@@ -24,6 +34,45 @@ Vector = NDArray[np.float64]
 def vector3(values: Vector) -> tuple[float, float, float]:
     """Return three numbers as a tuple of Python's own."""
     return float(values[0]), float(values[1]), float(values[2])
+
+
+def dots(first: Vector, second: Vector) -> Vector:
+    """Return the (N,) scalar products of rows (N, 3); the same for a row, whatever the others."""
+    product = first * second
+    return np.asarray(product[:, 0] + product[:, 1] + product[:, 2])
+
+
+def lengths(values: Vector) -> Vector:
+    """Return the (N,) lengths of rows (N, 3)."""
+    return np.sqrt(dots(values, values))
+
+
+def torques(orientations: Vector, inertias_kg_m2: Vector, twists: Vector) -> Vector:
+    """Return the torques that accelerate bodies at rest.
+
+    Parameters
+    ----------
+    orientations : (N, 4) float64
+        Unit quaternions x, y, z, w of the bodies.
+    inertias_kg_m2 : (N, 3) float64
+        About the bodies' own axes.
+    twists : (N, 3) float64
+        Angular accelerations, world frame [rad/s2].
+
+    Returns
+    -------
+    torques_nm : (N, 3) float64
+        World frame: R diag(I) Rᵀ a.
+    """
+    back = orientations * (-1.0, -1.0, -1.0, 1.0)
+    return _rotated(orientations, inertias_kg_m2 * _rotated(back, twists))
+
+
+def _rotated(orientations: Vector, values: Vector) -> Vector:
+    """Turn rows (N, 3) by unit quaternions (N, 4): v + 2 w (u × v) + 2 u × (u × v)."""
+    axis, w = orientations[:, :3], orientations[:, 3:]
+    once = np.cross(axis, values)
+    return np.asarray(values + 2.0 * (w * once + np.cross(axis, once)))
 
 
 def limited(values: Vector, most: float) -> Vector:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +12,13 @@ from pydantic import Field
 
 from sailenv_ros.behaviours.base import (
     MAX_SPEED_M_S,
-    Action,
+    Actions,
     BehaviourParameters,
-    BodyState,
-    behaviour,
+    BodyStates,
+    RunningBehaviour,
+    batch_behaviour,
 )
-from sailenv_ros.behaviours.steering import random_direction, vector3
+from sailenv_ros.behaviours.steering import dots, lengths, random_direction
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Direction
 
@@ -26,6 +28,9 @@ Vector = NDArray[np.float64]
 
 SCATTER = 0.5
 """Length of the random vector that is added to the unit vector of a reflected direction."""
+
+HIT_SHARE = 0.2
+"""Share of its speed that an impact changes at least."""
 
 
 class UniformMovement(BehaviourParameters):
@@ -58,59 +63,81 @@ class UniformMovement(BehaviourParameters):
         return self.view_distance
 
 
-@behaviour("uniform_movement_random_bounce", UniformMovement)
+@batch_behaviour("uniform_movement_random_bounce", UniformMovement)
 def uniform_movement_random_bounce(
-    parameters: UniformMovement,
-    time_s: float,
-    body: BodyState,
-    memory: dict[str, Any],
-    rng: np.random.Generator,
-) -> Action:
+    running: Sequence[RunningBehaviour], times_s: Vector, bodies: BodyStates
+) -> Actions:
     """Move straight on at a constant speed and bounce off what is met."""
-    if "direction" not in memory:
-        memory["direction"] = _first_direction(parameters, rng)
-        memory["axis"] = random_direction(rng)
-    else:
-        _bounce(memory, _impact(memory["direction"], parameters.speed, body), rng)
-    for normal in _left_behind(body):
-        _bounce(memory, normal, rng)
-    spin = memory["axis"] * math.radians(parameters.angular_speed)
-    return Action(
-        linear_velocity=vector3(memory["direction"] * parameters.speed),
-        angular_velocity=vector3(spin),
+    new = np.array(["direction" not in one.memory for one in running])
+    for number in np.flatnonzero(new).tolist():
+        _begin(running[number])
+    directions, speeds = _wanted(running)
+    change = bodies.linear_velocities - directions * speeds[:, None]
+    size = lengths(change)
+    # An impact changes speed along the normal of what was hit.
+    met = ~new & (size >= HIT_SHARE * speeds) & (dots(directions, change) < 0.0)
+    for number in np.flatnonzero(met).tolist():
+        _bounce(running[number], change[number] / size[number])
+    viewed = [number for number, planes in enumerate(bodies.frustum_planes) if len(planes)]
+    left = [
+        number
+        for number in viewed
+        if _keep_in_front(
+            running[number], bodies.positions_m[number], bodies.frustum_planes[number]
+        )
+    ]
+    if left or met.any():
+        directions, speeds = _wanted(running)
+    return Actions(
+        acts=np.ones(len(running), np.bool_),
+        linear_velocities=directions * speeds[:, None],
+        angular_velocities=np.array([one.memory["spin"] for one in running]),
     )
 
 
-def _first_direction(parameters: UniformMovement, rng: np.random.Generator) -> Vector:
-    if parameters.start_direction is None or not any(parameters.start_direction):
-        return random_direction(rng)
-    given = np.asarray(parameters.start_direction)
-    return np.asarray(given / np.linalg.norm(given))
+def _wanted(running: Sequence[RunningBehaviour]) -> tuple[Vector, Vector]:
+    """Return directions (N, 3) and speeds (N,) [m/s]."""
+    directions = np.array([one.memory["direction"] for one in running])
+    return directions, np.array([_parameters(one).speed for one in running])
 
 
-def _impact(direction: Vector, speed: float, body: BodyState) -> Vector | None:
-    """Return the normal of what was hit in the last step: an impact changes speed along it."""
-    change = body.linear_velocity - direction * speed
-    size = float(np.linalg.norm(change))
-    return None if size < 0.2 * speed else change / size
+def _parameters(running: RunningBehaviour) -> UniformMovement:
+    assert isinstance(running.parameters, UniformMovement)
+    return running.parameters
 
 
-def _left_behind(body: BodyState) -> list[Vector]:
-    """Return the normals of the planes that the body is to be in front of and is not."""
-    planes = body.frustum_planes
-    behind = planes[:, :3] @ np.asarray(body.pose.position_m) + planes[:, 3] < 0.0
-    return list(planes[behind, :3])
+def _begin(running: RunningBehaviour) -> None:
+    given = _parameters(running).start_direction
+    if given is None or not any(given):
+        running.memory["direction"] = random_direction(running.rng)
+    else:
+        direction = np.asarray(given)
+        running.memory["direction"] = direction / np.linalg.norm(direction)
+    _spin_anew(running)
 
 
-def _bounce(memory: dict[str, Any], normal: Vector | None, rng: np.random.Generator) -> None:
+def _spin_anew(running: RunningBehaviour) -> None:
+    rate = math.radians(_parameters(running).angular_speed)
+    running.memory["spin"] = random_direction(running.rng) * rate
+
+
+def _keep_in_front(running: RunningBehaviour, position: Vector, planes: Vector) -> bool:
+    """Turn it back at the planes that it is to be in front of and is not; say if there are any."""
+    behind = planes[:, :3] @ position + planes[:, 3] < 0.0
+    for normal in planes[behind, :3]:
+        _bounce(running, normal)
+    return bool(behind.any())
+
+
+def _bounce(running: RunningBehaviour, normal: Vector) -> None:
     """Reflect the direction off a plane, scattered at random, unless it leads away already."""
-    if normal is None or memory["direction"] @ normal >= 0.0:
+    direction = running.memory["direction"]
+    if direction @ normal >= 0.0:
         return
-    direction = memory["direction"]
     reflected = direction - 2.0 * (direction @ normal) * normal
-    scattered = reflected + SCATTER * random_direction(rng)
+    scattered = reflected + SCATTER * random_direction(running.rng)
     away = scattered @ normal
     if away < 0.1:
         scattered = scattered + (0.1 - away) * normal
-    memory["direction"] = scattered / np.linalg.norm(scattered)
-    memory["axis"] = random_direction(rng)
+    running.memory["direction"] = scattered / np.linalg.norm(scattered)
+    _spin_anew(running)

@@ -53,6 +53,12 @@ class Body:
         Where its entry puts it.
     behaviours_unchanged : bool
         True while its behaviours are those of its entry.
+    is_fast : bool
+        True if it must be kept out of walls at the next step, too.
+    floats : bool
+        True if gravity does not pull it.
+    inertia_kg_m2 : (3,) float64
+        About its own axes; 1 for what is static.
     """
 
     def __init__(self, client: BulletClient, placement: Placement) -> None:
@@ -61,21 +67,21 @@ class Body:
         self.entry_pose = placement.pose
         self.behaviours_unchanged = True
         self._behaviours = placement.behaviours
-        self._is_fast = False
+        self.is_fast = False
         self._client = client
         self._centre = tuple(
             c * s for c, s in zip(placement.asset.centre_of_mass_m, placement.scale, strict=True)
         )
         self.mass_kg = 0.0 if placement.static else _mass_kg(placement)
         self._id = self._build()
-        self._inertia = np.ones(3)
+        self.inertia_kg_m2 = np.ones(3)
         if not placement.static:
-            self._inertia = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
+            self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
         self._static_pose = placement.pose
         self._quat = placement.pose.orientation_xyzw
         self._matrix = placement.pose.matrix()
         # PyBullet has no per-body gravity; the weight of those it must not pull is given back.
-        self._floats = not placement.static and not placement.gravity
+        self.floats = not placement.static and not placement.gravity
 
     @property
     def bullet_id(self) -> int:
@@ -239,20 +245,12 @@ class Body:
         self._behaviours = ()
         self.behaviours_unchanged = False
 
-    def act(self, time_s: float, frustum_planes: FrustumPlanes) -> None:
-        """Do what its behaviours and its want of gravity ask for the step that begins now."""
-        acted = False
-        for running in self._behaviours:
-            if not running.is_idle(time_s):
-                action = running.act(time_s, self._state(running, frustum_planes))
-                actuation.apply_action(self._client, self._id, action)
-                acted = True
-        # What rests is not asked for its speed: that would cost more than all else.
-        if acted or self._is_fast:
-            self._is_fast = actuation.limit_penetration(self._client, self._id)
-        if self._floats:
-            lift = tuple(-self.mass_kg * g for g in self._client.gravity)
-            actuation.push(self._client, self._id, lift)
+    def behave(
+        self, running: RunningBehaviour, time_s: float, frustum_planes: FrustumPlanes
+    ) -> None:
+        """Do what one of its behaviours asks for the step that begins at a time [s]."""
+        action = running.act(time_s, self._state(running, frustum_planes))
+        actuation.apply_action(self._client, self._id, action)
 
     def touching_ids(self) -> frozenset[int]:
         """Return PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
@@ -269,8 +267,18 @@ class Body:
 
     @property
     def acts(self) -> bool:
-        """True if `act` has anything to do."""
-        return self._floats or bool(self._behaviours)
+        """True if something is done to it before steps."""
+        return self.floats or bool(self._behaviours)
+
+    @property
+    def thrown(self) -> bool:
+        """True if it begins in motion."""
+        return any((*self.placement.linear_velocity, *self.placement.angular_velocity))
+
+    @property
+    def off_centre(self) -> bool:
+        """True if its origin is not its centre of mass."""
+        return any(self._centre)
 
     def remove(self) -> None:
         """Take the body out of the engine."""
@@ -324,7 +332,7 @@ class Body:
             linear_velocity=linear,
             angular_velocity=angular,
             mass_kg=self.mass_kg,
-            inertia_kg_m2=self._inertia,
+            inertia_kg_m2=self.inertia_kg_m2,
             frustum_planes=planes,
         )
 

@@ -54,7 +54,6 @@ class BulletClient:
             raise PhysicsError(
                 "PyBullet gave no physics server (too many are open in this process)"
             )
-        self._bound: dict[str, Callable[..., Any]] = {}
         self._gravity = (0.0, 0.0, 0.0)
 
     @property
@@ -75,10 +74,8 @@ class BulletClient:
     def __getattr__(self, name: str) -> Callable[..., Any]:
         if name.startswith("_"):
             raise AttributeError(name)
-        bound = self._bound.get(name)
-        if bound is None:
-            bound = self._bind(name)
-            self._bound[name] = bound
+        bound = self._bind(name)
+        self.__dict__[name] = bound  # the next call of it finds it there
         return bound
 
     def close(self) -> None:

@@ -76,6 +76,8 @@ def shifts(
     """Step the world, then yield what has moved or turned by more, though nothing drives it."""
     resting = [body for body in world.bodies if not body.placement.static and not body.behaviours]
     before = [body.world_from_body() for body in resting]
+    for body in resting:
+        body.wake()
     world.step(round(seconds * STEPS_PER_SECOND))
     for body, start in zip(resting, before, strict=True):
         now = body.world_from_body()

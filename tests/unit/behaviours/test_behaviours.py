@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import sys
 from pathlib import Path
@@ -16,6 +17,8 @@ from scipy.spatial.transform import Rotation
 from sailenv_ros.behaviours import (
     STEP_S,
     BodyState,
+    BodyStates,
+    RunningBehaviour,
     behaviour_errors,
     behaviour_kinds,
     known_behaviour_errors,
@@ -30,6 +33,11 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 
 USERS = "tests.support.users_behaviours:drift"
+
+FIERCE: dict[str, dict[str, Any]] = {
+    "poltergeist": {"mean_interval": 0.05, "duration": 0.05},
+    "uniform_movement_random_bounce": {"speed": 1.0, "angular_speed": 90.0},
+}
 
 CORNERS: list[dict[str, Any]] = [
     {"position": [0, 0, 0]},
@@ -317,3 +325,46 @@ def test_code_of_a_scene_file_runs_where_it_is_allowed(hostile: Path) -> None:
         assert world.object_state(world.find("a")).pose.position_m[0] > 0.05
     finally:
         world.close()
+
+
+@pytest.mark.parametrize("type_", ["poltergeist", "uniform_movement_random_bounce"])
+def test_many_bodies_at_once_are_each_as_if_alone(type_: str) -> None:
+    """The batch of a kind has the very numbers of each body asked alone, over half a second."""
+    count, rng = 20, np.random.default_rng(5)
+
+    def started() -> list[RunningBehaviour]:
+        return [
+            start_behaviour(type_, FIERCE[type_], seed=1, object_name=f"body {n}", place=0)
+            for n in range(count)
+        ]
+
+    together, alone = started(), started()
+    batch = together[0].kind.batch
+    assert batch is not None
+    for step in range(120):
+        bodies = [
+            at_rest(
+                Pose.from_rpy_deg(rng.uniform(-1, 1, 3), rng.uniform(-180, 180, 3)),
+                linear_velocity=rng.uniform(-2, 2, 3),
+                inertia_kg_m2=rng.uniform(0.1, 1, 3),
+                frustum_planes=np.array([[0.0, 0.0, -1.0, 0.5]][: step % 2]).reshape(-1, 4),
+            )
+            for _ in range(count)
+        ]
+        rows = [n for n in range(count) if not together[n].is_idle(step * STEP_S)]
+        expected = [alone[n].act(step * STEP_S, bodies[n]) for n in rows]
+        if not rows:
+            continue
+        ones = [BodyStates.of(bodies[n]) for n in rows]
+        states = BodyStates(
+            **{
+                field.name: np.concatenate([getattr(one, field.name) for one in ones])
+                for field in dataclasses.fields(BodyStates)
+                if field.name != "frustum_planes"
+            },
+            frustum_planes=tuple(bodies[n].frustum_planes for n in rows),
+        )
+        actions = batch([together[n] for n in rows], np.full(len(rows), step * STEP_S), states)
+        assert [actions.row(row) for row in range(len(rows))] == expected
+        for row, n in enumerate(rows):
+            together[n].idle_until_s = actions.row(row).idle_until_s or 0.0

@@ -113,7 +113,7 @@ def _files(client: BulletClient, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
         assert all(Path(name).exists() for name in given)
         return int(make(**arguments))
 
-    monkeypatch.setitem(client._bound, "createCollisionShapeArray", noted)
+    monkeypatch.setitem(client.__dict__, "createCollisionShapeArray", noted)
     build_collision(
         client, [SLAB, PYRAMID], scale=(1.0, 1.0, 1.0), centre_of_mass_m=(0, 0, 0), name="a"
     )
