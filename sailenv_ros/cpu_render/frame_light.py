@@ -31,6 +31,7 @@ from sailenv_ros.render.lightmap_compositing import (
     main_light,
 )
 from sailenv_ros.render.room_reflections import RoomReflections
+from sailenv_ros.render.seen_sky import seen_sky
 from sailenv_ros.render.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
@@ -310,6 +311,6 @@ def _sky_texels(sky: SkyMap) -> NDArray[np.float16]:
     """Return (H, W + 1, 4): the first column is repeated behind the last."""
     height, width, _ = sky.radiance.shape
     texels = np.zeros((height, width + 1, 4), np.float16)
-    texels[:, :width, :3] = np.clip(sky.radiance, 0.0, 6e4)
+    texels[:, :width, :3] = seen_sky(sky)
     texels[:, width] = texels[:, 0]
     return texels

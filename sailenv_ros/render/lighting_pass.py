@@ -22,6 +22,7 @@ from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, stronge
 from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.reflection_points import MOST
 from sailenv_ros.render.reflection_texture import ReflectionTexture
+from sailenv_ros.render.seen_sky import seen_sky
 from sailenv_ros.render.shadow_pass import ShadowPass
 from sailenv_ros.render.shadow_plan import SIZE_PX
 
@@ -156,7 +157,7 @@ class LightingPass:
             if self._sky_texture is not None:
                 self._sky_texture.release()
             height, width, _ = sky.radiance.shape
-            data = np.ascontiguousarray(sky.radiance).tobytes()
+            data = seen_sky(sky).tobytes()
             self._sky_texture = self._context.texture((width, height), 3, data, dtype="f2")
             self._sky_texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._sky_texture.repeat_y = False

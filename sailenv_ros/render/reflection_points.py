@@ -31,7 +31,13 @@ BEFORE_M = 0.05
 """How far before the box around the metal its point is."""
 
 INSIDE_M = 0.1
-"""Points keep this distance from the walls."""
+"""Points keep this distance from the walls, and above what stands at their place."""
+
+CLEAR_M = 0.02
+"""Points nearer than this to the box around an object count as inside."""
+
+FAR_M = 1.2
+"""What is farther from all points than this uses the one in the middle."""
 
 LEAST_METALLIC, MOST_ROUGHNESS = 0.5, 0.45
 
@@ -86,6 +92,7 @@ class ReflectionPoints:
         before = np.clip(
             at + towards / distance * step, self.box[0] + INSIDE_M, self.box[1] - INSIDE_M
         )
+        self._lift(before, snapshot)
         nearest = np.linalg.norm(before - middle, axis=1)
         while len(found) < MOST and (nearest > APART_M).any():
             best = int(np.argmax(np.where(nearest > APART_M, nearest * np.sqrt(size), -1.0)))
@@ -106,7 +113,8 @@ class ReflectionPoints:
         self._of = of
         self._show(contents.instances)
         offsets = self._world(snapshot)[:, None] - self.points
-        nearest = np.argmin(np.einsum("nkx,nkx->nk", offsets, offsets), axis=1)
+        squares = np.einsum("nkx,nkx->nk", offsets, offsets)
+        nearest = np.where(squares.min(axis=1) < FAR_M**2, np.argmin(squares, axis=1), 0)
         ids = contents.instance_ids.astype(np.intp)
         table = np.zeros((int(ids.max(initial=0)) // ROW_IDS + 1) * ROW_IDS, np.int32)
         table[ids] = np.where(self._sizes < LARGE_M, nearest, 0)
@@ -129,6 +137,19 @@ class ReflectionPoints:
         sizes = np.array([spot.size for spot in spots]).reshape(-1, 3) * scales
         self._sizes = np.linalg.norm(sizes, axis=1)
         self._polished = np.array([spot.polished for spot in spots], np.bool_)
+
+    def _lift(self, points: NDArray[np.float64], snapshot: WorldSnapshot) -> None:
+        """Move points that lie in the box around an object above it: inside, all is dark."""
+        for drawn, pose in zip(snapshot.contents.instances, snapshot.world_from_body, strict=True):
+            bounds = drawn.model.bounds() * np.asarray(drawn.scale)
+            if np.linalg.norm(bounds[1] - bounds[0]) >= LARGE_M:
+                continue
+            # The box around the turned box.
+            middle = pose[:3, :3] @ bounds.mean(axis=0) + pose[:3, 3]
+            half = np.abs(pose[:3, :3]) @ (0.5 * (bounds[1] - bounds[0]))
+            within = (np.abs(points - middle) < half + CLEAR_M).all(axis=1)
+            points[within, 2] = middle[2] + half[2] + INSIDE_M
+        points[:, 2] = np.minimum(points[:, 2], self.box[1, 2] - INSIDE_M)
 
     def _world(self, snapshot: WorldSnapshot) -> NDArray[np.float64]:
         """Return (N, 3): where each instance mirrors."""
