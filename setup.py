@@ -106,6 +106,8 @@ def data_files() -> list[tuple[str, list[str]]]:
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
         (f"{share}/config", sorted(path for kind in CONFIG for path in glob(f"config/*.{kind}"))),
+        (f"{share}/config/rooms", sorted(glob("config/rooms/*.yaml"))),
+        (f"{share}/config/rooms/library", sorted(glob("config/rooms/library/*.yaml"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
         (f"{share}/scenes", sorted(glob("scenes/*.yaml") + glob("scenes/*.json"))),
     ]

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bop_differences import Differences, project
 
 
 def judge_coco(folder: Path) -> None:
@@ -78,6 +79,8 @@ def judge_bop(folder: Path) -> None:
     for number in models:
         drawn.add_object(number, str(folder / "models_eval" / f"obj_{number:06d}.ply"))
     shares: dict[int, list[float]] = {15: [], 2: []}
+    differing = {tolerance_mm: Differences() for tolerance_mm in shares}
+    meshes = {n: inout.load_ply(str(folder / "models_eval" / f"obj_{n:06d}.ply")) for n in models}
     masks, poses = [], []
     for scene in sorted((folder / "train").iterdir()):
         cameras = inout.load_scene_camera(str(scene / "scene_camera.json"))
@@ -98,6 +101,15 @@ def judge_bop(folder: Path) -> None:
                 )
                 # Its own tolerance is 15 mm, made for depth cameras; rendered depth needs less.
                 whole = int((large > 0).sum())
+                name = f"{image:06d}_{place:06d}.png"
+                stored = {
+                    kind: inout.load_im(str(scene / kind / name)) > 0
+                    for kind in ("mask", "mask_visib")
+                }
+                mesh = meshes[truth["obj_id"]]
+                flat = project(mesh["pts"], truth["cam_R_m2c"], truth["cam_t_m2c"], k)
+                corners = flat[mesh["faces"].astype(int)]
+                edges = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
                 for tolerance_mm, found in shares.items():
                     visible = visibility.estimate_visib_mask_gt(
                         seen, own, tolerance_mm, visib_mode="bop19"
@@ -105,15 +117,22 @@ def judge_bop(folder: Path) -> None:
                     if whole:
                         share = infos[image][place]["visib_fract"]
                         found.append(abs(visible.sum() / whole - share))
-                name = f"{image:06d}_{place:06d}.png"
+                        differing[tolerance_mm].add(
+                            share=found[-1],
+                            stored_visible=stored["mask_visib"],
+                            visible=visible,
+                            stored_mask=stored["mask"],
+                            own=own,
+                            seen=seen,
+                            tolerance_mm=tolerance_mm,
+                            edges=edges,
+                            whole=(whole, infos[image][place]["px_count_all"]),
+                        )
                 for kind, mask in (("mask", own > 0), ("mask_visib", visible)):
-                    stored = inout.load_im(str(scene / kind / name)) > 0
-                    both = (stored | mask).sum()
+                    both = (stored[kind] | mask).sum()
                     if both:
-                        masks.append((kind, (stored & mask).sum() / both, int(both)))
-                points = inout.load_ply(
-                    str(folder / "models_eval" / f"obj_{truth['obj_id']:06d}.ply")
-                )["pts"]
+                        masks.append((kind, (stored[kind] & mask).sum() / both, int(both)))
+                points = mesh["pts"]
                 pose = (truth["cam_R_m2c"], truth["cam_t_m2c"])
                 poses.append(
                     max(
@@ -128,6 +147,7 @@ def judge_bop(folder: Path) -> None:
             f"differs by {np.mean(errors):.5f} on average, {np.percentile(errors, 95):.5f} at 95 %"
             f", {max(errors):.5f} at most"
         )
+        print(differing[tolerance_mm].told(tolerance_mm))
     for kind in ("mask", "mask_visib"):
         ious = [(iou, pixels) for name, iou, pixels in masks if name == kind]
         large_ones = [iou for iou, pixels in ious if pixels >= 1000]

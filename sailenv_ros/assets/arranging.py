@@ -25,7 +25,7 @@ from sailenv_ros.model import (
 from sailenv_ros.scene.spec_objects import ObjectSpec
 from sailenv_ros.scene.spec_room import RoomSpec
 
-__all__ = ["RESTING_GAP_M", "arranged"]
+__all__ = ["RESTING_GAP_M", "WALL_GAP_M", "arranged", "shape_points"]
 
 RESTING_GAP_M = 0.001
 """Between an object and what carries it: shapes that touch would be pushed apart."""
@@ -149,8 +149,12 @@ def _box_of(asset: Asset) -> tuple[CollisionShape, ...]:
 
 
 def _points(shapes: Sequence[CollisionShape], scale: tuple[float, float, float]) -> Floats:
-    corners = np.concatenate([_corners(shape) for shape in shapes])
-    return np.asarray(corners * np.asarray(scale))
+    return np.asarray(shape_points(shapes) * np.asarray(scale))
+
+
+def shape_points(shapes: Sequence[CollisionShape]) -> Floats:
+    """Return (N, 3): points whose hull is that of collision shapes, or nearly so [m]."""
+    return np.concatenate([_corners(shape) for shape in shapes])
 
 
 def _corners(shape: CollisionShape) -> Floats:

@@ -106,6 +106,12 @@ def room_part_names(room: Entry) -> Iterator[str]:
     """Yield the names of all objects that a room may become."""
     yield from ("floor", "ceiling", "skirting")
     yield from (f"{wall} wall" for wall in WALLS)
+    for key in ("partitions", "floors"):
+        parts = room.get(key)
+        for part in parts if isinstance(parts, list | tuple) else ():
+            name = part.get("name") if isinstance(part, Mapping) else None
+            if isinstance(name, str):
+                yield name
     counts = {"window": 0, "door": 0}
     listed = room.get("openings")
     for entry in listed if isinstance(listed, list | tuple) else ():

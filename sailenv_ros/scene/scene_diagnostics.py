@@ -19,7 +19,13 @@ from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
 from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
-from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
+from sailenv_ros.scene.spec_room import (
+    FloorAreaSpec,
+    PartitionSpec,
+    RoomSpec,
+    SurfaceSpec,
+    WallMaterialsSpec,
+)
 from sailenv_ros.scene.traversal import Entry, entries
 from sailenv_ros.scene.yaml_nodes import Loc
 
@@ -106,7 +112,7 @@ def _unknown_names(
             yield from _unknown(loc, entry, "category", categories)
             for place, sentence in knowledge.object_errors(entry):
                 yield Diagnostic((*loc, *place), sentence)
-        elif issubclass(model, RoomSpec | WallMaterialsSpec):
+        elif issubclass(model, RoomSpec | WallMaterialsSpec | PartitionSpec | FloorAreaSpec):
             yield from _unknown_surfaces(loc, model, entry, knowledge.surfaces)
         elif issubclass(model, EnvironmentSpec):
             if entry.get("sky_map"):

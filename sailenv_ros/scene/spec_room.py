@@ -21,7 +21,15 @@ from pydantic import (
 from pydantic_core import core_schema
 
 from sailenv_ros.scene.field_types import Choice, Number, Several, Text
-from sailenv_ros.scene.fields import LinearColour, Rule, SceneModel
+from sailenv_ros.scene.fields import LinearColour, Name, Rule, SceneModel
+from sailenv_ros.scene.partition_rules import (
+    along_an_axis,
+    corners_apart,
+    distinct_parts,
+    doorways_inside,
+    floors_apart,
+    inside_room,
+)
 from sailenv_ros.scene.room_rules import (
     DOOR_SIZE_M,
     WALLS,
@@ -33,7 +41,10 @@ from sailenv_ros.scene.room_rules import (
 __all__ = [
     "CurtainSpec",
     "DoorSpec",
+    "DoorwaySpec",
+    "FloorAreaSpec",
     "OpeningSpec",
+    "PartitionSpec",
     "RoomSpec",
     "SkirtingSpec",
     "SurfaceSpec",
@@ -49,6 +60,7 @@ _Extent: TypeAlias = Annotated[float, Number(least=1.0, most=100.0, unit="m")]
 _Opening: TypeAlias = Annotated[float, Number(least=0.3, most=100.0, unit="m")]
 _Along: TypeAlias = Annotated[float, Number(least=-50.0, most=50.0, unit="m")]
 _Wall: TypeAlias = Annotated[WallName, Choice(WALLS)]
+_Corner: TypeAlias = Annotated[tuple[_Along, _Along], Several(2, "two numbers [x, y] in [m]")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,10 +201,61 @@ class DoorSpec(_OpeningBase):
 OpeningSpec: TypeAlias = Annotated[WindowSpec | DoorSpec, Field(discriminator="type")]
 
 
+class DoorwaySpec(SceneModel):
+    """An opening in a wall between rooms: a frame without a leaf."""
+
+    at: _Along = Field(
+        default=0.0,
+        description="its middle along the wall, from the wall's middle, towards +x or +y [m]",
+    )
+    width: _Opening = Field(default=DOOR_SIZE_M[0], description="of the opening [m]")
+    height: _Opening = Field(default=DOOR_SIZE_M[1], description="of the opening [m]")
+    colour: LinearColour = Field(default=(0.78, 0.77, 0.74), description="of the frame")
+
+
+class PartitionSpec(SceneModel):
+    """A wall inside the room, along x or y: with others it divides the room into several."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (along_an_axis, doorways_inside)
+
+    name: Name = Field(description="unique among the parts of the room")
+    start: _Corner = Field(description="one end of its middle line [m]")
+    end: _Corner = Field(description="the other end, at the same x or y [m]")
+    thickness: Annotated[float, Number(least=0.05, most=1.0, unit="m")] = Field(
+        default=0.12, description="[m]"
+    )
+    north: SurfaceSpec | None = Field(
+        default=None, description="of its side towards +y; that of the walls if left out"
+    )
+    east: SurfaceSpec | None = Field(default=None, description="of its side towards +x")
+    south: SurfaceSpec | None = Field(default=None, description="of its side towards -y")
+    west: SurfaceSpec | None = Field(default=None, description="of its side towards -x")
+    doorways: tuple[DoorwaySpec, ...] = Field(
+        default=(), max_length=16, description="openings to walk through"
+    )
+
+
+class FloorAreaSpec(SceneModel):
+    """A part of the floor that is laid with something else."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (corners_apart,)
+
+    name: Name = Field(description="unique among the parts of the room")
+    start: _Corner = Field(description="one corner [m]")
+    end: _Corner = Field(description="the opposite corner [m]")
+    surface: SurfaceSpec = Field(description="its material")
+
+
 class RoomSpec(SceneModel):
     """Four walls, floor and ceiling, around the origin."""
 
-    rules: ClassVar[tuple[Rule, ...]] = (inside_walls, without_overlaps)
+    rules: ClassVar[tuple[Rule, ...]] = (
+        inside_walls,
+        without_overlaps,
+        inside_room,
+        floors_apart,
+        distinct_parts,
+    )
 
     size: Annotated[
         tuple[_Extent, _Extent, _Extent],
@@ -216,6 +279,12 @@ class RoomSpec(SceneModel):
     )
     openings: tuple[OpeningSpec, ...] = Field(
         default=(), max_length=64, description="windows and doors"
+    )
+    partitions: tuple[PartitionSpec, ...] = Field(
+        default=(), max_length=64, description="walls inside, which make several rooms or an L"
+    )
+    floors: tuple[FloorAreaSpec, ...] = Field(
+        default=(), max_length=64, description="rectangles whose floor differs"
     )
 
     def surface_of(self, wall: WallName) -> SurfaceSpec:

@@ -7,7 +7,7 @@ names can be checked however wrong the rest is.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.scene.yaml_nodes import Loc
@@ -26,13 +26,23 @@ def entries(model: type[SceneModel], data: object, loc: Loc = ()) -> Iterator[En
         choices = _models_in(field.annotation)
         if not choices or key not in data:
             continue
-        value = data[key]
-        numbered = enumerate(value) if isinstance(value, list | tuple) else [(None, value)]
-        for index, part in numbered:
+        named = get_origin(field.annotation) is dict
+        for place, part in _parts(data[key], (*loc, key), named=named):
             chosen = _chosen(choices, part)
             if chosen is not None:
-                place = (*loc, key) if index is None else (*loc, key, index)
                 yield from entries(chosen, part, place)
+
+
+def _parts(value: object, loc: Loc, *, named: bool) -> Iterator[tuple[Loc, object]]:
+    """Yield what stands for a model each: the entries of a list or of a mapping of names."""
+    if named:
+        for name, part in value.items() if isinstance(value, Mapping) else ():
+            yield from _parts(part, (*loc, name), named=False)
+    elif isinstance(value, list | tuple):
+        for index, part in enumerate(value):
+            yield (*loc, index), part
+    else:
+        yield loc, value
 
 
 def _models_in(annotation: Any) -> list[type[SceneModel]]:

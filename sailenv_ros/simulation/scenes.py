@@ -28,6 +28,7 @@ from sailenv_ros.behaviours import (
     refusing_behaviour_errors,
 )
 from sailenv_ros.errors import InvalidState
+from sailenv_ros.generation import PREFIX as GENERATED
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.model import Asset, Model
@@ -37,6 +38,7 @@ from sailenv_ros.scene.scene_catalogue import SceneCatalogue
 from sailenv_ros.scene.serialisation import light_entry
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.scene.user_scenes import user_scene_folder
+from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
@@ -89,6 +91,7 @@ class SceneLibrary:
         self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
         self._light_cache = LightCache()
+        self._generated = GeneratedScenes(self._assets)
         self._uploads = 0
         self._uploaded: set[str] = set()
         self._unkept: set[str] = set()
@@ -325,7 +328,13 @@ class SceneLibrary:
         self._unkept.discard(asset)
 
     def path(self, scene: str | Path) -> Path:
-        """Find a scene's file; see `load`."""
+        """Find a scene's file; see `load`.
+
+        A name such as ``generated:kitchen:17`` is made first, if it has not been; see `generation`
+        for errors.
+        """
+        if str(scene).startswith(GENERATED):
+            return self._generated.path(str(scene))
         return self._files.get(str(scene)) or self._catalogue.path(scene)
 
     def environment(self, spec: EnvironmentSpec) -> Environment:

@@ -1,4 +1,4 @@
-"""What a client may ask for about the room: its floor plan, and another size.
+"""What a client may ask for about the room: its floor plan, another size, a new one from a seed.
 
 Arguments as JSON has them in, requests to a `Simulation` out. Part of the table of `commands.py`.
 """
@@ -7,7 +7,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.generation.names import MAX_SEED, PREFIX
+from sailenv_ros.generation.rule_files import rules_of
+from sailenv_ros.operations.operations import Operations
 from sailenv_ros.simulation.room_edits import RoomOperations
+from sailenv_ros.validation import checked_integer
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import take_down
 from sailenv_ros.viewer.request_arguments import Arguments
@@ -43,3 +48,22 @@ async def set_room(context: CommandContext, given: Arguments) -> Any:
     words = "making the room" if before.room is None else "resizing the room"
     take_down(context, words, (words,), epoch, before, after)
     return {"replaced": [record.name for record in before.objects]}
+
+
+@ROOM_COMMANDS.looks
+async def room_kinds(context: CommandContext, given: Arguments) -> Any:
+    """Tell the kinds of rooms that can be generated, each with its title."""
+    rules = rules_of()
+    return [{"kind": kind, "title": rules.kind(kind).title} for kind in sorted(rules.kinds)]
+
+
+@ROOM_COMMANDS.changes
+async def generate_room(context: CommandContext, given: Arguments) -> Any:
+    """Begin a generated room; tell the name by which it is begun again."""
+    kind = given.text("kind")
+    seed = checked_integer("seed", given.integer("seed"), 0, MAX_SEED)
+    if kind not in rules_of().kinds:
+        raise UnknownName("kind of room", kind, sorted(rules_of().kinds))
+    name = f"{PREFIX}{kind}:{seed}"
+    await context.run(Operations.change_scene, name)
+    return {"scene": name}

@@ -192,7 +192,7 @@ class StepActions:
 
 
 def _rows(values: Floats | None) -> list[list[float]]:
-    return [] if values is None else values.tolist()  # type: ignore[no-any-return]  # tolist is Any
+    return [] if values is None else values.tolist()
 
 
 def _once(planes: FrustumPlanes) -> FrustumPlanes:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets.rooms.pieces import Box, WallFrame, boxes_mesh, collision_of
 from sailenv_ros.model import BoxShape, Material, Mesh, ModelPart
-from sailenv_ros.scene.spec_room import DoorSpec
+from sailenv_ros.scene.spec_room import DoorSpec, DoorwaySpec
 
-__all__ = ["ARCHITRAVE_M", "door_collision", "door_parts"]
+__all__ = ["ARCHITRAVE_M", "door_collision", "door_parts", "doorway_collision", "doorway_parts"]
 
 ARCHITRAVE_M = 0.045
 """By which the frame covers the wall beside the opening [m]."""
@@ -84,6 +84,42 @@ def door_collision(spec: DoorSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
     return (*(collision_of(box) for box in lining), turned)
 
 
+def doorway_parts(spec: DoorwaySpec, frame: WallFrame) -> tuple[ModelPart, ...]:
+    """Return the frame of an opening without a leaf: lining, and architraves on both faces."""
+    red, green, blue = spec.colour
+    paint = Material(name="door paint", base_colour=(red, green, blue, 1.0), roughness=0.6)
+    half, top, thick = spec.width / 2.0, spec.height, frame.thickness_m
+    boxes = _lining(half, top, thick, frame) + _architraves(half, top, thick, frame)
+    return (ModelPart(mesh=boxes_mesh(boxes), material=paint),)
+
+
+def doorway_collision(spec: DoorwaySpec, frame: WallFrame) -> tuple[BoxShape, ...]:
+    """Return what the lining of a doorway collides as."""
+    boxes = _lining(spec.width / 2.0, spec.height, frame.thickness_m, frame)
+    return tuple(collision_of(box) for box in boxes)
+
+
+def _lining(half: float, top: float, thick: float, frame: WallFrame) -> list[Box]:
+    inside = half - _LINING_M
+    sides = [sorted((sign * inside, sign * half)) for sign in (-1.0, 1.0)]
+    boxes = [frame.box(side, (0.0, thick), (0.0, top)) for side in sides]
+    return [*boxes, frame.box((-inside, inside), (0.0, thick), (top - _LINING_M, top))]
+
+
+def _architraves(half: float, top: float, thick: float, frame: WallFrame) -> list[Box]:
+    """Return what covers the joint between frame and wall, on both faces."""
+    from_, to = half - _COVERS_LINING_M, half + ARCHITRAVE_M
+    high = min(top + ARCHITRAVE_M, frame.height_m)
+    boxes = []
+    for out in ((-_ARCHITRAVE_DEPTH_M, 0.0), (thick, thick + _ARCHITRAVE_DEPTH_M)):
+        boxes.append(frame.box((-to, to), out, (top - _COVERS_LINING_M, high)))
+        boxes += [
+            frame.box((sign * from_, sign * to), out, (0.0, top - _COVERS_LINING_M))
+            for sign in (-1.0, 1.0)
+        ]
+    return boxes
+
+
 def _frame_boxes(spec: DoorSpec, frame: WallFrame) -> list[Box]:
     """Return lining, stops and threshold behind the leaf, and architraves on both faces."""
     half, top, thick = spec.width / 2.0, spec.height, frame.thickness_m
@@ -97,15 +133,7 @@ def _frame_boxes(spec: DoorSpec, frame: WallFrame) -> list[Box]:
         boxes.append(
             frame.box((sign * (inside - 0.014), sign * (inside + 0.004)), stop, (0.0, clear))
         )
-    from_, to = half - _COVERS_LINING_M, half + ARCHITRAVE_M
-    high = min(top + ARCHITRAVE_M, frame.height_m)
-    for out in ((-_ARCHITRAVE_DEPTH_M, 0.0), (thick, thick + _ARCHITRAVE_DEPTH_M)):
-        boxes.append(frame.box((-to, to), out, (top - _COVERS_LINING_M, high)))
-        boxes += [
-            frame.box((sign * from_, sign * to), out, (0.0, top - _COVERS_LINING_M))
-            for sign in (-1.0, 1.0)
-        ]
-    return boxes
+    return [*boxes, *_architraves(half, top, thick, frame)]
 
 
 def _hinge_sign(spec: DoorSpec, frame: WallFrame) -> float:

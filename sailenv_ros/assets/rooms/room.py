@@ -11,9 +11,16 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sailenv_ros.assets.rooms.doors import ARCHITRAVE_M, door_collision, door_parts
-from sailenv_ros.assets.rooms.pieces import WallFrame, collision_of
+from sailenv_ros.assets.rooms.doors import (
+    ARCHITRAVE_M,
+    door_collision,
+    door_parts,
+    doorway_collision,
+    doorway_parts,
+)
+from sailenv_ros.assets.rooms.pieces import Faces, WallFrame, collision_of
 from sailenv_ros.assets.rooms.walls import (
     Hole,
     box_of_slab,
@@ -29,7 +36,10 @@ from sailenv_ros.model import Asset, BoxShape, CollisionShape, Material, Mesh, M
 from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.spec_room import (
     DoorSpec,
+    DoorwaySpec,
+    FloorAreaSpec,
     OpeningSpec,
+    PartitionSpec,
     RoomSpec,
     SurfaceSpec,
     WallName,
@@ -80,7 +90,64 @@ def room_parts(spec: RoomSpec) -> tuple[RoomPart, ...]:
         *(_wall(spec, wall, frames[wall]) for wall in WALLS),
         *_skirting(spec, frames),
         *_openings(spec, frames),
+        *_partitions(spec),
     )
+
+
+def _partitions(spec: RoomSpec) -> Iterator[RoomPart]:
+    """Yield the walls inside the room, each with its doorways."""
+    for partition in spec.partitions:
+        frame, sides = partition_frame(partition, spec.size[2])
+        holes = [_doorway_hole(doorway) for doorway in partition.doorways]
+        surfaces = [_surface(getattr(partition, side) or spec.walls) for side in sides]
+        parts = [*wall_parts(frame, holes, surfaces[0], surfaces[1])]
+        shapes = [*wall_collision(frame, holes)]
+        for doorway in partition.doorways:
+            by = frame.point(doorway.at, 0.0, 0.0)
+            for part in doorway_parts(doorway, frame):
+                parts.append(replace(part, mesh=_moved_mesh(part.mesh, _vector(by))))
+            shapes += [
+                _moved_shape(shape, _vector(by)) for shape in doorway_collision(doorway, frame)
+            ]
+        yield _part(partition.name, "wall", parts, shapes, frame.middle_m)
+
+
+def _doorway_hole(doorway: DoorwaySpec) -> Hole:
+    half = doorway.width / 2.0
+    return Hole((doorway.at - half, doorway.at + half), (0.0, doorway.height))
+
+
+def _vector(values: NDArray[np.float64]) -> Vector3:
+    x, y, z = values.tolist()
+    return x, y, z
+
+
+def partition_frame(
+    partition: PartitionSpec, height_m: float
+) -> tuple[WallFrame, tuple[WallName, WallName]]:
+    """Return a wall as its side to the south or west has it, and where its sides look."""
+    (x0, y0), (x1, y1) = partition.start, partition.end
+    along_x = abs(x1 - x0) > abs(y1 - y0)
+    half = partition.thickness / 2.0
+    x, y = (x0 + x1) / 2.0, (y0 + y1) / 2.0
+    frame = WallFrame(
+        along=(1.0, 0.0, 0.0) if along_x else (0.0, 1.0, 0.0),
+        outward=(0.0, 1.0, 0.0) if along_x else (1.0, 0.0, 0.0),
+        middle_m=(x, y - half, 0.0) if along_x else (x - half, y, 0.0),
+        length_m=abs(x1 - x0) if along_x else abs(y1 - y0),
+        height_m=height_m,
+        thickness_m=partition.thickness,
+        overhang_m=0.0,
+    )
+    return frame, ("south", "north") if along_x else ("west", "east")
+
+
+def _behind(frame: WallFrame) -> WallFrame:
+    """Return a wall as its other side has it."""
+    ox, oy, _ = frame.outward
+    x, y, _ = frame.middle_m
+    thick = frame.thickness_m
+    return replace(frame, outward=(-ox, -oy, 0.0), middle_m=(x + thick * ox, y + thick * oy, 0.0))
 
 
 def _frame(spec: RoomSpec, wall: WallName) -> WallFrame:
@@ -108,9 +175,24 @@ def _slabs(spec: RoomSpec) -> Iterator[RoomPart]:
         ("ceiling", spec.ceiling, False, spec.size[2]),
     ):
         if of is not None:
-            part = slab_part(size, thick, _surface(of), up=up)
+            areas = [_floor_rectangle(area) for area in spec.floors] if up else []
+            part = slab_part(size, thick, _surface(of), up=up, without=areas)
             shape = collision_of(box_of_slab(size, thick, up=up))
             yield _part(name, name, [part], [shape], (0.0, 0.0, height))
+    for area in spec.floors:
+        rectangle, of_area = _floor_rectangle(area), _surface(area.surface)
+        (west, east), (south, north) = rectangle.along, rectangle.up
+        faces = Faces()
+        faces.add((west, south, 0.0), (east - west, 0, 0), (0, north - south, 0), (0, 0, 1))
+        part = ModelPart(mesh=faces.mesh(of_area), material=of_area.material)
+        # The floor below is solid everywhere.
+        yield _part(area.name, "floor", [part], [], (0.0, 0.0, 0.0))
+
+
+def _floor_rectangle(area: FloorAreaSpec) -> Hole:
+    """Return from where to where along x and along y a part of the floor lies."""
+    (x0, y0), (x1, y1) = area.start, area.end
+    return Hole((min(x0, x1), max(x0, x1)), (min(y0, y1), max(y0, y1)))
 
 
 def _wall(spec: RoomSpec, wall: WallName, frame: WallFrame) -> RoomPart:
@@ -135,8 +217,7 @@ def _skirting(spec: RoomSpec, frames: _Frames) -> Iterator[RoomPart]:
         return
     meshes, shapes = [], []
     red, green, blue = board.colour
-    for wall, frame in frames.items():
-        gaps = [_gap(o) for o in spec.openings if o.wall == wall and _rise(o)[0] < board.height]
+    for frame, gaps in _boarded(spec, frames, board.height):
         for mesh, shape in skirting_parts(frame, gaps, board.height, board.depth):
             meshes.append(_moved_mesh(mesh, frame.middle_m))
             shapes.append(_moved_shape(shape, frame.middle_m))
@@ -144,6 +225,22 @@ def _skirting(spec: RoomSpec, frames: _Frames) -> Iterator[RoomPart]:
         paint = Material(name="skirting", base_colour=(red, green, blue, 1.0), roughness=0.4)
         part = ModelPart(mesh=joined(meshes), material=paint)
         yield _part("skirting", "skirting", [part], shapes, (0.0, 0.0, 0.0))
+
+
+def _boarded(
+    spec: RoomSpec, frames: _Frames, height_m: float
+) -> Iterator[tuple[WallFrame, list[tuple[float, float]]]]:
+    """Yield the sides of walls that have a skirting, and where it is interrupted."""
+    for wall, frame in frames.items():
+        yield frame, [_gap(o) for o in spec.openings if o.wall == wall and _rise(o)[0] < height_m]
+    for partition in spec.partitions:
+        frame, _ = partition_frame(partition, spec.size[2])
+        beside = [
+            (d.at - d.width / 2.0 - ARCHITRAVE_M, d.at + d.width / 2.0 + ARCHITRAVE_M)
+            for d in partition.doorways
+        ]
+        yield frame, beside
+        yield _behind(frame), beside
 
 
 def _moved_mesh(mesh: Mesh, by: Vector3) -> Mesh:

@@ -33,9 +33,12 @@ class Hole:
 
 
 def wall_parts(
-    frame: WallFrame, holes: Sequence[Hole], surface: Surface
+    frame: WallFrame, holes: Sequence[Hole], surface: Surface, behind: Surface | None = None
 ) -> tuple[ModelPart, ModelPart]:
-    """Return the inside of a wall with the sides of its holes, and its outside."""
+    """Return the inside of a wall with the sides of its holes, and its outside.
+
+    Where something is `behind` the wall its other side and its ends are made of that, too.
+    """
     inner, outer = Faces(), Faces()
     across = np.asarray(frame.along)
     outward, thick = np.asarray(frame.outward), frame.thickness_m
@@ -44,10 +47,12 @@ def wall_parts(
         inner.add(frame.point(along[0], 0.0, up[0]), side, height, -outward)
         outer.add(frame.point(along[0], thick, up[0]), side, height, outward)
     _add_reveals(inner, frame, holes)
-    _add_ends(outer, frame)
+    _add_ends(outer, frame, seen=behind is not None)
     return (
         ModelPart(mesh=inner.mesh(surface), material=surface.material),
-        ModelPart(mesh=outer.mesh(), material=_OUTSIDE),
+        ModelPart(
+            mesh=outer.mesh(behind), material=_OUTSIDE if behind is None else behind.material
+        ),
     )
 
 
@@ -64,14 +69,30 @@ def wall_collision(frame: WallFrame, holes: Sequence[Hole]) -> tuple[BoxShape, .
     return tuple(boxes)
 
 
-def slab_part(size_m: Interval, thickness_m: float, surface: Surface, *, up: bool) -> ModelPart:
-    """Return a floor (`up`) or ceiling: its face at z = 0, and its other faces, in one material."""
+def slab_part(
+    size_m: Interval,
+    thickness_m: float,
+    surface: Surface,
+    *,
+    up: bool,
+    without: Sequence[Hole] = (),
+) -> ModelPart:
+    """Return a floor (`up`) or ceiling: its face at z = 0, and its other faces, in one material.
+
+    What rectangles `without` cover (from, to along x; from, to along y) is left out of the face.
+    """
     half_x, half_y = size_m[0] / 2.0, size_m[1] / 2.0
     facing = 1.0 if up else -1.0
     back = -facing * thickness_m
     x, y, z = np.eye(3)
     faces = Faces()
-    faces.add((-half_x, -half_y, 0.0), 2 * half_x * x, 2 * half_y * y, facing * z)
+    columns = _breaks((-half_x, half_x), [edge for hole in without for edge in hole.along])
+    rows = _breaks((-half_y, half_y), [edge for hole in without for edge in hole.up])
+    for along, across in product(pairwise(columns), pairwise(rows)):
+        middle = sum(along) / 2.0, sum(across) / 2.0
+        if not any(_within(middle[0], h.along) and _within(middle[1], h.up) for h in without):
+            side, other = (along[1] - along[0]) * x, (across[1] - across[0]) * y
+            faces.add((along[0], across[0], 0.0), side, other, facing * z)
     faces.add((-half_x, -half_y, back), 2 * half_x * x, 2 * half_y * y, -facing * z)
     for sign in (-1.0, 1.0):
         faces.add((sign * half_x, -half_y, 0.0), 2 * half_y * y, back * z, sign * x)
@@ -165,12 +186,12 @@ def _within(place: float, extent: Interval) -> bool:
     return extent[0] < place < extent[1]
 
 
-def _add_ends(faces: Faces, frame: WallFrame) -> None:
+def _add_ends(faces: Faces, frame: WallFrame, *, seen: bool) -> None:
     low, high = _extent(frame)
     along, depth = np.asarray(frame.along), frame.thickness_m * np.asarray(frame.outward)
     tall = np.array([0.0, 0.0, frame.height_m])
     faces.add(frame.point(low, 0.0, frame.height_m), (high - low) * along, depth, (0.0, 0.0, 1.0))
-    if frame.overhang_m > 0.0:
+    if seen or frame.overhang_m > 0.0:
         faces.add(frame.point(low, 0.0, 0.0), depth, tall, -along)
         faces.add(frame.point(high, 0.0, 0.0), depth, tall, along)
 

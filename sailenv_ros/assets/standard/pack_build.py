@@ -31,7 +31,7 @@ from sailenv_ros.assets.skies import SKIES, bake_sky
 from sailenv_ros.assets.standard.catalogues import LICENCES, Catalogues
 from sailenv_ros.assets.standard.fetch import fetched
 from sailenv_ros.assets.standard.prepare import prepare
-from sailenv_ros.assets.standard.recipe import Recipe, standard_recipe
+from sailenv_ros.assets.standard.recipe import Recipe, recipe_files, standard_recipe
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.extras import need
 from sailenv_ros.system.files import (
@@ -43,7 +43,6 @@ from sailenv_ros.system.files import (
     storage_errors,
 )
 from sailenv_ros.system.parent import end_with_parent
-from sailenv_ros.system.resources import resource_path
 
 __all__ = ["CREDITS", "build_standard_pack", "damaged_files", "is_current", "licence_files"]
 
@@ -291,6 +290,7 @@ def _make(name: str, furniture: Path, scratch: Path) -> PackEntry:
         mass=entry.mass,
         collision="hulls" if hulled else entry.collision,
         tags=(*entry.tags, made.title.lower()),
+        labelled=made.labelled,
         author=made.author,
         licence=made.licence,
         source=made.source,
@@ -325,7 +325,9 @@ def _keep_credits(furniture: Path, recipe: Recipe, scratch: Path) -> None:
 @lru_cache(maxsize=1)
 def _fingerprint() -> str:
     """Hash all that the pack depends on: recipe, our code, the libraries' versions."""
-    digest = hashlib.sha256(resource_path("config", "standard_pack.yaml").read_bytes())
+    digest = hashlib.sha256()
+    for recipe in recipe_files():
+        digest.update(recipe.read_bytes())
     own = Path(__file__).parent
     for source in (*sorted(own.rglob("*.py")), *(own.parent / f"{name}.py" for name in _TOOLS)):
         digest.update(source.read_bytes())

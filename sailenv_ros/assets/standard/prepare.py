@@ -28,13 +28,14 @@ from sailenv_ros.assets.meshes import (
 )
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.standard.catalogues import CatalogueEntry, Catalogues
+from sailenv_ros.assets.standard.dividing import LabelledMesh, divided
 from sailenv_ros.assets.standard.finishes import FINISHES, finish_of, finished
 from sailenv_ros.assets.standard.handmade import HANDMADE
 from sailenv_ros.assets.standard.patterns import PATTERNS
 from sailenv_ros.assets.standard.recipe import MaterialRule, RecipeEntry
 from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
-from sailenv_ros.model import ConvexShape, Material, ModelPart
+from sailenv_ros.model import AssetPart, ConvexShape, Material, ModelPart
 
 __all__ = ["PreparedAsset", "prepare"]
 
@@ -59,11 +60,14 @@ class PreparedAsset:
         Body frame, origin at the centre of the base.
     hulls : tuple of ConvexShape
         Empty for entries that collide as a box, a cylinder or a ball.
+    labelled : tuple of AssetPart
+        What of it is labelled apart.
     title, author, licence, source : str
     """
 
     parts: tuple[ModelPart, ...]
     hulls: tuple[ConvexShape, ...]
+    labelled: tuple[AssetPart, ...]
     title: str
     author: str
     licence: str
@@ -94,13 +98,30 @@ def prepare(name: str, entry: RecipeEntry, catalogues: Catalogues) -> PreparedAs
         origin = (listed.author, listed.licence, source, listed.title)
     raw = _finished(_turned(raw, entry.turn), entry)
     author, licence, source, title = origin
+    pieces = divided(name, raw, entry.parts)
+    meshes = [piece.mesh for piece in pieces]
+    drawn = _drawn(name, meshes, entry.triangles or enough_triangles(raw))
     return PreparedAsset(
-        parts=_drawn(name, raw, entry.triangles or enough_triangles(raw)),
+        parts=tuple(drawn.values()),
         hulls=_hulls(raw, entry),
+        labelled=_labelled(pieces, list(drawn)),
         title=title,
         author=author,
         licence=licence,
         source=source,
+    )
+
+
+def _labelled(pieces: Sequence[LabelledMesh], drawn: Sequence[int]) -> tuple[AssetPart, ...]:
+    """Return the parts, by the places of their meshes among those that are drawn."""
+    meshes: dict[tuple[str, str], list[int]] = {}
+    for place, number in enumerate(drawn):
+        piece = pieces[number]
+        if piece.name:
+            meshes.setdefault((piece.name, piece.category), []).append(place)
+    return tuple(
+        AssetPart(name=name, category=category, meshes=tuple(places))
+        for (name, category), places in meshes.items()
     )
 
 
@@ -191,8 +212,11 @@ def _pattern_of(before: Material, after: Material, given: str | None, kind: str 
     return given if given is not None else FINISHES[kind].pattern if kind else ""
 
 
-def _drawn(name: str, parts: Sequence[RawPart], limit: int) -> tuple[ModelPart, ...]:
-    """Simplify to the limit: solid parts by their share, foliage to what those leave."""
+def _drawn(name: str, parts: Sequence[RawPart], limit: int) -> dict[int, ModelPart]:
+    """Simplify to the limit: solid parts by their share, foliage to what those leave.
+
+    Returns what is left by the numbers of the parts.
+    """
     share = min(1.0, limit / sum(len(part.mesh.triangles) for part in parts))
     meshes: dict[int, RawMesh] = {}
     for number, part in enumerate(parts):
@@ -206,11 +230,11 @@ def _drawn(name: str, parts: Sequence[RawPart], limit: int) -> tuple[ModelPart, 
             count = max(FEWEST_TRIANGLES, int(left / leaves * len(part.mesh.triangles)))
             seed = zlib.crc32(f"{name}/{part.name}".encode())
             meshes[number] = thinned_out(part.mesh, count, seed=seed)
-    return tuple(
-        ModelPart(mesh=smooth_mesh(meshes[number]), material=part.material)
+    return {
+        number: ModelPart(mesh=smooth_mesh(meshes[number]), material=part.material)
         for number, part in enumerate(parts)
         if len(meshes[number].triangles)
-    )
+    }
 
 
 def _is_foliage(part: RawPart) -> bool:

@@ -14,7 +14,14 @@ from sailenv_ros.assets.standard.finishes import FINISHES
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.system.resources import resource_path
 
-__all__ = ["MaterialRule", "Recipe", "RecipeEntry", "standard_recipe"]
+__all__ = [
+    "MaterialRule",
+    "Recipe",
+    "RecipeEntry",
+    "RecipePart",
+    "recipe_files",
+    "standard_recipe",
+]
 
 Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -22,6 +29,9 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 class _RecipeModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+RECIPE_FILES = ("standard_pack.yaml", "standard_pack_rooms.yaml")
 
 
 class MaterialRule(_RecipeModel):
@@ -33,6 +43,27 @@ class MaterialRule(_RecipeModel):
     metallic: Share | None = None
     pattern: str | None = None
     drop: bool = False
+
+
+class RecipePart(_RecipeModel):
+    """What of an object is labelled apart.
+
+    Attributes
+    ----------
+    category : str
+    materials : tuple of str
+        Names of materials, with wildcards, whose meshes are the part's.
+    each : {'material', 'piece', 'book'}
+        ``material``: all of them are one part. ``piece``: each connected piece is one, with a
+        number after its name. ``book``: each book of rows that stand along y.
+    above : float or None
+        Only connected pieces that are higher than this over the base [m].
+    """
+
+    category: str
+    materials: Annotated[tuple[str, ...], Field(min_length=1)]
+    each: Literal["material", "piece", "book"] = "material"
+    above: float | None = None
 
 
 class RecipeEntry(_RecipeModel):
@@ -50,6 +81,8 @@ class RecipeEntry(_RecipeModel):
         About the vertical, where a catalogue's front is not the object's [deg].
     triangles : int or None
         At most about so many are drawn; None for what its size asks for.
+    parts : mapping of str to RecipePart
+        What of it is labelled apart; the first that names a material takes its meshes.
     """
 
     category: str
@@ -63,6 +96,7 @@ class RecipeEntry(_RecipeModel):
     tags: tuple[str, ...] = ()
     triangles: Annotated[int, Field(ge=100, lt=20000)] | None = None
     materials: dict[str, MaterialRule | str] = {}
+    parts: dict[str, RecipePart] = {}
 
     def rule(self, material: str) -> MaterialRule:
         """Return what is said of a material; an empty rule for nothing."""
@@ -86,14 +120,25 @@ class Recipe(_RecipeModel):
 
 @lru_cache(maxsize=1)
 def standard_recipe() -> Recipe:
-    """Read the package's own recipe, once.
+    """Read the package's own recipe, all of its files, once.
 
     Raises
     ------
     AssetError
         If it cannot be read or breaks the rules above.
     """
-    return read_recipe(resource_path("config", "standard_pack.yaml"))
+    recipes = [read_recipe(path) for path in recipe_files()]
+    assets: dict[str, RecipeEntry] = {}
+    for recipe in recipes:
+        for name in assets.keys() & recipe.assets.keys():
+            raise AssetError(name, "two files of the recipe have it")
+        assets |= recipe.assets
+    return recipes[0].model_copy(update={"assets": assets})
+
+
+def recipe_files() -> tuple[Path, ...]:
+    """Return the files of the package's own recipe."""
+    return tuple(resource_path("config", name) for name in RECIPE_FILES)
 
 
 def read_recipe(path: Path) -> Recipe:

@@ -29,11 +29,25 @@ export class ScenePanel {
         },
       },
     }, ...SIZES.map(([w, h]) => el("option", { value: `${w}x${h}` }, `${w} × ${h}`)));
+    this.kind = el("select", { id: "room-kind" });
+    this.roomSeed = el("input", { type: "number", min: 0, max: 2147483647, step: 1, value: 1, id: "room-seed" });
+    this.made = el("p", { class: "advice", id: "room-made" });
+    this.kept = "";
     this.agents = el("dl", { class: "values" });
     this.about = el("dl", { class: "values" });
     this.root = el(
       "div",
       {},
+      section(
+        "New room",
+        el("label", { class: "line" }, el("span", {}, "kind"), this.kind),
+        el("label", { class: "line" }, el("span", {}, "seed"), this.roomSeed),
+        el("div", { class: "buttons" },
+          button("Make", () => this.#make(), { kind: "primary make-room" }),
+          button("Again", () => this.#again(), { kind: "again-room", title: "the room of the next seed" }),
+          button("Keep", () => this.#keep(), { glyph: "save", kind: "keep-room" })),
+        this.made,
+      ),
       section(
         "Save as a scene file",
         el("label", { class: "line" }, el("span", {}, "name"), this.name),
@@ -59,6 +73,7 @@ export class ScenePanel {
   frame() {}
 
   update(scene) {
+    if (!this.kind.options.length) this.#kinds();
     put(this.seed, scene.seed);
     put(this.factor, scene.real_time_factor);
     const lens = this.app.lens;
@@ -75,6 +90,39 @@ export class ScenePanel {
       ["objects", String(scene.instances.filter(({ is_part }) => !is_part).length)],
       ["mode", scene.mode],
     ]));
+  }
+
+  async #kinds() {
+    if (this.asked) return;
+    this.asked = true;
+    const kinds = await this.app.try("room_kinds", {});
+    this.asked = kinds !== undefined;
+    if (kinds === undefined) return;
+    this.kind.replaceChildren(...kinds.map(({ kind, title }) => el("option", { value: kind }, title)));
+  }
+
+  async #make() {
+    const kind = this.kind.value, seed = Number(this.roomSeed.value);
+    this.made.textContent = "The room is being made …";
+    const made = await this.app.try("generate_room", { kind, seed });
+    this.kept = made === undefined ? "" : `${kind}_${seed}`;
+    this.made.textContent = made === undefined ? "" : `${made.scene} is this room's name.`;
+  }
+
+  #again() {
+    this.roomSeed.value = String((Number(this.roomSeed.value) + 1) % 2147483648);
+    return this.#make();
+  }
+
+  async #keep() {
+    if (!this.kept || this.app.scene.scene !== `generated_${this.kept}`) {
+      toast("Make a room first.");
+      return;
+    }
+    const path = await this.app.try("save_scene", { name: this.kept, overwrite: false });
+    if (path === undefined) return;
+    this.made.textContent = `Kept: ${path}`;
+    toast("Kept. It is in the list of scenes now.");
   }
 
   async #save() {

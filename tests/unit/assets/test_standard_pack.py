@@ -15,6 +15,7 @@ from sailenv_ros.assets.sources import UnbuiltPack, installed_sources
 from sailenv_ros.assets.standard.catalogues import Catalogues
 from sailenv_ros.assets.standard.fetch import fetched
 from sailenv_ros.assets.standard.handmade import HANDMADE
+from sailenv_ros.assets.standard.handmade.clutter import CLUTTER
 from sailenv_ros.assets.standard.pack_build import (
     build_standard_pack,
     is_current,
@@ -129,6 +130,49 @@ def test_leaves_are_seen_from_both_sides(assets: dict[str, Asset]) -> None:
         leaves = [p for p in assets[name].model.parts if p.material.name.lower().startswith("lea")]
         assert leaves
         assert all(part.material.double_sided for part in leaves)
+
+
+@pytest.mark.parametrize(
+    ("name", "labels"),
+    [
+        ("bed_01", {"pillow": 2}),
+        ("bed_02", {"pillow": 2}),
+        ("couch_01", {"pillow": 2}),
+        ("bowl_02", {"apple": 2, "orange": 2, "banana": 2, "pear": 3}),
+        ("book_02", {"book": 3}),
+        ("bookcase_01", {"book": 150}),
+        ("cabinet_03", {"sink": 1, "tap": 1}),
+        ("sink_01", {"tap": 1}),
+        ("pencil_cup_01", {"pencil": 1, "pen": 2}),
+        ("toothbrush_cup_01", {"toothbrush": 2}),
+    ],
+)
+def test_what_annotators_would_label_apart_is_a_part(
+    name: str, labels: dict[str, int], assets: dict[str, Asset]
+) -> None:
+    """Fruit is not a bowl, pillows are not a bed, books no bookcase."""
+    asset = assets[name]
+    assert Counter(part.category for part in asset.parts) == labels
+    known = {category.name for category in load_categories().values()}
+    assert set(labels) <= known
+    whole = asset.model.triangle_count
+    divided = sum(asset.part_model(part).triangle_count for part in asset.parts)
+    assert 0 < divided < whole
+    assert asset.body_model.triangle_count == whole - divided
+    for part in asset.parts:
+        low, high = asset.part_model(part).bounds()
+        assert (low >= asset.model.bounds()[0] - 1e-6).all()
+        assert (high <= asset.model.bounds()[1] + 1e-6).all()
+
+
+def test_there_is_enough_that_lies_about(assets: dict[str, Asset]) -> None:
+    """Small things for tables, shelves and desks, each of the size of the real one."""
+    recipe = standard_recipe().assets
+    small = [name for name in recipe if recipe[name].source.partition("/")[2] in CLUTTER]
+    assert len(small) >= 50
+    for name in small:
+        longest = np.ptp(assets[name].model.bounds(), axis=0).max()
+        assert 0.04 < longest < 0.45, name
 
 
 def test_credits_and_skies_are_kept(pack: AssetPack) -> None:

@@ -10,6 +10,15 @@ from collections.abc import Callable
 from functools import partial
 
 from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.standard.handmade.clutter import CLUTTER
+from sailenv_ros.assets.standard.handmade.devices import (
+    computer,
+    keyboard,
+    monitor,
+    mouse,
+    stove,
+    whiteboard,
+)
 from sailenv_ros.assets.standard.handmade.paintings import painting
 from sailenv_ros.assets.standard.handmade.stationery import books, mirror, notebook, pen
 from sailenv_ros.assets.standard.handmade.textiles import (
@@ -42,5 +51,15 @@ HANDMADE: dict[str, Callable[[], list[RawPart]]] = {
     "rug_oriental": partial(rug, 2.4, 1.6, "oriental"),
     "rug_striped": partial(rug, 1.8, 1.2, "striped"),
     "mirror": partial(mirror, 0.60, 0.80),
+    **CLUTTER,
+    "stove": stove,
+    "monitor": partial(monitor, 0.54, 0.32, 1),
+    "wide_monitor": partial(monitor, 0.71, 0.33, 2),
+    "keyboard": partial(keyboard, (0.015, 0.015, 0.016), (0.035, 0.035, 0.037)),
+    "white_keyboard": partial(keyboard, (0.62, 0.62, 0.62), (0.80, 0.80, 0.79)),
+    "mouse": partial(mouse, (0.02, 0.02, 0.021)),
+    "white_mouse": partial(mouse, (0.78, 0.78, 0.77)),
+    "computer": computer,
+    "whiteboard": partial(whiteboard, 1.8, 1.2),
 }
 """Maker of each object by its name in the recipe."""

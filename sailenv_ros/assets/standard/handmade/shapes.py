@@ -7,9 +7,10 @@ import numpy as np
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
 from sailenv_ros.assets.solids import box_mesh, cylinder_mesh
-from sailenv_ros.model import Material, Mesh
+from sailenv_ros.colour import linear_from_srgb
+from sailenv_ros.model import Material, Mesh, Texture
 
-__all__ = ["Vector3", "box", "part", "raw_mesh", "rod"]
+__all__ = ["Vector3", "box", "painted_part", "part", "printed_part", "raw_mesh", "rod"]
 
 Vector3 = tuple[float, float, float]
 
@@ -55,3 +56,23 @@ def rod(radius: float, length: float, centre: Vector3, end_radius: float | None 
         axis=1,
     )
     return RawMesh(positions=positions + np.asarray(centre), uvs=raw.uvs, triangles=raw.triangles)
+
+
+def painted_part(
+    name: str, mesh: RawMesh, colour: str, *, roughness: float = 0.5, **more: object
+) -> RawPart:
+    """Return a mesh of one colour, ``#rrggbb``; words of its name choose a finish."""
+    srgb = np.frombuffer(bytes.fromhex(colour[1:]), np.uint8) / 255.0
+    red, green, blue = (float(value) for value in linear_from_srgb(srgb))
+    return part(name, mesh, base_colour=(red, green, blue, 1.0), roughness=roughness, **more)
+
+
+def printed_part(name: str, mesh: RawMesh, print_: Texture, *, roughness: float = 0.8) -> RawPart:
+    """Return a mesh that a picture is printed on."""
+    return part(
+        name,
+        mesh,
+        base_colour=(1.0, 1.0, 1.0, 1.0),
+        base_colour_texture=print_,
+        roughness=roughness,
+    )

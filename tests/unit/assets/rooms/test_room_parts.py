@@ -268,3 +268,48 @@ def test_curtains_stay_in_a_corner() -> None:
     assert corners[:, 0].max() < 2.2
     assert corners[:, 1].max() <= 1.8
     assert corners[:, 2].min() > 0.0
+
+
+INNER = {"name": "inner wall", "start": [0.5, -1.8], "end": [0.5, 1.8], "thickness": 0.12}
+
+
+def test_a_wall_inside_is_a_closed_box_with_a_hole_for_the_doorway() -> None:
+    wall = room(partitions=[{**INNER, "doorways": [{"at": 0.4}]}])["inner wall"]
+    faces = np.concatenate([triangles(wall, 0), triangles(wall, 1)])
+    # Both sides without the doorway of 0.9 by 2.05 m.
+    for x in (0.44, 0.56):
+        side = faces[np.abs(faces[:, :, 0] - x).max(axis=1) < 1e-6]
+        assert area(side).sum() == pytest.approx(3.6 * 2.6 - 0.9 * 2.05)
+    low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
+    assert np.allclose(low, (0.44, -1.8, 0.0))
+    assert np.allclose(high, (0.56, 1.8, 2.6))
+
+
+def test_a_wall_inside_collides_but_for_its_doorway() -> None:
+    wall = room(partitions=[{**INNER, "doorways": [{"at": 0.4}]}])["inner wall"]
+    for y, z, solid in ((0.4, 1.0, False), (0.4, 2.3, True), (-1.0, 1.0, True), (0.4, 2.04, True)):
+        place = np.array([0.5, y, z]) - wall.position_m
+        hit = [
+            bool((np.abs(place - shape.centre_m) <= shape.half_extents_m).all())
+            for shape in wall.asset.collision
+            if isinstance(shape, BoxShape)
+        ]
+        assert any(hit) is solid
+
+
+def test_a_part_of_the_floor_takes_the_place_of_the_floor() -> None:
+    bath = {"name": "bath floor", "start": [0.5, -1.8], "end": [2.2, 1.8], "surface": "stone_tiles"}
+    parts = room(floors=[bath])
+    faces = [triangles(parts[name]) for name in ("floor", "bath floor")]
+    tops = [f[np.abs(f[:, :, 2]).max(axis=1) < 1e-6] for f in faces]
+    whole = (4.4 + 0.4) * (3.6 + 0.4)
+    assert area(tops[1]).sum() == pytest.approx(1.7 * 3.6)
+    assert area(tops[0]).sum() == pytest.approx(whole - 1.7 * 3.6)
+    assert parts["bath floor"].asset.collision == ()
+
+
+def test_the_skirting_goes_along_both_sides_of_a_wall_inside() -> None:
+    plain, divided = (
+        len(room(**keys)["skirting"].asset.collision) for keys in ({}, {"partitions": [INNER]})
+    )
+    assert divided == plain + 2

@@ -1,0 +1,84 @@
+"""Scenes that are made when they are asked for: ``generated:kitchen:17`` in, a scene file out.
+
+The files lie in the user's cache, in a folder for each state of rules and furniture.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from hashlib import blake2b
+from pathlib import Path
+
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.folders import cache_folder, standard_pack_folder
+from sailenv_ros.assets.pack import PACK_FILE
+from sailenv_ros.generation import Generator, parsed_name
+from sailenv_ros.generation import __file__ as generation_file
+from sailenv_ros.system.files import make_folder, storage_errors, write_file
+from sailenv_ros.system.resources import resource_path
+
+__all__ = ["GeneratedScenes"]
+
+FOLDER = "generated"
+MAX_FILES = 1000
+"""So many are kept."""
+
+
+class GeneratedScenes:
+    """Makes scenes by their names, each once.
+
+    Parameters
+    ----------
+    assets : AssetLibrary
+        What they are furnished with.
+    """
+
+    def __init__(self, assets: AssetLibrary) -> None:
+        self._assets = assets
+
+    def path(self, name: str) -> Path:
+        """Return the file of a scene; it is made if it has not been.
+
+        Raises
+        ------
+        InvalidRequest, UnknownName
+            If the name is not ``generated:KIND:SEED``.
+        AssetError, InvalidState
+            If it cannot be made.
+        StorageError
+            If it cannot be written.
+        """
+        kind, seed = parsed_name(name, self._generator.rules)
+        folder = cache_folder() / FOLDER / _state()
+        path = folder / f"generated_{kind}_{seed}.yaml"
+        if not path.is_file():
+            made = self._generator.generate(kind, seed)
+            with storage_errors("generated scenes", folder):
+                make_folder(folder)
+                write_file(path, made.text.encode(), overwrite=True)
+                _forget_oldest(folder, path)
+        return path
+
+    @cached_property
+    def _generator(self) -> Generator:
+        return Generator(assets=self._assets)
+
+
+def _forget_oldest(folder: Path, kept: Path) -> None:
+    """Delete the oldest files, so that requests cannot fill the disk; they can be made again."""
+    files = sorted(folder.glob("*.yaml"), key=lambda file: file.stat().st_mtime_ns)
+    for file in files[:-MAX_FILES]:
+        if file != kept:
+            file.unlink(missing_ok=True)
+
+
+def _state() -> str:
+    """Return what changes with the rules and with the furniture."""
+    digest = blake2b(digest_size=8)
+    rules = resource_path("config", "rooms")
+    files = [*sorted(rules.rglob("*.yaml")), standard_pack_folder() / PACK_FILE]
+    files += sorted(Path(generation_file).parent.glob("*.py"))
+    for file in files:
+        if file.is_file():
+            digest.update(file.read_bytes())
+    return digest.hexdigest()
