@@ -1,8 +1,11 @@
 """Time the baking of light: stages, rays, texels, memory, and loading what was baked.
 
     python benchmarks/bake_speed.py [--scene NAME ...] [--workers N] [--json FILE]
+        [--against CHECKOUT] [--rounds N]
 
-Nothing is read from the cache or written to it.
+No light is read from the cache or written to it. With `--against` another checkout of the
+repository bakes the same scenes in turn with this one, each time in a process of its own, so that
+both meet the same load.
 """
 
 from __future__ import annotations
@@ -13,6 +16,8 @@ import json
 import os
 import platform
 import resource
+import subprocess
+import sys
 import tempfile
 import time
 from dataclasses import replace
@@ -74,16 +79,26 @@ def never_hashed(snapshot: WorldSnapshot) -> WorldSnapshot:
     return replace(snapshot, contents=replace(contents, instances=instances))
 
 
-def measured(library: SceneLibrary, scene: str, workers: int) -> dict[str, Any]:
-    """Bake a scene and say what it took."""
+def snapshot_of(library: SceneLibrary, scene: str) -> WorldSnapshot:
+    """Build a scene and return it as it begins."""
     world = library.build(scene, seed=0, epoch=0, next_revision=itertools.count().__next__)
     try:
-        snapshot = world.snapshot()
+        return world.snapshot()
     finally:
         world.close()
+
+
+def measured(scene: str, snapshot: WorldSnapshot, workers: int) -> dict[str, Any]:
+    """Bake a scene and say what it took."""
     stages = Stages()
     started = time.perf_counter()
-    baked = bake(snapshot, report=stages, workers=workers)
+    previews: list[float] = []
+    baked = bake(
+        snapshot,
+        report=stages,
+        workers=workers,
+        preview=lambda light: previews.append(time.perf_counter() - started),
+    )
     total = time.perf_counter() - started
     seconds = stages.seconds()
     unknown = never_hashed(snapshot)
@@ -98,6 +113,7 @@ def measured(library: SceneLibrary, scene: str, workers: int) -> dict[str, Any]:
     return {
         "scene": scene,
         "total_s": total,
+        "previews_s": previews,
         "stages_s": {stage: wall for stage, (wall, _) in seconds.items()},
         "processor_s": sum(cpu for _, cpu in seconds.values()),
         "map": side,
@@ -113,7 +129,8 @@ def measured(library: SceneLibrary, scene: str, workers: int) -> dict[str, Any]:
 
 
 def _print(result: dict[str, Any]) -> None:
-    print(f"\n{result['scene']}: {result['total_s']:.1f} s")
+    previews = ", ".join(f"{seconds:.1f} s" for seconds in result["previews_s"])
+    print(f"\n{result['scene']}: {result['total_s']:.1f} s; shown roughly after {previews}")
     for stage, seconds in result["stages_s"].items():
         print(f"  {stage:<24} {seconds:7.1f} s")
     print(
@@ -126,20 +143,64 @@ def _print(result: dict[str, Any]) -> None:
     )
 
 
+ALONE = """
+import itertools, json, sys, time
+from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.simulation.scenes import SceneLibrary
+times = {}
+for scene in sys.argv[1:]:
+    world = SceneLibrary().build(scene, seed=0, epoch=0, next_revision=itertools.count().__next__)
+    snapshot = world.snapshot()
+    world.close()
+    wall, processor = time.perf_counter(), time.process_time()
+    bake(snapshot)
+    times[scene] = time.perf_counter() - wall, time.process_time() - processor
+print(json.dumps(times))
+"""
+"""Bakes without asking for anything that only one of the versions has."""
+
+
+def in_turn(checkouts: dict[str, Path], scenes: list[str], rounds: int) -> None:
+    """Bake in each checkout in turn; print the least of each time. The first round compiles."""
+    least: dict[tuple[str, str], tuple[float, float]] = {}
+    for number in range(rounds + 1):
+        for name, folder in checkouts.items():
+            environment = {**os.environ, "PYTHONPATH": str(folder)}
+            done = subprocess.run(
+                [sys.executable, "-c", ALONE, *scenes],
+                env=environment, cwd=folder, capture_output=True, text=True, check=True,
+            )  # fmt: skip
+            for scene, times in json.loads(done.stdout).items() if number else ():
+                before = least.get((scene, name), times)
+                least[scene, name] = min(before[0], times[0]), min(before[1], times[1])
+    for (scene, name), (wall, processor) in sorted(least.items()):
+        print(f"{scene:10} {name:8} {wall:6.1f} s, {processor:6.1f} s of processor")
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scene", action="append", help="default: room_01")
     parser.add_argument("--workers", type=int, default=0, help="threads (default: one a core)")
     parser.add_argument("--json", type=Path, metavar="FILE")
+    parser.add_argument("--against", type=Path, metavar="CHECKOUT", help="bake with both in turn")
+    parser.add_argument("--rounds", type=int, default=2, help="of baking in turn")
     args = parser.parse_args()
-    library = SceneLibrary()  # finds the furniture in the user's cache, before it is moved
+    if args.against is not None:
+        here = Path(__file__).resolve().parents[1]
+        in_turn(
+            {"this": here, "other": args.against.resolve()}, args.scene or ["room_01"], args.rounds
+        )
+        return
+    library = SceneLibrary()
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores")
     results = []
+    # The furniture is in the user's cache, which is moved afterwards.
+    snapshots = {scene: snapshot_of(library, scene) for scene in args.scene or ["room_01"]}
     with tempfile.TemporaryDirectory() as folder:
         os.environ["SAILENV_CACHE"] = folder
-        for scene in args.scene or ["room_01"]:
-            results.append(measured(library, scene, args.workers))
+        for scene, snapshot in snapshots.items():
+            results.append(measured(scene, snapshot, args.workers))
             _print(results[-1])
     if args.json:
         args.json.write_text(json.dumps(results, indent=1), encoding="utf-8")

@@ -15,7 +15,18 @@ from numpy.typing import NDArray
 
 from sailenv_ros.lights import Environment, Light
 
-__all__ = ["BakedLight", "LightChart", "LightLayer", "ProbeGrid", "Unwrapping"]
+__all__ = [
+    "EDGE_POINTS",
+    "BakedLight",
+    "LightChart",
+    "LightLayer",
+    "ProbeGrid",
+    "SunEdges",
+    "Unwrapping",
+]
+
+EDGE_POINTS = 4
+"""Points of a texel along each side at which `SunEdges` knows the share of light."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -77,6 +88,24 @@ class ProbeGrid:
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class SunEdges:
+    """Where a directional light's shadows end, more finely than the light map has it.
+
+    Attributes
+    ----------
+    index : (H, W) int32
+        Number of each texel's block, -1 where it has none: there the light map's share counts.
+    blocks : (K, 6, 6) uint8
+        Share of the light that arrives, 255 = all of it, at 4 by 4 points of each texel and at the
+        points around them; point (i, j) lies at ((j - 0.5) / 4, (i - 0.5) / 4) of the texel.
+        Between them it is bilinear.
+    """
+
+    index: NDArray[np.int32]
+    blocks: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class LightLayer:
     """What one light gives to the scene, for white light of intensity 1.
 
@@ -100,6 +129,9 @@ class LightLayer:
     visibility : (H, W) uint8 or None
         Share of a directional light that is not in shadow, 255 = all of it; None for other lights.
         Kept beside `direct` because it does not depend on the fine structure of the surface.
+        Of texels that have a block in `edges` it is neither 0 nor 255.
+    edges : SunEdges or None
+        Of a directional light, where its shadows end; None if that is not known.
     clear : float
         Share of a directional light that glass lets through where it comes into the air that the
         probes know, 0 to 1: what moves has no texels that would know it. 1 for other lights.
@@ -112,6 +144,7 @@ class LightLayer:
     probe_bounced: NDArray[np.float16]
     visibility: NDArray[np.uint8] | None = None
     clear: float = 1.0
+    edges: SunEdges | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

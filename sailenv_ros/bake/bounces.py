@@ -12,6 +12,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.ray_patterns import TURN
+from sailenv_ros.bake.rays import in_chunks
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 
@@ -19,6 +21,11 @@ __all__ = ["Patches", "bounced_radiance", "patches_of"]
 
 Floats = NDArray[np.float32]
 
+
+CHUNK_PATCHES = 4096
+
+FEWEST_RAYS = 2 * TURN
+"""Of each texel count at least in a patch of many."""
 
 MOST_LEFT = 0.9
 """Share of its light that a bounce leaves to the next, at most."""
@@ -69,13 +76,15 @@ def bounced_radiance(
     first: Floats,
     albedo: Floats,
     bounces: int,
+    workers: int = 1,
 ) -> Floats:
     """Return (N, C) float32: radiance of each texel with all that was handed on to it.
 
     Parameters
     ----------
     seen : (N, M) int32
-        Texels that the rays of each texel met; negative ones are dark.
+        Texels that the rays of each texel met; negative ones are dark. Of each texel in a patch of
+        many only some count, one after another: see `ray_patterns.in_turns`.
     valid : (N,) bool
         Texels inside of something know nothing.
     first : (N, C) float32
@@ -92,7 +101,13 @@ def bounced_radiance(
     grown = [np.ones(channels), np.ones(channels)]
     for _ in range(bounces):
         before, arriving = arriving, np.zeros_like(start)
-        _hand_on(members, bounds, seen, patches.of_texel, radiance, arriving)
+
+        def hand_on(
+            start: int, end: int, sent: Floats = radiance, arriving: Floats = arriving
+        ) -> None:
+            _hand_on(members, bounds, seen, patches.of_texel, sent, arriving, start, end)
+
+        in_chunks(hand_on, patches.count, CHUNK_PATCHES, workers)
         radiance = start + share * arriving
         grown = [grown[1], np.sum(arriving - before, axis=0, dtype=np.float64)]
     if bounces > 1:
@@ -103,19 +118,27 @@ def bounced_radiance(
 
 
 @numba.njit(cache=True, nogil=True)
-def _hand_on(members, bounds, seen, of_texel, radiance, arriving):  # type: ignore[no-untyped-def]
+def _hand_on(  # type: ignore[no-untyped-def]
+    members, bounds, seen, of_texel, radiance, arriving, start, stop
+):
     rays = seen.shape[1]
     channels = radiance.shape[1]
-    for patch in range(len(bounds) - 1):
+    for patch in range(start, stop):
         first, end = bounds[patch], bounds[patch + 1]
         if first == end:
             continue
+        # Neighbours take turns with the rays: together they have all directions.
+        turns = max(min(rays // FEWEST_RAYS, end - first), 1)
+        size = rays // turns
+        number = 0
         for place in range(first, end):
-            for m in range(rays):
+            turn = (place - first) % turns
+            for m in range(turn * size, (turn + 1) * size):
                 texel = seen[members[place], m]
+                number += 1
                 if texel >= 0:
                     source = of_texel[texel]
                     for c in range(channels):
                         arriving[patch, c] += radiance[source, c]
         for c in range(channels):
-            arriving[patch, c] /= (end - first) * rays
+            arriving[patch, c] /= number

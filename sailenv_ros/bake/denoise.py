@@ -9,12 +9,15 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.rays import in_chunks
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 
 __all__ = ["dilated", "denoised"]
 
 Floats = NDArray[np.float32]
+
+CHUNK_TEXELS = 32_768
 
 DILATIONS = 12
 """How many texels light is dilated into what lies inside of other things."""
@@ -26,6 +29,7 @@ def denoised(
     values: Floats,
     valid: NDArray[np.bool_],
     nearness: Floats,
+    workers: int = 1,
 ) -> Floats:
     """Average over tiles of 4 by 4 texels, twice, as far as the surface goes on.
 
@@ -40,10 +44,14 @@ def denoised(
     """
     result = values.copy()
     owner = geometry.owner[texels.triangle]
-    _denoise(
-        texels.index, texels.rows, texels.columns, owner, texels.positions, texels.normals,
-        values, valid, nearness, result,
-    )  # fmt: skip
+
+    def denoise(first: int, end: int) -> None:
+        _denoise(
+            texels.index, texels.rows, texels.columns, owner, texels.positions, texels.normals,
+            values, valid, nearness, result, first, end,
+        )  # fmt: skip
+
+    in_chunks(denoise, texels.count, CHUNK_TEXELS, workers)
     return result
 
 
@@ -67,12 +75,12 @@ def dilated(
 
 @numba.njit(cache=True, nogil=True)
 def _denoise(  # type: ignore[no-untyped-def]
-    index, rows, columns, owner, positions, normals, values, valid, nearness, result
+    index, rows, columns, owner, positions, normals, values, valid, nearness, result, start, end
 ):
     height, width = index.shape
     channels = values.shape[1]
     total = np.empty(channels, np.float32)
-    for k in range(len(rows)):
+    for k in range(start, end):
         if not valid[k]:
             continue
         total[:] = 0.0

@@ -6,18 +6,18 @@ From `Light` and points of surfaces to irradiance / pi, for white light of inten
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.light_shapes import LAMP_RADIUS_M, SUN_RADIUS, area_sides
+from sailenv_ros.bake.light_shapes import LAMP_RADIUS_M, SUN_DISC_RADIUS, SUN_RADIUS, area_sides
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import NEVER, RayScene
 from sailenv_ros.bake.sampling import shifted
 from sailenv_ros.lights import Light
 
-__all__ = ["LightSamples", "Points", "arriving", "samples_of"]
+__all__ = ["LightSamples", "Points", "arriving", "samples_of", "sun_directions", "visible_range"]
 
 Floats = NDArray[np.float32]
 
@@ -41,6 +41,11 @@ class Points:
     normals: Floats
     faces: Floats
     shifts: Floats
+
+    def moved(self, shift: tuple[float, float]) -> Points:
+        """Return the same with patterns that are moved farther, in sizes of cells."""
+        shifts = self.shifts + np.asarray(shift, dtype=np.float32)
+        return replace(self, shifts=shifts - np.floor(shifts))
 
     def part(self, chosen: slice | NDArray[np.intp]) -> Points:
         """Return some of them."""
@@ -81,39 +86,87 @@ def samples_of(light: Light, positions: Floats, shifts: Floats, pattern: Floats)
     return _lamp(light, positions, len(pattern))
 
 
-def arriving(
+def visible_range(
     scene: RayScene, light: Light, points: Points, pattern: Floats
 ) -> tuple[Floats, Floats]:
-    """Return (N,) irradiance / pi, and (N,) the share of the light that is visible."""
+    """Return (N,) least and (N,) largest share of the light that rays from each point find free.
+
+    Points that no ray leaves, because they face away, have inf and -inf.
+    """
+    samples, _, wanted = _rays(light, points, pattern)
+    free = _free(scene, points, samples, wanted)
+    lowest = np.where(wanted, free, np.float32(np.inf)).min(axis=1)
+    highest = np.where(wanted, free, np.float32(-np.inf)).max(axis=1)
+    return lowest, highest
+
+
+def arriving(
+    scene: RayScene, light: Light, points: Points, pattern: Floats, known: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """Return (N,) irradiance / pi, and (N,) the share of the light that is visible.
+
+    Parameters
+    ----------
+    known : (N,) float32 or None
+        How much of each ray arrives, where that is known: then no rays are cast.
+    """
+    samples, cosine, wanted = _rays(light, points, pattern)
+    if known is None:
+        free = _free(scene, points, samples, wanted)
+    else:
+        free = np.where(wanted, known[:, None], np.float32(0.0))
+    light_on = samples.irradiance * np.maximum(cosine, 0.0) * free
+    arrives = light_on.mean(axis=1, dtype=np.float64) / math.pi
+    return arrives.astype(np.float32), free.mean(axis=1, dtype=np.float64).astype(np.float32)
+
+
+def _rays(
+    light: Light, points: Points, pattern: Floats
+) -> tuple[LightSamples, Floats, NDArray[np.bool_]]:
+    """Return rays to a light, their cosines, and which of them can bring light."""
     samples = samples_of(light, points.positions, points.shifts, pattern)
     cosine = np.einsum("nmx,nx->nm", samples.towards, points.normals)
     above = np.einsum("nmx,nx->nm", samples.towards, points.faces) > 0.0
     cosine /= np.maximum(np.linalg.norm(samples.towards, axis=2), 1e-12)
-    wanted = above & (cosine > 0.0) & (samples.irradiance > 0.0)
+    return samples, cosine, above & (cosine > 0.0) & (samples.irradiance > 0.0)
+
+
+def _free(
+    scene: RayScene, points: Points, samples: LightSamples, wanted: NDArray[np.bool_]
+) -> Floats:
     point, _ = np.nonzero(wanted)
     origins = points.positions[point] + points.faces[point] * np.float32(LIFT_M)
     free = np.zeros(wanted.shape, dtype=np.float32)
     free[wanted] = scene.share_that_passes(
         origins, samples.towards[wanted], samples.lengths[wanted]
     )
-    light_on = samples.irradiance * np.maximum(cosine, 0.0) * free
-    arrives = light_on.mean(axis=1, dtype=np.float64) / math.pi
-    return arrives.astype(np.float32), free.mean(axis=1, dtype=np.float64).astype(np.float32)
+    return free
 
 
-def _sun(light: Light, at: Floats) -> LightSamples:
+def sun_directions(
+    light: Light, pattern: Floats, shifts: Floats, radius: float = SUN_DISC_RADIUS
+) -> Floats:
+    """Return (N, M, 3) float32: unit vectors towards points of a directional light's disc."""
+    return _to_the_disc(light, shifted(pattern, shifts), radius).astype(np.float32)
+
+
+def _to_the_disc(light: Light, at: Floats, radius: float) -> NDArray[np.float64]:
     forward = np.asarray(light.direction)
     helper = np.eye(3)[np.argmin(np.abs(forward))]
     side = np.cross(forward, helper)
     side /= np.linalg.norm(side)
     other = np.cross(forward, side)
-    radius, turn = SUN_RADIUS * np.sqrt(at[..., 0]), 2.0 * np.pi * at[..., 1]
+    away, turn = radius * np.sqrt(at[..., 0]), 2.0 * np.pi * at[..., 1]
     towards = (
         -forward
-        + (radius * np.cos(turn))[..., None] * side
-        + (radius * np.sin(turn))[..., None] * other
+        + (away * np.cos(turn))[..., None] * side
+        + (away * np.sin(turn))[..., None] * other
     )
-    towards /= np.linalg.norm(towards, axis=2, keepdims=True)
+    return np.asarray(towards / np.linalg.norm(towards, axis=2, keepdims=True))
+
+
+def _sun(light: Light, at: Floats) -> LightSamples:
+    towards = _to_the_disc(light, at, SUN_RADIUS)
     return LightSamples(
         towards=towards.astype(np.float32),
         lengths=np.full(at.shape[:2], NEVER, np.float32),

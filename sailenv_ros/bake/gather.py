@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from sailenv_ros.bake.back_to_back import BackToBack
 from sailenv_ros.bake.direct import LIFT_M, Points
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
-from sailenv_ros.bake.sampling import hemisphere_rays, shifted
+from sailenv_ros.bake.sampling import hemisphere_rays
 from sailenv_ros.bake.sky import sky_at
 
-__all__ = ["BACK", "NOTHING", "Surroundings", "gathered", "seen_from", "window_light"]
+__all__ = ["BACK", "NOTHING", "Seen", "Surroundings", "seen_from", "surfaces_light"]
 
 Floats = NDArray[np.float32]
 
@@ -79,99 +79,127 @@ class Surroundings:
         return found
 
 
-def seen_from(
-    around: Surroundings, points: Points, pattern: Floats
-) -> tuple[NDArray[np.int32], Floats, Floats]:
-    """Look into the hemispheres of points, with the density of the cosine.
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Seen:
+    """What points see of the half spaces before them.
 
-    Returns
-    -------
+    Attributes
+    ----------
     texels : (N, M) int32
-    distances : (N, M) float32
-    directions : (N, M, 3) float32
+        Which texel each ray met, `NOTHING` or `BACK`.
+    sky : (N, 3) float32
+        Irradiance / pi that comes straight from the sky.
+    closeness : (N,) float32
+        Mean of one over the distances of what is seen [1/m].
     """
-    count, rays = len(points.positions), len(pattern)
-    directions = np.empty((count, rays, 3), dtype=np.float32)
-    squares = shifted(pattern, points.shifts)
-    hemisphere_rays(points.normals, points.faces, squares, directions)
-    origins = np.repeat(points.positions + points.faces * np.float32(LIFT_M), rays, axis=0)
-    flat = directions.reshape(-1, 3)
-    hits = around.scene.hits(origins, flat)
-    texels = around.texels_hit(hits, flat).reshape(count, rays)
-    return texels, hits.distance.reshape(count, rays), directions
+
+    texels: NDArray[np.int32]
+    sky: Floats
+    closeness: Floats
 
 
-def gathered(
-    around: Surroundings,
-    points: Points,
-    pattern: Floats,
-    window_pattern: Floats,
-    radiance: Floats,
-) -> tuple[Floats, Floats]:
-    """Return (N, C) float32 irradiance / pi, and (N,) the harmonic mean of the distances seen.
+def seen_from(
+    around: Surroundings, points: Points, pattern: Floats, window_pattern: Floats
+) -> Seen:
+    """Look into the half spaces before points, with the density of the cosine, and at windows.
 
     Parameters
     ----------
-    radiance : (texels, C) float32
-        What each texel sends to everywhere; the sky adds to the first three.
+    pattern, window_pattern : (M, 2), (W, 2) float32
+        Nets, for rays in all directions and to each pane.
     """
-    texels, distances, directions = seen_from(around, points, pattern)
-    light = np.zeros((len(texels), radiance.shape[1]), dtype=np.float32)
-    nearness = np.empty(len(texels), dtype=np.float32)
-    _surfaces_light(texels, distances, radiance, light, nearness)
-    light[:, :3] += window_light(around, points, texels, directions, window_pattern)
-    return light, nearness
-
-
-def window_light(
-    around: Surroundings,
-    points: Points,
-    texels: NDArray[np.int32],
-    directions: Floats,
-    window_pattern: Floats,
-) -> Floats:
-    """Return (N, 3) float32: irradiance / pi from the sky, by rays that were cast and some more."""
-    light = np.zeros((len(texels), 3), dtype=np.float32)
-    panes = around.panes if len(window_pattern) else around.panes[:0]
-    shots = max(len(window_pattern), 1)
-    rays = texels.shape[1]
-    origins = np.repeat(points.positions, rays, axis=0)
-    clear = around.transmittance(texels.reshape(-1), origins, directions.reshape(-1, 3))
+    count, rays = len(points.positions), len(pattern)
+    directions = np.empty((count, rays, 3), dtype=np.float32)
+    hemisphere_rays(points.normals, points.faces, pattern, points.shifts, directions)
+    lifted = points.positions + points.faces * np.float32(LIFT_M)
+    origins = np.repeat(lifted, rays, axis=0)
+    flat = directions.reshape(-1, 3)
+    hits = around.scene.hits(origins, flat)
+    texels = around.texels_hit(hits, flat)
+    clear = around.transmittance(texels, origins, flat).reshape(count, rays)
+    texels = texels.reshape(count, rays)
+    sky = np.zeros((count, 3), dtype=np.float32)
     _sky_by_chance(
-        points.positions, points.normals, directions, texels, clear.reshape(-1, rays),
-        around.sky, panes, shots, light,
+        points.positions, points.normals, directions, texels, clear,
+        around.sky, around.panes, len(window_pattern), sky,
     )  # fmt: skip
-    for pane in panes:
-        _look_through(around, points, pane, panes, window_pattern, texels.shape[1], light)
+    for number in range(len(around.panes)):
+        _look_through(around, points, lifted, number, window_pattern, rays, sky)
+    near = np.reciprocal(np.maximum(hits.distance.reshape(count, rays), np.float32(1e-3)))
+    return Seen(texels=texels, sky=sky, closeness=near.mean(axis=1))
+
+
+def surfaces_light(texels: NDArray[np.int32], radiance: Floats) -> Floats:
+    """Return (N, C) float32: irradiance / pi from the surfaces that rays met.
+
+    Parameters
+    ----------
+    texels : (N, M) int32
+        As in `Seen`.
+    radiance : (texels, C) float32
+        What each texel sends to everywhere.
+    """
+    light = np.zeros((len(texels), radiance.shape[1]), dtype=np.float32)
+    _surfaces_light(texels, radiance, light)
     return light
 
 
 def _look_through(
     around: Surroundings,
     points: Points,
-    pane: Floats,
-    panes: Floats,
+    lifted: Floats,
+    number: int,
     pattern: Floats,
     others: int,
     light: Floats,
 ) -> None:
-    at = 2.0 * shifted(pattern, points.shifts) - 1.0
-    spots = pane[0] + at[..., :1] * pane[1] + at[..., 1:] * pane[2]
-    towards = (spots - points.positions[:, None]).astype(np.float32)
-    towards /= np.maximum(np.linalg.norm(towards, axis=2, keepdims=True), 1e-9)
-    wanted = (np.einsum("nmx,nx->nm", towards, points.normals) > 0.0) & (
-        np.einsum("nmx,nx->nm", towards, points.faces) > 0.0
-    )
-    point, _ = np.nonzero(wanted)
-    chosen = towards[wanted]
-    origins = points.positions[point] + points.faces[point] * np.float32(LIFT_M)
-    never = np.full(len(chosen), NEVER, np.float32)
-    share = around.scene.share_that_passes(origins, chosen, never)
-    free = share > 0.0
-    _sky_by_choice(
-        points.positions, points.normals, point[free], chosen[free], share[free],
-        around.sky, panes, len(pattern), others, light,
+    """Add the sky that is seen through a pane."""
+    most = len(points.positions) * len(pattern)
+    point = np.empty(most, dtype=np.int32)
+    origins, towards = np.empty((2, most, 3), dtype=np.float32)
+    count = _towards_pane(
+        points.positions, points.normals, points.faces, points.shifts, lifted,
+        around.panes[number], pattern, point, origins, towards,
     )  # fmt: skip
+    never = np.full(count, NEVER, np.float32)
+    share = around.scene.share_that_passes(origins[:count], towards[:count], never)
+    _sky_by_choice(
+        points.positions, points.normals, point[:count], towards[:count], share,
+        around.sky, around.panes, len(pattern), others, light,
+    )  # fmt: skip
+
+
+@numba.njit(cache=True, nogil=True)
+def _towards_pane(  # type: ignore[no-untyped-def]
+    positions, normals, faces, shifts, lifted, pane, pattern, point, origins, towards
+):
+    """Fill in rays to points of a pane that lie above the horizon; return how many there are."""
+    cells = np.sqrt(len(pattern))
+    count = 0
+    for k in range(len(positions)):
+        for m in range(len(pattern)):
+            u, v = pattern[m, 0] * cells, pattern[m, 1] * cells
+            left, low = np.floor(u), np.floor(v)
+            u, v = u - left + shifts[k, 0], v - low + shifts[k, 1]
+            u = 2.0 * (left + u - np.floor(u)) / cells - 1.0
+            v = 2.0 * (low + v - np.floor(v)) / cells - 1.0
+            x = pane[0, 0] + u * pane[1, 0] + v * pane[2, 0] - positions[k, 0]
+            y = pane[0, 1] + u * pane[1, 1] + v * pane[2, 1] - positions[k, 1]
+            z = pane[0, 2] + u * pane[1, 2] + v * pane[2, 2] - positions[k, 2]
+            if x * normals[k, 0] + y * normals[k, 1] + z * normals[k, 2] <= 0.0:
+                continue
+            if x * faces[k, 0] + y * faces[k, 1] + z * faces[k, 2] <= 0.0:
+                continue
+            length = max(np.sqrt(x * x + y * y + z * z), 1e-9)
+            point[count] = k
+            origins[count] = lifted[k]
+            towards[count, 0], towards[count, 1], towards[count, 2] = (
+                x / length,
+                y / length,
+                z / length,
+            )
+            count += 1
+    return count
 
 
 @numba.njit(cache=True, nogil=True)
@@ -208,17 +236,14 @@ def _texels_hit(  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=True, nogil=True)
-def _surfaces_light(texels, distances, radiance, light, nearness):  # type: ignore[no-untyped-def]
+def _surfaces_light(texels, radiance, light):  # type: ignore[no-untyped-def]
     count, rays = texels.shape
     for k in range(count):
-        near = 0.0
         for m in range(rays):
-            near += 1.0 / max(distances[k, m], 1e-3)
             texel = texels[k, m]
             if texel >= 0:
                 for c in range(light.shape[1]):
                     light[k, c] += radiance[texel, c]
-        nearness[k] = rays / max(near, 1e-6)
         for c in range(light.shape[1]):
             light[k, c] /= rays
 
@@ -276,6 +301,8 @@ def _sky_by_choice(  # type: ignore[no-untyped-def]
     positions, normals, point, directions, share, sky, panes, shots, others, light
 ):
     for ray in range(len(point)):
+        if share[ray] <= 0.0:
+            continue
         k = point[ray]
         dx, dy, dz = directions[ray]
         own = (dx * normals[k, 0] + dy * normals[k, 1] + dz * normals[k, 2]) / np.pi

@@ -5,6 +5,7 @@ Knows neither rays nor light.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -18,7 +19,7 @@ from sailenv_ros.bake.unwrap import Chart, unwrapped
 from sailenv_ros.baked_light import LightChart
 from sailenv_ros.model import Model
 
-__all__ = ["Layout", "is_simple", "laid_out"]
+__all__ = ["Layout", "laid_out"]
 
 SIMPLE_TRIANGLES = 1000
 """Models of fewer triangles are boards and walls, whose large faces show fine shadows."""
@@ -50,11 +51,6 @@ class Layout:
     side: int
     charts: dict[int, LightChart]
     places: NDArray[np.float32]
-
-
-def is_simple(model: Model) -> bool:
-    """Tell whether a model has few triangles, so that its light is seen in full."""
-    return model.triangle_count <= SIMPLE_TRIANGLES
 
 
 def laid_out(
@@ -127,15 +123,18 @@ def _unwrapped(
     settings: BakeSettings,
     coarser: float,
 ) -> Chart:
-    if is_simple(model):
+    if model.triangle_count <= SIMPLE_TRIANGLES:
         return unwrapped(model, scale, coarser * settings.texel_m, seen)
     texel = coarser * settings.fine_texel_m
-    for _ in range(TRIALS):
-        chart = unwrapped(model, scale, texel, seen)
-        if chart.width * chart.height <= MOST_TEXELS:
-            break
-        texel *= COARSER
-    return chart
+    trial = 0
+    while True:
+        chart = unwrapped(model, scale, texel * COARSER**trial, seen)
+        size = chart.width * chart.height
+        if size <= MOST_TEXELS or trial == TRIALS - 1:
+            return chart
+        # Borders do not shrink with the texels: it takes at least so many steps.
+        steps = math.floor(math.log(size / MOST_TEXELS) / (2.0 * math.log(COARSER)))
+        trial = min(trial + max(steps, 1), TRIALS - 1)
 
 
 def _place(

@@ -14,6 +14,7 @@ import os
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.folders import cache_folder
-from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, Unwrapping
+from sailenv_ros.baked_light import (
+    BakedLight,
+    LightChart,
+    LightLayer,
+    ProbeGrid,
+    SunEdges,
+    Unwrapping,
+)
 from sailenv_ros.lights import Light
 from sailenv_ros.system.files import (
     file_lock,
@@ -39,20 +47,26 @@ __all__ = [
     "is_baked",
     "light_folder",
     "load_baked",
+    "load_draft",
     "remember",
     "store_baked",
+    "store_draft",
 ]
 
-FORMAT = 3
+FORMAT = 4
 MAGIC = b"sailenv_ros baked light\n"
 DIGEST_BYTES = 32
 
 SUFFIX = ".light"
 
+DRAFT_SUFFIX = ".draft"
+"""Of light that is right, but rough: what stands in until the light itself is baked."""
+
 MOST_FILES = 24
 """The oldest are thrown away beyond it."""
 
 _LAYER_ARRAYS = ("direct", "bounced", "probe_direct", "probe_bounced", "visibility")
+_EDGE_ARRAYS = ("index", "blocks")
 _CHART_ARRAYS = ("vertices", "triangles", "uvs")
 
 _log = logging.getLogger(__name__)
@@ -78,7 +92,25 @@ def store_baked(baked: BakedLight) -> Path:
     DeadlineExceeded
         If another process kept writing to the folder.
     """
-    path = baked_file(baked.fingerprint)
+    path = _stored(baked, baked_file(baked.fingerprint))
+    path.with_suffix(DRAFT_SUFFIX).unlink(missing_ok=True)
+    return path
+
+
+def store_draft(baked: BakedLight) -> Path:
+    """Keep rough light until `store_baked` is called with the light itself.
+
+    Raises
+    ------
+    StorageError
+        If the file cannot be written.
+    DeadlineExceeded
+        If another process kept writing to the folder.
+    """
+    return _stored(baked, baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX))
+
+
+def _stored(baked: BakedLight, path: Path) -> Path:
     arrays = io.BytesIO()
     np.savez(arrays, allow_pickle=False, **_arrays_of(baked))
     payload = arrays.getbuffer()
@@ -94,7 +126,15 @@ def store_baked(baked: BakedLight) -> Path:
 
 def load_baked(fingerprint: str) -> BakedLight | None:
     """Return the light kept for a fingerprint; None if there is none that can be used."""
-    path = baked_file(fingerprint)
+    return _loaded(baked_file(fingerprint), fingerprint)
+
+
+def load_draft(fingerprint: str) -> BakedLight | None:
+    """Return the rough light kept for a fingerprint; None if there is none that can be used."""
+    return _loaded(baked_file(fingerprint).with_suffix(DRAFT_SUFFIX), fingerprint)
+
+
+def _loaded(path: Path, fingerprint: str) -> BakedLight | None:
     if not path.is_file():
         return None
     try:
@@ -113,7 +153,8 @@ def load_baked(fingerprint: str) -> BakedLight | None:
 def damaged_light() -> dict[Path, str]:
     """Check every file of baked light; return what is wrong, in words, by file."""
     problems = {}
-    for path in sorted(light_folder().glob(f"*{SUFFIX}")):
+    files = (light_folder().glob(f"*{suffix}") for suffix in (SUFFIX, DRAFT_SUFFIX))
+    for path in sorted(chain(*files)):
         try:
             _payload(path)
         except (OSError, ValueError) as problem:
@@ -169,7 +210,7 @@ def _is_fingerprint(text: str) -> bool:
 
 def forget_oldest(folder: Path, most: int = MOST_FILES) -> None:
     """Remove the files that have not been used for longest, so that `most` of a kind remain."""
-    for kind in (f"*{SUFFIX}", "*.known"):
+    for kind in (f"*{SUFFIX}", f"*{DRAFT_SUFFIX}", "*.known"):
         ages = {}
         for path in folder.glob(kind):
             with suppress(OSError):
@@ -190,6 +231,9 @@ def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:
             array = getattr(layer, name)
             if array is not None:
                 arrays[f"layer_{place}_{name}"] = array
+        if layer.edges is not None:
+            for name in _EDGE_ARRAYS:
+                arrays[f"layer_{place}_edges_{name}"] = getattr(layer.edges, name)
     number = {id(unwrapping): u for u, unwrapping in enumerate(unwrappings)}
     description = {
         "format": FORMAT,
@@ -227,6 +271,7 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
         LightLayer(
             light=None if light is None else Light(**_with_tuples(light)),
             clear=clear,
+            edges=_edges_of(arrays, place),
             **{
                 name: _frozen(arrays[f"layer_{place}_{name}"])
                 for name in _LAYER_ARRAYS
@@ -251,6 +296,16 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
         layers=tuple(layers),
         probes=ProbeGrid(**_with_tuples(description["probes"])),
     )
+
+
+def _edges_of(arrays: Mapping[str, NDArray[Any]], place: int) -> SunEdges | None:
+    names = {name: f"layer_{place}_edges_{name}" for name in _EDGE_ARRAYS}
+    if any(name not in arrays for name in names.values()):
+        return None
+    edges = SunEdges(**{name: _frozen(arrays[key]) for name, key in names.items()})
+    if edges.index.size and not -1 <= edges.index.min() <= edges.index.max() < len(edges.blocks):
+        raise ValueError("it names edges of shadows that it does not have")
+    return edges
 
 
 def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:

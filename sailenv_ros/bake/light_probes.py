@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numba
 import numpy as np
@@ -17,7 +18,14 @@ from sailenv_ros.bake.sky import sky_at
 from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.lights import Light
 
-__all__ = ["dilated_grid", "probe_grid", "probe_light", "probe_positions", "straight_light"]
+__all__ = [
+    "ProbeViews",
+    "dilated_grid",
+    "probe_grid",
+    "probe_light",
+    "probe_positions",
+    "straight_light",
+]
 
 Floats = NDArray[np.float32]
 
@@ -48,15 +56,46 @@ def probe_positions(grid: ProbeGrid) -> Floats:
     return positions
 
 
-def probe_light(around: Surroundings, positions: Floats, radiance: Floats, rays: int) -> Floats:
-    """Return (N, 4, C) float32: what arrives at probes from surfaces and sky; see `LightLayer`."""
-    directions = fibonacci_sphere(rays)
-    light = np.zeros((len(positions), 4, radiance.shape[1]), dtype=np.float32)
-    for k, position in enumerate(positions):
-        hits = around.scene.hits(np.tile(position, (rays, 1)), directions)
-        texels = around.texels_hit(hits, directions)
-        clear = around.transmittance(texels, np.tile(position, (rays, 1)), directions)
-        _collect(texels, directions, clear, radiance, around.sky, light[k])
+@dataclass(frozen=True, eq=False, slots=True)
+class ProbeViews:
+    """What probes see: (R, 3) directions, and (N, R) texels and how clear the glass is."""
+
+    directions: Floats
+    texels: NDArray[np.int32]
+    clear: Floats
+
+    @classmethod
+    def empty(cls, count: int, rays: int) -> ProbeViews:
+        """Return views to be filled in by `look`."""
+        return cls(
+            fibonacci_sphere(rays),
+            np.empty((count, rays), dtype=np.int32),
+            np.empty((count, rays), dtype=np.float32),
+        )
+
+    def look(self, around: Surroundings, positions: Floats, first: int, end: int) -> None:
+        """Fill in what some of the probes see."""
+        count, rays = end - first, len(self.directions)
+        origins = np.repeat(positions[first:end], rays, axis=0)
+        directions = np.tile(self.directions, (count, 1))
+        texels = around.texels_hit(around.scene.hits(origins, directions), directions)
+        self.texels[first:end] = texels.reshape(count, rays)
+        clear = around.transmittance(texels, origins, directions)
+        self.clear[first:end] = clear.reshape(count, rays)
+
+
+def probe_light(views: ProbeViews, radiance: Floats, sky: Floats) -> Floats:
+    """Return (N, 4, C) float32: what arrives at probes from surfaces and sky; see `LightLayer`.
+
+    Parameters
+    ----------
+    views : ProbeViews
+    radiance : (texels, C) float32
+    sky : (H, W, 3) float32
+    """
+    light = np.zeros((len(views.texels), 4, radiance.shape[1]), dtype=np.float32)
+    for k, own in enumerate(light):
+        _collect(views.texels[k], views.directions, views.clear[k], radiance, sky, own)
     return light
 
 

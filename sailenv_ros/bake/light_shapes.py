@@ -9,10 +9,13 @@ from numpy.typing import NDArray
 
 from sailenv_ros.lights import Light
 
-__all__ = ["LAMP_RADIUS_M", "SUN_RADIUS", "area_sides"]
+__all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "area_sides"]
 
 SUN_RADIUS = math.tan(math.radians(0.4))
-"""Of a directional light's disc at a distance of 1; the sun's own is 0.27 degrees."""
+"""Of a directional light's disc at a distance of 1, for texels: shadows end as they are wide."""
+
+SUN_DISC_RADIUS = math.tan(math.radians(0.265))
+"""The sun's own, for `SunEdges`."""
 
 LAMP_RADIUS_M = 0.03
 """Of point and spot lights, for their shadows' edges alone."""

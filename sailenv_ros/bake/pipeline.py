@@ -5,22 +5,23 @@ Knows neither OpenGL nor PyBullet nor where results are kept.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.back_to_back import back_to_back_faces
-from sailenv_ros.bake.bounces import bounced_radiance, patches_of
+from sailenv_ros.bake.bounces import Patches, patches_of
 from sailenv_ros.bake.denoise import denoised, dilated
-from sailenv_ros.bake.direct import Points, arriving
+from sailenv_ros.bake.direct import Points
 from sailenv_ros.bake.facing import facing_the_light
 from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.gather import BACK, Surroundings, gathered, seen_from, window_light
-from sailenv_ros.bake.layout import Layout, is_simple, laid_out
+from sailenv_ros.bake.gather import Surroundings
+from sailenv_ros.bake.layout import laid_out
 from sailenv_ros.bake.light_probes import (
+    ProbeViews,
     dilated_grid,
     probe_grid,
     probe_light,
@@ -28,30 +29,29 @@ from sailenv_ros.bake.light_probes import (
     straight_light,
 )
 from sailenv_ros.bake.ray_patterns import net
-from sailenv_ros.bake.rays import NEVER, RayScene, in_chunks
+from sailenv_ros.bake.rays import NEVER, RayScene
 from sailenv_ros.bake.reflectance import albedo_of, emission_of
 from sailenv_ros.bake.sampling import tile_shift
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.bake.sky import panes
 from sailenv_ros.bake.sky_picture import sky_picture
+from sailenv_ros.bake.solving import Samples, SolvedLight, Solver, Stages
 from sailenv_ros.bake.static_geometry import static_geometry_of
-from sailenv_ros.bake.texels import rasterised
+from sailenv_ros.bake.sun_edges import sun_edges
+from sailenv_ros.bake.texels import Texels, rasterised
 from sailenv_ros.bake.visibility import probe_visibility, visible_triangles
-from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
+from sailenv_ros.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.lights import Light
 from sailenv_ros.snapshot import WorldSnapshot
 
-__all__ = ["Report", "bake"]
+__all__ = ["Preview", "Report", "bake"]
 
 Floats = NDArray[np.float32]
 Report = Callable[[str, float], None]
 """Is told the name of the stage and which share of the whole is done, 0 to 1."""
 
-MOST_BACKS = 0.25
-"""A texel that sees more backs of surfaces than this share lies inside of something."""
-
-CHUNK_RAYS = 1_000_000
-"""Cast at a time by one thread."""
+Preview = Callable[[BakedLight], None]
+"""Is given light of the same scene that is right, but rougher than what comes in the end."""
 
 
 def bake(
@@ -59,6 +59,7 @@ def bake(
     *,
     settings: BakeSettings | None = None,
     report: Report = lambda stage, share: None,
+    preview: Preview | None = None,
     workers: int = 0,
 ) -> BakedLight:
     """Work out the light on everything that stands still.
@@ -70,45 +71,61 @@ def bake(
     settings : BakeSettings or None
     report : callable
         See `Report`.
+    preview : callable or None
+        See `Preview`; called twice: with light that has a value for each 4 by 4 texels, and with
+        light at every texel by the first pass of rays.
     workers : int
         Threads; 0 is one for each core. The result is the same for any number.
     """
     settings = settings or BakeSettings()
-    work = _Bake(snapshot, settings, report, workers or os.cpu_count() or 1)
-    return work.run()
-
-
-@dataclass(eq=False, slots=True)
-class _Light:
-    """What is known of one light at the texels, and of the surroundings (`light` is None)."""
-
-    light: Light | None
-    direct: Floats
-    visibility: Floats | None = None
+    return _Bake(snapshot, settings, Stages(report, workers), preview).run()
 
 
 class _Bake:
     """One bake; what the stages share."""
 
     def __init__(
-        self, snapshot: WorldSnapshot, settings: BakeSettings, report: Report, workers: int
+        self,
+        snapshot: WorldSnapshot,
+        settings: BakeSettings,
+        stages: Stages,
+        preview: Preview | None,
     ) -> None:
         self._snapshot, self._settings = snapshot, settings
-        self._report, self._workers = report, workers
-        self._done = 0.0
+        self._stages, self._preview = stages, preview
+        self._edges: dict[str, SunEdges] = {}
 
     def run(self) -> BakedLight:
-        settings, contents = self._settings, self._snapshot.contents
+        settings, stages, lights = self._settings, self._stages, self._snapshot.contents.lights
+        samples = self._prepared()
+        if self._preview is not None:
+            stages.begin("draft", 0.06)
+            self._preview(self._draft(samples))
+        solver = Solver(samples, lights, settings, stages)
+        solver.begin((0.44, 0.16, 0.1))
+        if self._preview is not None and settings.rays > settings.pass_rays:
+            self._preview(self._result(solver))
+        passes = settings.rays // settings.pass_rays
+        for number in range(1, passes):
+            solver.refine(stages.begin(f"pass {number + 1} of {passes}", 0.0))
+        done = stages.begin("result", 0.05)
+        result = self._result(solver)
+        done(1.0)
+        return result
+
+    def _prepared(self) -> Samples:
+        """Lay out the map, and find what its texels are."""
+        settings, contents, stages = self._settings, self._snapshot.contents, self._stages
         geometry = static_geometry_of(self._snapshot)
         scene = RayScene(geometry)
         self._grid = probe_grid(geometry.bounds(), settings)
         self._spots = probe_positions(self._grid)
-        self._begin_stage("visibility", 0.04)
+        stages.begin("visibility", 0.02)
         self._visibility = probe_visibility(geometry, scene, self._spots, settings.probe_rays)
         visible = visible_triangles(geometry, self._visibility.seen)
-        layout = laid_out(geometry, settings, visible, self._begin_stage("surfaces", 0.06))
+        layout = laid_out(geometry, settings, visible, stages.begin("surfaces", 0.14))
         texels = facing_the_light(geometry, scene, rasterised(geometry, layout))
-        self._geometry, self._texels = geometry, texels
+        self._geometry, self._texels, self._layout = geometry, texels, layout
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -119,156 +136,69 @@ class _Bake:
             sky=sky_picture(contents.environment),
             panes=panes(geometry),
         )
-        self._points = Points(
+        points = Points(
             positions=texels.positions,
             normals=texels.normals,
             faces=texels.faces,
             shifts=tile_shift(texels.rows, texels.columns),
         )
-        albedo = albedo_of(geometry, layout, texels)
-        seen, sky = self._gather_visibility()
-        self._nearness = np.zeros(texels.count, dtype=np.float32)
-        self._valid = np.mean(seen == BACK, axis=1) <= MOST_BACKS
-        lights = [_Light(None, np.zeros(texels.count, np.float32))]
-        lights += [self._straight(light) for light in contents.lights]
-        radiance = self._radiance(lights, albedo, emission_of(geometry, texels), seen, sky)
-        bounced = self._final_gather(radiance)
-        probes = self._probes(lights, radiance)
-        return self._result(layout, lights, bounced, *probes)
-
-    def _begin_stage(self, stage: str, weight: float) -> Callable[[float], None]:
-        """Begin a stage that takes this share of the whole time."""
-        begun, self._done = self._done, min(self._done + weight, 1.0)
-        self._report(stage, begun)
-        return lambda share: self._report(stage, begun + weight * share)
-
-    def _chunks(
-        self,
-        work: Callable[[int, int], None],
-        count: int,
-        rays: int,
-        report: Callable[[float], None],
-    ) -> None:
-        size = max(CHUNK_RAYS // max(rays, 1), 1)
-        in_chunks(work, count, size, self._workers, report)
-
-    def _gather_visibility(self) -> tuple[NDArray[np.int32], Floats]:
-        """Find which texels see which, and how much of the sky arrives straight at each."""
-        count, rays = self._texels.count, self._settings.coarse_rays
-        pattern = net(rays)
-        seen = np.empty((count, rays), dtype=np.int32)
-        sky = np.empty((count, 3), dtype=np.float32)
-        few = net(4)
-
-        def cast(first: int, end: int) -> None:
-            points = self._points.part(slice(first, end))
-            seen[first:end], _, directions = seen_from(self._around, points, pattern)
-            sky[first:end] = window_light(self._around, points, seen[first:end], directions, few)
-
-        self._chunks(cast, count, rays, self._begin_stage("gather visibility", 0.15))
-        return seen, sky
-
-    def _straight(self, light: Light) -> _Light:
-        count, rays = self._texels.count, self._settings.light_rays
-        pattern = net(rays)
-        direct, visibility = np.zeros(count, np.float32), np.zeros(count, np.float32)
-        lit = np.flatnonzero(self._valid)
-
-        def shine(first: int, end: int) -> None:
-            chosen = lit[first:end]
-            points = self._points.part(chosen)
-            direct[chosen], visibility[chosen] = arriving(
-                self._around.scene, light, points, pattern
-            )
-
-        share = 0.18 / len(self._snapshot.contents.lights)
-        self._chunks(shine, len(lit), rays, self._begin_stage(light.name, share))
-        return _Light(light, direct, visibility if light.type == "directional" else None)
-
-    def _radiance(
-        self,
-        lights: list[_Light],
-        albedo: Floats,
-        emission: Floats,
-        seen: NDArray[np.int32],
-        sky: Floats,
-    ) -> Floats:
-        """Return (N, 3 L) float32: what each texel sends out, light by light."""
-        report = self._begin_stage("bounces", 0.05)
-        first = np.concatenate(
-            [emission + albedo * sky, *(albedo * light.direct[:, None] for light in lights[1:])],
-            axis=1,
+        self._views = ProbeViews.empty(len(self._spots), settings.probe_rays)
+        look = stages.begin("probes", 0.03)
+        stages.run(
+            lambda first, end: self._views.look(self._around, self._spots, first, end),
+            len(self._spots), settings.probe_rays, look,
+        )  # fmt: skip
+        self._probe_direct = [self._straight_at_probes(light) for light in contents.lights]
+        return Samples(
+            around=self._around,
+            points=points,
+            patches=patches_of(geometry, texels),
+            albedo=albedo_of(geometry, layout, texels),
+            emission=emission_of(geometry, texels),
+            texels=texels,
         )
-        first[~self._valid] = 0.0
-        radiance = bounced_radiance(
-            patches_of(self._geometry, self._texels),
-            seen,
-            self._valid,
-            first,
-            albedo,
-            self._settings.bounces,
-        )
-        radiance[~self._valid] = 0.0
-        report(1.0)
-        return radiance
 
-    def _final_gather(self, radiance: Floats) -> Floats:
-        """Return (N, 3 L) float32: what arrives at each texel by way of others and from the sky."""
-        settings, texels = self._settings, self._texels
-        window_pattern = net(settings.window_rays)
-        light = np.zeros((texels.count, radiance.shape[1]), dtype=np.float32)
-        owner = self._geometry.owner[texels.triangle]
-        simple = np.array([is_simple(instance.model) for instance in self._geometry.instances])
+    def _draft(self, samples: Samples) -> BakedLight:
+        """Return the light as one texel of each patch gets it, spread over the patch."""
+        texels, of_texel = self._texels, samples.patches.of_texel
+        chosen = _middles(texels, samples.patches)
+        index = np.full(texels.index.shape, -1, np.int32)
+        index[texels.rows, texels.columns] = of_texel
+        points = samples.points.part(chosen)
+        few = Samples(
+            around=replace(self._around, index=index),
+            points=replace(points, shifts=tile_shift(
+                texels.rows[chosen] // 4, texels.columns[chosen] // 4
+            )),
+            patches=Patches(
+                of_texel=np.arange(len(chosen), dtype=np.int32), count=len(chosen)
+            ),
+            albedo=samples.patches.means(samples.albedo, np.ones(texels.count, bool)),
+            emission=samples.emission[chosen],
+        )  # fmt: skip
+        solver = Solver(few, self._snapshot.contents.lights, self._settings, self._stages)
+        solver.begin()
+        return self._result(solver, of_texel)
 
-        def gather_with(rays: int, lit: NDArray[np.intp], report: Callable[[float], None]) -> None:
-            pattern = net(rays)
+    def _straight_at_probes(self, light: Light) -> Floats | None:
+        """Return (N, 4) float32, what probes get straight from a light that needs them for that."""
+        if light.type == "directional":
+            return None
+        pattern = net(self._settings.light_rays)
+        return straight_light(self._around.scene, light, self._spots, pattern)
 
-            def gather(first: int, end: int) -> None:
-                chosen = lit[first:end]
-                points = self._points.part(chosen)
-                light[chosen], self._nearness[chosen] = gathered(
-                    self._around, points, pattern, window_pattern, radiance
-                )
-
-            self._chunks(gather, len(lit), rays, report)
-
-        if texels.count:
-            plain = simple[owner]
-            chosen = np.flatnonzero(self._valid & plain)
-            gather_with(settings.rays, chosen, self._begin_stage("final gather on walls", 0.37))
-            chosen = np.flatnonzero(self._valid & ~plain)
-            gather_with(
-                settings.fine_rays, chosen, self._begin_stage("final gather on furniture", 0.11)
-            )
-        return self._denoised_and_dilated(light)
-
-    def _denoised_and_dilated(self, values: Floats) -> Floats:
-        """Denoise values of texels, and dilate them into texels inside of something."""
-        values = denoised(self._geometry, self._texels, values, self._valid, self._nearness)
-        return dilated(self._geometry, self._texels, values, self._valid)
-
-    def _probes(self, lights: list[_Light], radiance: Floats) -> tuple[ProbeGrid, Floats, Floats]:
-        """Return the grid, (L, N, 4) direct and (N, 4, 3 L) bounced light of its probes."""
-        settings, grid, positions = self._settings, self._grid, self._spots
-        count = len(positions)
-        bounced = np.empty((count, 4, radiance.shape[1]), dtype=np.float32)
-
-        def gather(first: int, end: int) -> None:
-            bounced[first:end] = probe_light(
-                self._around, positions[first:end], radiance, settings.probe_rays
-            )
-
-        self._chunks(gather, count, settings.probe_rays, self._begin_stage("probes", 0.04))
-        direct = np.zeros((len(lights), count, 4), dtype=np.float32)
-        for place, entry in enumerate(lights):
-            if entry.light is not None and entry.light.type != "directional":
-                direct[place] = straight_light(
-                    self._around.scene, entry.light, positions, net(settings.light_rays)
-                )
-        unknown = ~self._visibility.useful
+    def _probes(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> tuple[Floats, Floats]:
+        """Return (L, N, 4) direct and (N, 4, 3 L) bounced light of the probes."""
+        radiance = solver.radiance if of_texel is None else solver.radiance[of_texel]
+        bounced = probe_light(self._views, radiance, self._around.sky)
+        direct = np.zeros((len(solver.lights), len(self._spots), 4), dtype=np.float32)
+        for place, straight in enumerate(self._probe_direct):
+            if straight is not None:
+                direct[place + 1] = straight
+        unknown, grid = ~self._visibility.useful, self._grid
         bounced = dilated_grid(bounced, unknown, grid)
         direct = np.stack([dilated_grid(d[..., None], unknown, grid)[..., 0] for d in direct])
-        return grid, direct, bounced
+        return direct, bounced
 
     def _clear(self, light: Light | None) -> float:
         """Return how much of a light glass lets through, on the mean over the probes it reaches."""
@@ -280,56 +210,96 @@ class _Bake:
         share = self._around.scene.share_that_passes(spots, towards, never)
         return float(share[share > 0.0].mean(dtype=np.float64)) if share.any() else 1.0
 
-    def _result(
-        self,
-        layout: Layout,
-        lights: list[_Light],
-        bounced: Floats,
-        grid: ProbeGrid,
-        probe_direct: Floats,
-        probe_bounced: Floats,
-    ) -> BakedLight:
-        """Lay everything out as the renderer takes it."""
-        texels, geometry = self._texels, self._geometry
-        at = texels.rows, texels.columns
+    def _result(self, solver: Solver, of_texel: NDArray[np.int32] | None = None) -> BakedLight:
+        """Lay everything out as the renderer takes it.
+
+        Parameters
+        ----------
+        of_texel : (texels,) int32 or None
+            Which of the solver's points stands for each texel; None if each stands for itself.
+        """
+        texels, geometry, grid = self._texels, self._geometry, self._grid
+        chosen = slice(None) if of_texel is None else of_texel
+        valid, channels = solver.valid[chosen], solver.bounced.shape[1]
+        # An area light's shadows are as soft as the texels are fine, and its rays are few.
+        smooth = [of_texel is not None or _is_soft(entry) for entry in solver.lights]
+        shares = [entry.visibility for entry in solver.lights if entry.visibility is not None]
+        direct = np.stack([entry.direct for entry in solver.lights] + shares, axis=1)[chosen]
+        smooth += [of_texel is not None] * len(shares)
+        noisy = np.concatenate([solver.bounced[chosen], direct[:, smooth]], axis=1)
+        noisy = denoised(
+            geometry, texels, noisy, valid, solver.nearness[chosen], self._stages.workers
+        )
+        direct[:, smooth] = noisy[:, channels:]
+        known = np.concatenate([noisy[:, :channels], direct], axis=1)
+        known = dilated(geometry, texels, known, valid)
+        probe_direct, probe_bounced = self._probes(solver, of_texel)
+        count = len(solver.lights)
+        visibility = iter(range(channels + count, known.shape[1]))
         layers = []
-        for place, entry in enumerate(lights):
+        for place, entry in enumerate(solver.lights):
             mine = slice(3 * place, 3 * place + 3)
-            # An area light's shadows are as soft as the texels are fine, and its rays are few.
-            soft = entry.light is not None and entry.light.type == "area"
-            known = entry.direct[:, None]
-            known = (
-                self._denoised_and_dilated(known)
-                if soft
-                else dilated(geometry, texels, known, self._valid)
-            )
-            direct = np.zeros(texels.index.shape, dtype=np.float16)
-            direct[at] = known[:, 0]
-            map_of = np.zeros((*texels.index.shape, 3), dtype=np.float16)
-            map_of[at] = bounced[:, mine]
-            visibility = None
+            share = edges = None
             if entry.visibility is not None:
-                share = dilated(geometry, texels, entry.visibility[:, None], self._valid)
-                visibility = np.zeros(texels.index.shape, dtype=np.uint8)
-                visibility[at] = np.rint(share[:, 0] * 255.0)
+                rounded = np.rint(known[:, next(visibility)] * 255.0)
+                if of_texel is None:
+                    edges = self._sun_edges(entry, valid)
+                    marked = edges.index[texels.rows, texels.columns] >= 0
+                    # Where light is partial, blocks are looked for.
+                    rounded[marked] = np.clip(rounded[marked], 1.0, 254.0)
+                share = self._map_of(rounded, np.uint8)
             layers.append(
                 LightLayer(
                     light=entry.light,
-                    direct=direct,
-                    bounced=map_of,
+                    direct=self._map_of(known[:, channels + place], np.float16),
+                    bounced=self._map_of(known[:, mine], np.float16),
                     probe_direct=np.repeat(
                         probe_direct[place].reshape(*grid.shape, 4, 1), 3, axis=-1
                     ).astype(np.float16),
                     probe_bounced=probe_bounced[:, :, mine]
                     .reshape(*grid.shape, 4, 3)
                     .astype(np.float16),
-                    visibility=visibility,
+                    visibility=share,
                     clear=self._clear(entry.light),
+                    edges=edges,
                 )
             )
         return BakedLight(
             fingerprint=fingerprint(self._snapshot, self._settings),
-            charts=layout.charts,
+            charts=self._layout.charts,
             layers=tuple(layers),
             probes=grid,
         )
+
+    def _sun_edges(self, entry: SolvedLight, valid: NDArray[np.bool_]) -> SunEdges:
+        """Return where a directional light's shadows end; found once for all results."""
+        assert entry.light is not None
+        assert entry.mixed is not None
+        found = self._edges.get(entry.light.name)
+        if found is None:
+            found = self._edges[entry.light.name] = sun_edges(
+                self._geometry, self._around.scene, self._texels, self._layout.places,
+                entry.light, entry.mixed[valid[entry.mixed]], self._stages.run,
+            )  # fmt: skip
+        return found
+
+    def _map_of(self, values: Floats, kind: type[np.generic]) -> NDArray[Any]:
+        texels = self._texels
+        result: NDArray[Any] = np.zeros((*texels.index.shape, *values.shape[1:]), dtype=kind)
+        result[texels.rows, texels.columns] = values
+        return result
+
+
+def _is_soft(entry: SolvedLight) -> bool:
+    return entry.light is not None and entry.light.type == "area"
+
+
+def _middles(texels: Texels, patches: Patches) -> NDArray[np.intp]:
+    """Return (patches,) the texel that is nearest to the middle of each."""
+    of_texel, count = patches.of_texel, np.bincount(patches.of_texel, minlength=patches.count)
+    far = np.zeros(texels.count)
+    for at in (texels.rows, texels.columns):
+        middle = np.bincount(of_texel, weights=at, minlength=patches.count) / count
+        far += (at - middle[of_texel]) ** 2
+    order = np.lexsort((far, of_texel))
+    return order[np.concatenate([[0], np.cumsum(count)[:-1]])] if len(order) else order

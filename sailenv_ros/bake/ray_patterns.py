@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["fibonacci_sphere", "net"]
+__all__ = ["TURN", "fibonacci_sphere", "in_turns", "net"]
 
 Floats = NDArray[np.float32]
+
+
+TURN = 16
+"""Points of a net that are enough by themselves; see `in_turns`."""
 
 
 def net(count: int) -> Floats:
@@ -25,6 +29,19 @@ def net(count: int) -> Floats:
     first = (index + 0.5) / count
     second = (mirrored + 0.5) / 2.0**bits
     return np.stack([first, second], axis=1).astype(np.float32)
+
+
+def in_turns(pattern: Floats) -> Floats:
+    """Return a net in another order: each `TURN` points on end are one in each of as many cells."""
+    cells = np.floor(pattern * np.sqrt(TURN)).astype(np.intp)
+    cell = cells[:, 0] * int(np.sqrt(TURN)) + cells[:, 1]
+    by_cell = np.argsort(cell, kind="stable")
+    if len(pattern) <= TURN:
+        return pattern
+    # Which of a cell's points comes first turns with the cell, so that no turn leans to a side.
+    number = np.arange(len(pattern)) % (len(pattern) // TURN)
+    number = (number + cell[by_cell]) % (len(pattern) // TURN)
+    return pattern[by_cell[np.lexsort((cell[by_cell], number))]]
 
 
 def fibonacci_sphere(count: int) -> Floats:

@@ -11,7 +11,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["hemisphere_rays", "shifted", "tile_shift"]
+__all__ = ["hemisphere_rays", "pass_shift", "shifted", "tile_shift"]
 
 Floats = NDArray[np.float32]
 
@@ -23,6 +23,23 @@ def tile_shift(rows: NDArray[np.int32], columns: NDArray[np.int32]) -> Floats:
     """Return (N, 2) float32: how far each texel moves a net's points, in sizes of cells."""
     shift = np.stack([_ORDER[columns & 3], _ORDER[rows & 3]], axis=1)
     return np.asarray(shift / 4.0, dtype=np.float32)
+
+
+def pass_shift(number: int) -> tuple[float, float]:
+    """Return how much farther points are moved in a pass, in sizes of cells.
+
+    A tile's points lie a quarter of a cell apart. Those of further passes lie between them, so
+    that all passes together fill the cells evenly; and what a texel gets in a pass lies far from
+    what it got before.
+    """
+    x = y = 0.0
+    half, between = 0.5, 0.125
+    while number:
+        right, up = number & 1, number >> 1 & 1
+        x += between * right + half * (right ^ up)
+        y += between * up + half * right
+        half, between, number = half / 2.0, between / 2.0, number >> 2
+    return x % 1.0, y % 1.0
 
 
 def shifted(pattern: Floats, shifts: Floats) -> Floats:
@@ -38,26 +55,31 @@ def shifted(pattern: Floats, shifts: Floats) -> Floats:
 
 
 @numba.njit(cache=True, nogil=True)
-def hemisphere_rays(normals, faces, squares, directions):  # type: ignore[no-untyped-def]
+def hemisphere_rays(normals, faces, pattern, shifts, directions):  # type: ignore[no-untyped-def]
     """Fill in directions whose density is the cosine to the normal, over pi.
 
     Parameters
     ----------
     normals, faces : (N, 3) float32
         Directions that would run into the face are mirrored at it.
-    squares : (N, M, 2) float32
-        Points of the unit square that become the directions.
+    pattern : (M, 2) float32
+        A net of points of the unit square that become the directions; see `shifted`.
+    shifts : (N, 2) float32
     directions : (N, M, 3) float32
         Filled in; unit length.
     """
+    cells = np.sqrt(len(pattern))
     for k in range(len(normals)):
         nx, ny, nz = normals[k]
         # Duff and others 2017, "Building an orthonormal basis, revisited".
         sign = 1.0 if nz >= 0.0 else -1.0
         a = -1.0 / (sign + nz)
         b = nx * ny * a
-        for m in range(squares.shape[1]):
-            u, v = squares[k, m]
+        for m in range(len(pattern)):
+            u, v = pattern[m, 0] * cells, pattern[m, 1] * cells
+            left, low = np.floor(u), np.floor(v)
+            u, v = u - left + shifts[k, 0], v - low + shifts[k, 1]
+            u, v = (left + u - np.floor(u)) / cells, (low + v - np.floor(v)) / cells
             radius = np.sqrt(u)
             x, y = radius * np.cos(2.0 * np.pi * v), radius * np.sin(2.0 * np.pi * v)
             z = np.sqrt(max(1.0 - u, 0.0))

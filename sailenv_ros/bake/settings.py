@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 __all__ = ["BAKE_VERSION", "BakeSettings"]
 
-BAKE_VERSION = 6
+BAKE_VERSION = 8
 """Grows whenever the same scene and settings would give another result."""
 
 
@@ -23,14 +23,16 @@ class BakeSettings:
     max_map : int
         Largest side of the light map [texels]; texels grow until everything fits.
     rays : int
-        Rays from each texel of a model of few triangles in the last gathering; texels of a tile of
-        4 by 4 share 16 times as many directions. A square of a power of two: 4, 16, 64, 256, 1024.
-    fine_rays : int
-        The same for models of many triangles, whose shapes hide what noise remains.
-    coarse_rays : int
-        The same for the bounces before, of all models.
-    light_rays, window_rays : int
-        Rays from each texel to each light, and to each window.
+        Rays from each texel into its half space; texels of a tile of 4 by 4 share 16 times as many
+        directions. A multiple of `pass_rays`.
+    pass_rays : int
+        Rays that are cast at a time; the first serve the bounces, too. A square of a power of two:
+        4, 16, 64.
+    window_rays : int
+        Rays from each texel to each window in each of these passes; a square of a power of two.
+    light_rays : int
+        Rays from each texel to each light, where its shadows have edges; a quarter of them finds
+        the edges. A square of a power of two, at least 4.
     bounces : int
         How many times light is handed on before the last gathering.
     probe_spacing_m : float
@@ -43,11 +45,10 @@ class BakeSettings:
     texel_m: float = 0.02
     fine_texel_m: float = 0.03
     max_map: int = 2048
-    rays: int = 256
-    fine_rays: int = 64
-    coarse_rays: int = 16
-    light_rays: int = 16
+    rays: int = 64
+    pass_rays: int = 64
     window_rays: int = 16
+    light_rays: int = 16
     bounces: int = 12
     probe_spacing_m: float = 0.4
     max_probes: int = 8000

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sailenv_ros.bake.layout import Layout
 from sailenv_ros.bake.static_geometry import StaticGeometry
 
-__all__ = ["Texels", "rasterised"]
+__all__ = ["Texels", "closest_point", "off_the_edges", "rasterised"]
 
 REACH = 1.5
 """Texels this near to a triangle stand for its nearest point: bilinear look-ups meet them."""
@@ -71,7 +71,7 @@ def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
     index = np.full((side, side), -1, dtype=np.int32)
     index[rows, columns] = np.arange(len(rows))
     triangle = owner[rows, columns]
-    share = _off_the_edges(geometry.corners[triangle], weights[rows, columns])
+    share = off_the_edges(geometry.corners[triangle], weights[rows, columns])
     faces = geometry.faces[triangle]
     normals = np.einsum("nc,ncx->nx", share, geometry.normals[triangle])
     # Normals that point through their own triangle are none.
@@ -90,7 +90,7 @@ def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
     )
 
 
-def _off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> NDArray[np.float32]:
+def off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the weights of points a little further in: at the very edge others may begin."""
     middles = corners.mean(axis=1)
     points = np.einsum("nc,ncx->nx", share, corners)
@@ -115,7 +115,7 @@ def _cover(places, owner, weights, nearest):  # type: ignore[no-untyped-def]
             for column in range(left, right):
                 if nearest[row, column] == 0.0:
                     continue
-                far = _closest(corners, column + 0.5, row + 0.5, share)
+                far = closest_point(corners, column + 0.5, row + 0.5, share)
                 if far < nearest[row, column]:
                     nearest[row, column] = far
                     owner[row, column] = t
@@ -123,7 +123,7 @@ def _cover(places, owner, weights, nearest):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=True, nogil=True)
-def _closest(corners, x, y, share):  # type: ignore[no-untyped-def]
+def closest_point(corners, x, y, share):  # type: ignore[no-untyped-def]
     """Return the squared distance of a point from a triangle, and in `share` the nearest point."""
     ax, ay = corners[0, 0], corners[0, 1]
     bx, by = corners[1, 0], corners[1, 1]

@@ -25,6 +25,8 @@ MOST_BACKS = 0.15
 LEAST_VIEW_M = 0.5
 """Who nowhere sees farther is inside of something, too."""
 
+CHUNK_RAYS = 250_000
+
 MOST_SKY = 0.5
 """Who sees more sky stands outside of a room, if there are others who see little of it."""
 
@@ -58,16 +60,22 @@ def probe_visibility(
     """
     directions = fibonacci_sphere(rays)
     two_sided = geometry.two_sided | (back_to_back_faces(geometry).other >= 0)
-    inside, sky = np.zeros(len(positions), bool), np.zeros(len(positions))
-    met = np.full((len(positions), rays), -1, dtype=np.int32)
-    for k, position in enumerate(positions):
-        hits = scene.hits(np.tile(position, (rays, 1)), directions)
-        met[k] = hits.triangle
-        facing = np.einsum("rx,rx->r", directions, geometry.faces[met[k]])
-        backs = (met[k] >= 0) & (facing > 0.0) & ~two_sided[met[k]]
-        met[k, backs] = -1
-        sky[k] = np.mean(hits.triangle < 0)
-        inside[k] = backs.mean() > MOST_BACKS or float(hits.distance.max()) < LEAST_VIEW_M
+    count = len(positions)
+    inside, sky = np.zeros(count, bool), np.zeros(count)
+    met = np.full((count, rays), -1, dtype=np.int32)
+    step = max(CHUNK_RAYS // rays, 1)
+    for first in range(0, count, step):
+        own = slice(first, min(first + step, count))
+        size = own.stop - first
+        hits = scene.hits(np.repeat(positions[own], rays, axis=0), np.tile(directions, (size, 1)))
+        triangle = hits.triangle.reshape(size, rays)
+        met[own] = triangle
+        facing = np.einsum("rx,nrx->nr", directions, geometry.faces[triangle])
+        backs = (triangle >= 0) & (facing > 0.0) & ~two_sided[triangle]
+        sky[own] = np.mean(triangle < 0, axis=1)
+        farthest = hits.distance.reshape(size, rays).max(axis=1)
+        inside[own] = (backs.mean(axis=1) > MOST_BACKS) | (farthest < LEAST_VIEW_M)
+        met[own][backs] = -1
     closed = bool((sky[~inside] < MOST_SKY / 2).any())
     useful = ~inside & ~(closed & (sky > MOST_SKY))
     seen = np.zeros(geometry.triangle_count, dtype=bool)

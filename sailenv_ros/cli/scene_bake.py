@@ -8,14 +8,21 @@ from __future__ import annotations
 import argparse
 import itertools
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import baked_file, is_baked, load_baked, remember, store_baked
+from sailenv_ros.bake.light_files import (
+    baked_file,
+    is_baked,
+    load_baked,
+    remember,
+    store_baked,
+    store_draft,
+)
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli.arguments import add_allow_modules
@@ -51,12 +58,24 @@ def bake_scenes(args: argparse.Namespace) -> int:
     return 0
 
 
-def ensure_baked(scene: str, scene_paths: Sequence[Path] = (), *, allow_modules: bool) -> bool:
-    """Bake a scene's light unless it is baked or has no room; return whether it was baked now."""
+def ensure_baked(
+    scene: str,
+    scene_paths: Sequence[Path] = (),
+    *,
+    allow_modules: bool,
+    drafted: Callable[[], None] = lambda: None,
+) -> bool:
+    """Bake a scene's light unless it is baked or has no room; return whether it was baked now.
+
+    Parameters
+    ----------
+    drafted : callable
+        Called whenever light is there that is right, but rougher than what comes in the end.
+    """
     library = SceneLibrary(scene_paths, allow_modules=allow_modules)
     if is_baked(library.stamp(scene)) or library.load(scene).room is None:
         return False
-    _bake_one(library, scene, force=False)
+    _bake_one(library, scene, force=False, drafted=drafted)
     return True
 
 
@@ -65,7 +84,13 @@ def rooms(library: SceneLibrary) -> list[str]:
     return [name for name in library.scene_names if library.load(name).room is not None]
 
 
-def _bake_one(library: SceneLibrary, scene: str, *, force: bool) -> str:
+def _bake_one(
+    library: SceneLibrary,
+    scene: str,
+    *,
+    force: bool,
+    drafted: Callable[[], None] = lambda: None,
+) -> str:
     """Bake a scene and say what was done."""
     if library.load(scene).room is None:
         return "it has no room; its light is worked out from frame to frame"
@@ -78,13 +103,21 @@ def _bake_one(library: SceneLibrary, scene: str, *, force: bool) -> str:
     if not force and load_baked(name) is not None:
         said = f"baked already ({baked_file(name)})"
     else:
-        path = store_baked(_with_a_bar(snapshot, scene))
+
+        def keep(draft: BakedLight) -> None:
+            if load_baked(name) is None:  # with --force the light that is there is better
+                store_draft(draft)
+                drafted()
+
+        path = store_baked(_with_a_bar(snapshot, scene, keep))
         said = f"baked ({path}, {path.stat().st_size / 1e6:.0f} MB)"
     remember(library.stamp(scene), name)
     return said
 
 
-def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
+def _with_a_bar(
+    snapshot: WorldSnapshot, scene: str, preview: Callable[[BakedLight], None]
+) -> BakedLight:
     console = Console(stderr=True)
     columns = (
         TextColumn("{task.description:<32}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
@@ -101,6 +134,6 @@ def _with_a_bar(snapshot: WorldSnapshot, scene: str) -> BakedLight:
                 quarters = int(4 * share)
                 print(f"light of {scene}: {25 * quarters} %", file=sys.stderr, flush=True)
 
-        baked = bake(snapshot, report=report_stage)
+        baked = bake(snapshot, report=report_stage, preview=preview)
         bar.update(task, description=f"light of {scene}", completed=1.0)
     return baked

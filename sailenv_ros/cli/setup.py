@@ -74,5 +74,9 @@ def _furniture(names: Collection[str] | None, jobs: int | None, what: str) -> No
 
 
 def _light(scene: str, args: argparse.Namespace) -> None:
-    if ensure_baked(scene, args.scenes, allow_modules=args.allow_modules):
+    def drafted() -> None:
+        print(f"{READY}light of {scene}, rough as yet", flush=True)
+
+    modules = args.allow_modules
+    if ensure_baked(scene, args.scenes, allow_modules=modules, drafted=drafted):
         print(f"{READY}light of {scene}", flush=True)

@@ -297,6 +297,9 @@ def _set_baked(light: NDArray[np.void], composited: CompositedLight, light_map: 
     light["light_map_height"], light["light_map_width"] = light_map.height, light_map.width
     light["main_baked"] = float(composited.main_baked)
     light["main_clear"] = composited.main_transmittance
+    edges = composited.main_edges  # kept by `composited`, as long as it is shown
+    light["edge_index_at"] = address(None if edges is None else edges.index)
+    light["edge_blocks_at"] = address(None if edges is None else edges.blocks)
 
 
 def _describe(row: np.void, lamp: Light) -> None:

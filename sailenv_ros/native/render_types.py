@@ -143,6 +143,8 @@ LIGHT = _structure(
     ("instance_light_at", _ADDRESS),
     ("main_baked", "<f4"),
     ("main_clear", "<f4"),
+    ("edge_index_at", _ADDRESS),
+    ("edge_blocks_at", _ADDRESS),
     ("reflections_at", _ADDRESS),
     ("reflection_edge", "<i4"),
     ("reflection_layers", "<i4"),

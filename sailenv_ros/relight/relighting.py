@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere, net
-from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid
+from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, SunEdges
 from sailenv_ros.geometry import invert
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
@@ -276,7 +276,10 @@ class _Relighting:
             return replace(layer, direct=direct)
         visibility = layer.visibility.copy()
         _put(visibility, self._scene.places, state, 255.0 * share, 255.0)
-        return replace(layer, direct=direct, visibility=visibility)
+        changed = visibility != layer.visibility
+        return replace(
+            layer, direct=direct, visibility=visibility, edges=_elsewhere(layer.edges, changed)
+        )
 
     def _with_probes(self, layers: list[LightLayer], far: Floats, near: Floats) -> list[LightLayer]:
         result = []
@@ -307,6 +310,14 @@ def _put(
     kept = np.where(state[chosen] == 1, flat[at].astype(np.float32), 0.0)
     new = np.clip(kept + value[chosen], 0.0, most)
     flat[at] = np.rint(new) if layer.dtype == np.uint8 else new
+
+
+def _elsewhere(edges: SunEdges | None, changed: NDArray[np.bool_]) -> SunEdges | None:
+    """Return edges of shadows without those at texels whose light has changed."""
+    if edges is None:
+        return None
+    index = np.where(changed, np.int32(-1), edges.index)
+    return replace(edges, index=np.ascontiguousarray(index, np.int32))
 
 
 def _probe_points(grid: ProbeGrid) -> Floats:

@@ -6,6 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.baked_light import SunEdges
 from sailenv_ros.render.baked_state import ROW_IDS, BakedState
 from sailenv_ros.render.lightmap_compositing import CompositedLight
 from sailenv_ros.render.programs import set_uniform
@@ -14,6 +15,10 @@ from sailenv_ros.snapshot import WorldSnapshot
 __all__ = ["BakedTextures"]
 
 LIGHT_MAP_UNIT, INSTANCE_UNIT = 4, 5
+EDGE_INDEX_UNIT, EDGE_BLOCKS_UNIT = 13, 14
+
+BLOCKS_IN_A_ROW = 128
+"""As in `lighting.frag`."""
 
 
 class BakedTextures:
@@ -24,6 +29,9 @@ class BakedTextures:
         self._state = BakedState()
         self._light_map: moderngl.Texture | None = None
         self._instances: moderngl.Texture | None = None
+        self._edge_index: moderngl.Texture | None = None
+        self._edge_blocks: moderngl.Texture | None = None
+        self._edges: SunEdges | None = None
         self._uploaded: CompositedLight | None = None
         self._table: object = None
 
@@ -34,6 +42,7 @@ class BakedTextures:
             return None
         if composited is not self._uploaded:
             self._upload(composited)
+            self._upload_edges(composited.main_edges)
             self._uploaded = composited
         table = self._state.instances
         if table is not self._table:
@@ -44,6 +53,7 @@ class BakedTextures:
         """Show other light than that of a snapshot, which is that of the last `show`'s scene."""
         self._state.update(snapshot)
         self._upload(composited)
+        self._upload_edges(composited.main_edges)
         self._uploaded = composited
         self._write(self._state.around(snapshot, composited.probes))
 
@@ -55,10 +65,16 @@ class BakedTextures:
         set_uniform(program, "light_map", LIGHT_MAP_UNIT)
         self._instances.use(INSTANCE_UNIT)
         set_uniform(program, "instance_light", INSTANCE_UNIT)
+        assert self._edge_index is not None
+        assert self._edge_blocks is not None
+        self._edge_index.use(EDGE_INDEX_UNIT)
+        set_uniform(program, "edge_index", EDGE_INDEX_UNIT)
+        self._edge_blocks.use(EDGE_BLOCKS_UNIT)
+        set_uniform(program, "edge_blocks", EDGE_BLOCKS_UNIT)
 
     def close(self) -> None:
         """Free the textures."""
-        for texture in (self._light_map, self._instances):
+        for texture in (self._light_map, self._instances, self._edge_index, self._edge_blocks):
             if texture is not None:
                 texture.release()
 
@@ -72,6 +88,28 @@ class BakedTextures:
             self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self._instances.write(np.ascontiguousarray(table))
         self._table = table
+
+    def _upload_edges(self, edges: SunEdges | None) -> None:
+        """Lay the blocks out side by side; without any, one texel says so."""
+        if self._edge_index is not None and edges is self._edges:
+            return
+        index = np.full((1, 1), -1, np.int32) if edges is None else edges.index
+        blocks = np.zeros((0, 6, 6), np.uint8) if edges is None else edges.blocks
+        rows = max(-(-len(blocks) // BLOCKS_IN_A_ROW), 1)
+        padded = np.zeros((rows * BLOCKS_IN_A_ROW, 6, 6), np.uint8)
+        padded[: len(blocks)] = blocks
+        sheet = padded.reshape(rows, BLOCKS_IN_A_ROW, 6, 6).transpose(0, 2, 1, 3)
+        for texture in (self._edge_index, self._edge_blocks):
+            if texture is not None:
+                texture.release()
+        size = index.shape[::-1]
+        self._edge_index = self._context.texture(size, 1, np.ascontiguousarray(index), dtype="i4")
+        self._edge_blocks = self._context.texture(
+            (6 * BLOCKS_IN_A_ROW, 6 * rows), 1, np.ascontiguousarray(sheet), alignment=1
+        )
+        for texture in (self._edge_index, self._edge_blocks):
+            texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self._edges = edges
 
     def _upload(self, composited: CompositedLight) -> None:
         texels = composited.texels()

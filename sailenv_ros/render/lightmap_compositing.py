@@ -13,7 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
+from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid, SunEdges
 from sailenv_ros.lights import Environment, Light
 
 __all__ = [
@@ -59,6 +59,8 @@ class CompositedLight:
         True if the light map's fourth channel belongs to the present main light.
     main_transmittance : float
         Share of the main light that glass lets through to what has no texels; 1 if not known.
+    main_edges : SunEdges or None
+        Where the main light's shadows end, if that is known.
     """
 
     layers: LayerSum
@@ -66,6 +68,7 @@ class CompositedLight:
     live: tuple[Light, ...]
     main_baked: bool
     main_transmittance: float
+    main_edges: SunEdges | None = None
 
     def texels(self) -> NDArray[np.float16]:
         """Return (H, W, 4) float16: the light map, added up anew at each call."""
@@ -129,6 +132,7 @@ def composite_lightmap(
     shown = np.full(surroundings.direct.shape, 255, np.uint8)
     main = main_light(lights)
     main_baked, main_transmittance = False, 1.0
+    main_edges: SunEdges | None = None
     present = {light.name: light for light in lights}
     known = set()
     for layer in baked.layers[1:]:
@@ -141,6 +145,7 @@ def composite_lightmap(
         _add(terms, probes, layer, light, direct=not is_main)
         if is_main and layer.visibility is not None:
             shown, main_baked, main_transmittance = layer.visibility, True, layer.clear
+            main_edges = layer.edges
     live = tuple(light for light in lights if light.name not in known and light is not main)
     return CompositedLight(
         layers=LayerSum(terms, more, shown),
@@ -148,6 +153,7 @@ def composite_lightmap(
         live=live,
         main_baked=main_baked,
         main_transmittance=main_transmittance,
+        main_edges=main_edges,
     )
 
 

@@ -13,7 +13,7 @@ from sailenv_ros.render.reflection_points import MOST
 
 __all__ = ["ReflectionTexture"]
 
-UNIT, TABLE_UNIT = 6, 13
+UNIT, TABLE_UNIT = 6, 15
 
 
 class ReflectionTexture:

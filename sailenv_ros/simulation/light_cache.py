@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 
 from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import load_baked
+from sailenv_ros.bake.light_files import load_baked, load_draft
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.world.world import World
 
@@ -24,9 +24,17 @@ class LightCache:
 
     def __init__(self) -> None:
         self._last: BakedLight | None = None
+        self._is_draft = False
+
+    def is_final(self, world: World) -> bool:
+        """Tell whether a world has light that no bake will replace."""
+        baked = world.contents.baked
+        if baked is None:
+            return False
+        return not (self._is_draft and self._last is not None and baked.layers is self._last.layers)
 
     def hang(self, world: World, scene: str) -> None:
-        """Load a world's baked light, or say how to have it baked.
+        """Load a world's baked light, the draft if that is all there is, or say how to bake it.
 
         Parameters
         ----------
@@ -36,8 +44,12 @@ class LightCache:
             The name or file by which a user asks for it.
         """
         name = fingerprint(world.snapshot())
-        if self._last is None or self._last.fingerprint != name:
-            self._last = load_baked(name)
+        if self._last is None or self._last.fingerprint != name or self._is_draft:
+            before, self._last, self._is_draft = self._last, load_baked(name), False
+            if self._last is None and (draft := load_draft(name)) is not None:
+                self._last, self._is_draft = draft, True
+            elif self._last is None and before is not None and before.fingerprint == name:
+                self._last, self._is_draft = before, True
         if self._last is not None:
             world.set_baked(self._last)
             return

@@ -194,7 +194,7 @@ class SceneLibrary:
 
     def load_light(self, world: World) -> None:
         """Give a world the light that was baked since it was built, if there is any."""
-        if world.contents.baked is None:
+        if not self._light_cache.is_final(world):
             self._load_light(world, world.scene)
 
     def stamp(self, scene: str | Path) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sailenv_ros.baked_light import SunEdges
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import RENDERED_VIEWS
 from sailenv_ros.geometry import Pose
@@ -57,6 +58,30 @@ def test_the_main_light_arrives_as_far_as_the_map_says(render: Render, share: fl
     got = linear(render(scene, camera_at(), "rgb")["rgb"]).mean(axis=(0, 1))
     # Beside the matt part a little is reflected by the surface itself, hardly any at roughness 1.
     np.testing.assert_allclose(got, share * 1.5 * ALBEDO / np.pi, rtol=0.08, atol=0.004)
+
+
+def test_where_a_shadow_ends_blocks_tell_the_share(render: Render) -> None:
+    """Bilinear between the points of a texel's block; a texel without one has the map's share."""
+    points = 0.25 + 0.5 * (np.arange(6) - 0.5) / 4.0  # a ramp along u within each texel
+    blocks = np.broadcast_to(np.rint(255.0 * points), (1, 6, 6)).astype(np.uint8)
+    index = np.zeros((SIZE, SIZE), np.int32)
+    index[: SIZE // 2] = -1
+    sun = replace(layer(SUN, visible=0.5), edges=SunEdges(index=index, blocks=blocks.copy()))
+    light = baked({1: chart(WALL, AHEAD)}, [sun])
+    scene = snapshot_of([Thing(WALL, AHEAD)], lights=(SUN,), environment=DARK, baked=light)
+    camera = camera_at()
+    got = linear(render(scene, camera, "rgb")["rgb"]) / (1.5 * ALBEDO / np.pi)
+    height, width = got.shape[:2]
+    columns = np.arange(width)
+    y = -(columns - camera.intrinsics.cx) / camera.intrinsics.fx * 3.0
+    within = (4 + (0.5 - y / 8.0) * (SIZE - 8)) % 1.0
+    inside = (within > 0.1) & (within < 0.9)
+    halves = got[: height // 2 - 8], got[height // 2 + 8 :]
+    # Which half of the map is above is the chart's matter.
+    flat, ramp = sorted((half.mean(axis=(0, 2)) for half in halves), key=lambda h: np.ptp(h))
+    np.testing.assert_allclose(flat, 0.5, rtol=0.08)
+    np.testing.assert_allclose(ramp[inside], (0.25 + 0.5 * within)[inside], rtol=0.08, atol=0.01)
+    assert inside.sum() > 20
 
 
 def test_what_moves_is_lit_from_the_probes(render: Render) -> None:

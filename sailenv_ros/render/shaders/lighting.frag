@@ -32,6 +32,8 @@ uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx,
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
 uniform float main_transmittance;   // of glass, for what is not in the light map
 uniform float main_baked;          // 1 if the light map knows the main light's shadows
+uniform isampler2D edge_index;     // of the light map's texels: number of a block, or -1
+uniform sampler2D edge_blocks;     // 6 by 6 shares of main light each, 128 blocks in a row
 #endif
 #include "reflections.glsl"
 
@@ -56,6 +58,27 @@ vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {
     vec3 lifted = point + normal * shadow_texel.x * (1.0 + 2.0 * slope);
     return (shadow_from_optical * vec4(lifted, 1.0)).xyz;
 }
+
+#ifdef BAKED
+// Share of the main light where its shadows end, from blocks of four by four points a texel with
+// a border; elsewhere the light map's.
+float edge_share(vec2 place, float share) {
+    if (share <= 0.0 || share >= 1.0) return share;
+    vec2 at = place * vec2(textureSize(edge_index, 0));
+    ivec2 texel = ivec2(at);
+    int block = texelFetch(edge_index, texel, 0).x;
+    if (block < 0) return share;
+    vec2 within = 4.0 * (at - vec2(texel)) + 0.5;
+    ivec2 corner = min(ivec2(within), ivec2(4));
+    vec2 beyond = within - vec2(corner);
+    ivec2 first = 6 * ivec2(block % 128, block / 128) + corner;
+    float a = texelFetch(edge_blocks, first, 0).x;
+    float b = texelFetch(edge_blocks, first + ivec2(1, 0), 0).x;
+    float c = texelFetch(edge_blocks, first + ivec2(0, 1), 0).x;
+    float d = texelFetch(edge_blocks, first + ivec2(1, 1), 0).x;
+    return mix(mix(a, b, beyond.x), mix(c, d, beyond.x), beyond.y);
+}
+#endif
 
 #ifndef BAKED
 float four_taps(sampler2DShadow map, vec3 at) {
@@ -149,7 +172,8 @@ void main() {
     float charted = place.x > 0.0 ? 1.0 : 0.0;
     vec3 around = mix(max(probed, vec3(0.0)), mapped.rgb, charted);
     float past_what_stands = main_transmittance * texture(static_shadow_map, in_shadow);
-    main_arrives *= mix(past_what_stands, mapped.a, charted * main_baked);
+    float known = edge_share(place, mapped.a);
+    main_arrives *= mix(past_what_stands, known, charted * main_baked);
     vec3 reflected = around;
 #else
     float main_arrives = four_taps(shadow_map, in_shadow);

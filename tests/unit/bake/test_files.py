@@ -60,6 +60,11 @@ def test_what_is_stored_comes_back(baked: BakedLight) -> None:
         for name in ("direct", "bounced", "probe_direct", "probe_bounced", "visibility"):
             np.testing.assert_array_equal(getattr(same_layer, name), getattr(layer, name))
         assert not same_layer.bounced.flags.writeable
+        assert (same_layer.edges is None) == (layer.edges is None)
+        if layer.edges is not None:
+            assert same_layer.edges is not None
+            np.testing.assert_array_equal(same_layer.edges.index, layer.edges.index)
+            np.testing.assert_array_equal(same_layer.edges.blocks, layer.edges.blocks)
 
 
 def test_nothing_there_is_none_without_a_word(caplog: pytest.LogCaptureFixture) -> None:
@@ -123,6 +128,19 @@ def test_a_flipped_bit_anywhere_is_found(
     path.write_bytes(whole)
     assert files.load_baked(baked.fingerprint) is not None
     assert files.is_baked("a" * 32)
+
+
+def test_edges_that_are_not_there_are_refused(
+    baked: BakedLight, caplog: pytest.LogCaptureFixture
+) -> None:
+    """An index may name no block beyond the last: kernels read what it says."""
+    sun = baked.layers[1]
+    assert sun.edges is not None
+    wrong = np.full_like(sun.edges.index, len(sun.edges.blocks))
+    layers = (baked.layers[0], replace(sun, edges=replace(sun.edges, index=wrong)))
+    files.store_baked(replace(baked, layers=(*layers, *baked.layers[2:])))
+    assert files.load_baked(baked.fingerprint) is None
+    assert "edges of shadows" in caplog.text
 
 
 def test_old_files_are_thrown_away(tmp_path: Path) -> None:

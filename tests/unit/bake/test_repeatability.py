@@ -47,6 +47,23 @@ def test_the_same_scene_gives_the_same_bytes() -> None:
     assert first.fingerprint == second.fingerprint
 
 
+def test_previews_are_near_to_the_result() -> None:
+    """They have its charts and probes, and at most texels nearly its light."""
+    shown: list[BakedLight] = []
+    baked = bake(scene(), settings=replace(COARSE, pass_rays=16), preview=shown.append)
+    assert len(shown) == 2
+    for preview, most in zip(shown, (0.3, 0.1), strict=True):
+        assert preview.fingerprint == baked.fingerprint
+        assert preview.charts.keys() == baked.charts.keys()
+        assert preview.probes == baked.probes
+        for rough, fine in zip(preview.layers, baked.layers, strict=True):
+            for name in ("direct", "bounced", "probe_bounced"):
+                there, wanted = (getattr(y, name).astype(float) for y in (rough, fine))
+                assert np.median(np.abs(there - wanted)) <= most * np.abs(wanted).mean()
+    plain = bake(scene(), settings=replace(COARSE, pass_rays=16))
+    assert arrays(plain) == arrays(baked)
+
+
 def test_progress_grows_from_0_to_1() -> None:
     """Stages are named, and a bar never runs backwards."""
     told: list[tuple[str, float]] = []

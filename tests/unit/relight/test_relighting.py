@@ -32,7 +32,7 @@ PANEL = Light(
 )
 SPOT = Light(name="spot", type="spot", position_m=(-1.6, -1.2, 2.8), outer_cone_deg=50)
 LIGHTS = (LAMP, PANEL, SPOT)
-FINER = replace(COARSE, rays=256, fine_rays=256)
+FINER = replace(COARSE, rays=256)
 
 
 def room(at: Pose) -> WorldSnapshot:
@@ -114,6 +114,21 @@ def test_no_ghost_is_left(scene: BakedScene, anew: BakedLight) -> None:
     assert near.any()
     assert light(before) < 0.4 * expected[near].mean()
     assert light(got) == pytest.approx(expected[near].mean(), rel=0.15)
+
+
+def test_sharp_edges_stay_where_light_is_the_same(scene: BakedScene) -> None:
+    """Blocks of shadows' edges go where the share of the sun has changed, and nowhere else."""
+    for before, after in zip(scene.baked.layers, moved(scene).layers, strict=True):
+        assert (before.edges is None) == (after.edges is None)
+        if before.edges is None or after.edges is None:
+            continue
+        assert before.visibility is not None
+        assert after.visibility is not None
+        changed = before.visibility != after.visibility
+        assert changed.any()
+        np.testing.assert_array_equal(after.edges.index[~changed], before.edges.index[~changed])
+        assert (after.edges.index[changed] == -1).all()
+        assert after.edges.blocks is before.edges.blocks
 
 
 def test_where_nothing_moves_nothing_changes(scene: BakedScene) -> None:

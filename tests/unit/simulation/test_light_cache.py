@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import store_baked
+from sailenv_ros.bake.light_files import is_baked, store_baked, store_draft
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli import scene_bake
@@ -55,7 +55,7 @@ def quick_bake(library: SceneLibrary, scene: str | Path) -> BakedLight:
         snapshot = world.snapshot()
     finally:
         world.close()
-    settings = replace(COARSE, texel_m=0.3, rays=4, fine_rays=4, coarse_rays=4)
+    settings = replace(COARSE, texel_m=0.3, rays=4, pass_rays=4)
     return replace(bake(snapshot, settings=settings), fingerprint=fingerprint(snapshot))
 
 
@@ -70,6 +70,31 @@ def test_a_room_gets_its_light_from_the_cache(cell: Path) -> None:
     assert set(first.charts) == {
         drawn.instance.id for drawn in contents(library, cell).instances if drawn.instance.static
     }
+
+
+def test_a_draft_stands_in_until_the_light_is_there(cell: Path) -> None:
+    """A simulation that runs shows the draft when told, then the light; a draft is no light."""
+    library = SceneLibrary()
+    world = library.build(cell, seed=0, epoch=1, next_revision=itertools.count().__next__)
+    try:
+        final = quick_bake(library, cell)
+        draft = replace(final, layers=tuple(replace(layer) for layer in final.layers))
+        store_draft(draft)
+        library.load_light(world)
+        shown = world.contents.baked
+        assert shown is not None
+        library.load_light(world)
+        assert not is_baked(final.fingerprint)
+        path = store_baked(final)
+        assert not path.with_suffix(".draft").exists()
+        library.load_light(world)
+        now = world.contents.baked
+        assert now is not None
+        assert now.layers is not shown.layers
+        library.load_light(world)
+        assert world.contents.baked is now
+    finally:
+        world.close()
 
 
 def test_a_room_without_light_is_told_how_to_get_it(
@@ -98,7 +123,7 @@ def test_the_command_bakes_once(
     """The second time it says that the light is there; `setup` then bakes nothing either."""
     times: list[str] = []
 
-    def fake(library: object, scene: str) -> BakedLight:
+    def fake(library: object, scene: str, preview: object) -> BakedLight:
         times.append(scene)
         return quick_bake(SceneLibrary(), cell)
 

@@ -123,6 +123,8 @@ struct Light {
     int32_t light_map_width, light_map_height;
     const float* instance_light;  // (ids, 3, 4): c0, cx, cy, cz of red, green, blue
     float main_baked, main_clear;
+    const int32_t* edge_index;   // (height, width) of the light map: number of a block, or -1; null
+    const uint8_t* edge_blocks;  // (blocks, 6, 6): share of main light, see SunEdges
     const uint16_t* reflections;  // halves (points, layers, edge, edge, 4)
     int32_t reflection_edge, reflection_layers;
     float reflection_scale;  // share of the square without its border

@@ -470,6 +470,33 @@ LANES_INLINE MapPlace in_shadow_map(const Light& light, const Chunk& c, int32_t 
             1.0f - clamp8(m[8] * x + m[9] * y + m[10] * z + m[11], 0.0f, 1.0f)};
 }
 
+// Shares of the main light where its shadows end: from blocks of four by four points a texel,
+// with a border. `at` are texels above and left of the places, `across` and `down` how far beyond
+// their centres these lie.
+f8 edge_shares(const Light& light, const int32_t* at, const float* across, const float* down,
+               f8 share) {
+    alignas(32) float result[8];
+    store(result, share);
+    const int32_t width = light.light_map_width;
+    for (int k = 0; k < 8; k++) {
+        if (!(result[k] > 0.0f && result[k] < 1.0f)) continue;
+        const int32_t right = across[k] >= 0.5f ? 1 : 0, below = down[k] >= 0.5f ? 1 : 0;
+        const int32_t block = light.edge_index[at[k] + right + below * width];
+        if (block < 0) continue;
+        const float x = 4.0f * (across[k] + (right ? -0.5f : 0.5f)) + 0.5f;
+        const float y = 4.0f * (down[k] + (below ? -0.5f : 0.5f)) + 0.5f;
+        const int32_t ix = std::min(static_cast<int32_t>(x), 4);
+        const int32_t iy = std::min(static_cast<int32_t>(y), 4);
+        const float u = x - static_cast<float>(ix), v = y - static_cast<float>(iy);
+        const uint8_t* p = light.edge_blocks + 36 * static_cast<int64_t>(block) + 6 * iy + ix;
+        const float a = static_cast<float>(p[0]), b = static_cast<float>(p[1]),
+                    c = static_cast<float>(p[6]), d = static_cast<float>(p[7]);
+        const float upper = a + (b - a) * u, lower = c + (d - c) * u;
+        result[k] = (upper + (lower - upper) * v) * (1.0f / 255.0f);
+    }
+    return load(result);
+}
+
 // The light around each point and the share of the main light that arrives, from baked light.
 void baked_light(const Shading& s, Chunk& c) {
     const Light& light = *s.light;
@@ -521,6 +548,9 @@ void baked_light(const Shading& s, Chunk& c) {
         const f8 facing =
             load(c.nx + i) * main[0] + load(c.ny + i) * main[1] + load(c.nz + i) * main[2];
         const i8 mapped = light.main_baked > 0.0f ? charted : splat(0);
+        if (light.edge_index != nullptr && any(mapped & there & (share > 0.0f) & (share < 1.0f))) {
+            share = edge_shares(light, at + i, across + i, down + i, share);
+        }
         const i8 asked = there & (facing > 0.0f) & (~mapped | (share > 0.0f));
         f8 arrives = splat(0.0f);
         if (has_main && any(asked)) {
