@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from array import array
 from collections.abc import Iterable
 from typing import Any
@@ -24,6 +25,7 @@ __all__ = [
     "frame_info_to_msg",
     "header_of_frame",
     "optical_frame_id",
+    "randomised_of_frame_info",
     "states_of_frame_info",
 ]
 
@@ -64,6 +66,7 @@ def frame_info_to_msg(
         depth_range_m=float(depth_range_m),
         render_s=float(frame.timings_s.get("render", 0.0)),
         has_states=frame.states is not None,
+        randomised="" if frame.randomised is None else json.dumps(frame.randomised),
         **_states_fields(frame.states),
     )
 
@@ -79,6 +82,25 @@ def camera_of_frame_info(msg: FrameInfo, intrinsics: CameraIntrinsics) -> Camera
     x, y, z, w = QUAT_BODY_FROM_OPTICAL
     pose = pose_from_msg(msg.camera_pose).turned((-x, -y, -z, w))
     return Camera(intrinsics=intrinsics, pose=pose, name=msg.agent)
+
+
+def randomised_of_frame_info(msg: FrameInfo) -> dict[str, Any] | None:
+    """Read the record of what was drawn at random; None if nothing was.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is no JSON object.
+    """
+    if not msg.randomised:
+        return None
+    try:
+        record = json.loads(msg.randomised)
+    except (ValueError, RecursionError):
+        record = None
+    if not isinstance(record, dict):
+        raise InvalidRequest("randomised", msg.randomised[:100], "a JSON object")
+    return record
 
 
 def states_of_frame_info(msg: FrameInfo) -> InstanceStates | None:

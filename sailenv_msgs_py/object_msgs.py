@@ -30,6 +30,7 @@ __all__ = [
     "keys_to_json",
     "object_state_from_response",
     "object_state_to_response",
+    "to_json",
 ]
 
 
@@ -71,11 +72,16 @@ def keys_to_json(what: str, keys: Mapping[str, Any]) -> str:
     InvalidRequest
         If a value is nothing that JSON has.
     """
+    return to_json(what, dict(keys))
+
+
+def to_json(what: str, value: Any) -> str:
+    """Write plain data as JSON; see `keys_to_json`."""
     try:
-        return json.dumps(dict(keys), default=_as_list)
+        return json.dumps(value, default=_as_list)
     except (TypeError, ValueError, RecursionError):
         accepted = "of numbers, texts, truth values and lists of them"
-        raise InvalidRequest(what, keys, accepted) from None
+        raise InvalidRequest(what, value, accepted) from None
 
 
 def keys_from_json(what: str, text: str, accepted: str) -> dict[str, Any]:

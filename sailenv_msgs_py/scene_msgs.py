@@ -101,6 +101,8 @@ def instance_to_msg(instance: Instance, *, moving: bool) -> msgs.Instance:
             msgs.Keypoint(name=point.name, position=point_to_msg(point.position_m))
             for point in instance.keypoints
         ],
+        materials=list(instance.materials),
+        painted=instance.painted,
     )
 
 
@@ -208,4 +210,6 @@ def _instance_from_msg(msg: msgs.Instance) -> Instance:
             Keypoint(name=point.name, position_m=xyz_from_msg(point.position))
             for point in msg.keypoints
         ),
+        materials=tuple(msg.materials),
+        painted=msg.painted,
     )

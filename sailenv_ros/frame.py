@@ -87,6 +87,8 @@ class Frame:
     states : InstanceStates or None
         Poses and velocities of all instances at the frame's own instant; None if they were not
         recorded.
+    randomised : mapping or None
+        Record of what was drawn at random for it, which `randomise` takes; None if nothing was.
     draw_alone : callable or None
         Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
     """
@@ -104,6 +106,7 @@ class Frame:
     timings_s: Mapping[str, float] = field(default_factory=dict)
     info: SceneInfo | None = None
     states: InstanceStates | None = None
+    randomised: Mapping[str, Any] | None = None
     draw_alone: DrawAlone | None = None
 
     def __post_init__(self) -> None:

@@ -163,6 +163,10 @@ class Instance:
         Id of the object that it is a part of; 0 for none.
     keypoints : tuple of Keypoint
         Those that its asset names, its scale applied.
+    materials : tuple of str
+        Names of its own materials, which `set_material` takes; none of a part of a room.
+    painted : str
+        JSON: a list of its materials as a scene file has them; empty while all are its own.
 
     A part of an object's model is an instance like others; see `is_part`.
     """
@@ -177,6 +181,8 @@ class Instance:
     high_m: Vector3 = (0.0, 0.0, 0.0)
     parent: int = 0
     keypoints: tuple[Keypoint, ...] = ()
+    materials: tuple[str, ...] = ()
+    painted: str = ""
 
     @property
     def is_part(self) -> bool:

@@ -5,6 +5,7 @@ Only messages whose fields are not simply the operation's arguments need functio
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from typing import Any
@@ -17,6 +18,7 @@ from sailenv_msgs_py.object_msgs import (
     keys_to_json,
     object_state_from_response,
     object_state_to_response,
+    to_json,
 )
 from sailenv_msgs_py.object_truth_msgs import amodal_mask_to_msgs, amodal_masks_from_msgs
 from sailenv_msgs_py.services.service import Arguments, Service
@@ -70,6 +72,34 @@ def _write_seed(given: Arguments) -> Arguments:
 
 def _read_seed(given: Arguments) -> Arguments:
     return {"seed": None if given["keep_seed"] else given["seed"]}
+
+
+def _write_chance(given: Arguments) -> Arguments:
+    return {
+        "keep_seed": given["seed"] is None,
+        "seed": given["seed"],
+        "next_index": given["index"] is None,
+        "index": given["index"],
+        "document": _as_text("things", given["things"]),
+        "record": _as_text("record", given["record"]),
+    }
+
+
+def _as_text(what: str, value: Any) -> str | None:
+    return value if value is None or isinstance(value, str) else to_json(what, value)
+
+
+def _read_chance(given: Arguments) -> Arguments:
+    return {
+        "seed": None if given["keep_seed"] else given["seed"],
+        "index": None if given["next_index"] else given["index"],
+        "things": given["document"] or None,
+        "record": given["record"] or None,
+    }
+
+
+def _fill_chance(response: Any, record: Any, info: SceneInfo) -> None:
+    response.chosen = json.dumps(record)
 
 
 def _write_spawned(given: Arguments) -> Arguments:
@@ -251,6 +281,14 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     # scene and time
     Service(Operations.change_scene, srv.ChangeScene),
     Service(Operations.reset, srv.Reset, write=_write_seed, read=_read_seed),
+    Service(
+        Operations.randomise,
+        srv.Randomise,
+        write=_write_chance,
+        read=_read_chance,
+        fill=_fill_chance,
+        result=lambda response: json.loads(response.chosen),
+    ),
     Service(Operations.step, srv.Step, names={"count": "steps"}),
     Service(Operations.pause, srv.Pause),
     Service(Operations.resume, srv.Resume),
@@ -268,6 +306,8 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     Service(Operations.despawn_object, srv.DespawnObject),
     Service(Operations.move_object, srv.MoveObject, write=_write_moved, read=_read_moved),
     Service(Operations.change_object, srv.ChangeObject),
+    Service(Operations.set_material, srv.SetMaterial),
+    Service(Operations.upload_picture, srv.UploadPicture),
     Service(
         Operations.get_object,
         srv.GetObject,

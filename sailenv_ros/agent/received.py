@@ -8,7 +8,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from sailenv_msgs_py.frame_info import camera_of_frame_info, states_of_frame_info
+from sailenv_msgs_py.frame_info import (
+    camera_of_frame_info,
+    randomised_of_frame_info,
+    states_of_frame_info,
+)
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.agent.frame_sync import Bundle
@@ -68,6 +72,7 @@ def frame_of_info(
         info=scene_info,
         draw_alone=draw_alone,
         states=states_of_frame_info(info),
+        randomised=randomised_of_frame_info(info),
     )
 
 

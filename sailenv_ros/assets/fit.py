@@ -10,6 +10,8 @@ from typing import Any, TypeAlias
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.model import Asset, CylinderShape, SphereShape, TriangleShape
+from sailenv_ros.scene.messages import suggestion
+from sailenv_ros.scene.spec_materials import ALL_PARTS
 from sailenv_ros.validation import is_finite_number
 
 __all__ = ["ObjectFit"]
@@ -42,6 +44,7 @@ class ObjectFit:
             return
         asset = self._library.get(name)
         yield from _scale_errors(asset, entry.get("scale"))
+        yield from _part_errors(asset, entry.get("materials"))
         if not entry.get("static", False) and _is_hollow(asset):
             yield (
                 ("asset",),
@@ -63,6 +66,30 @@ def _scale_errors(asset: Asset, scale: object) -> Diagnostics:
         if isinstance(shape, CylinderShape) and not _equal(scale[:2]):
             yield (("scale",), f"must be equal in x and y: {asset.name} collides as a cylinder")
             return
+
+
+def _part_errors(asset: Asset, materials: object) -> Diagnostics:
+    """Yield the materials that the asset does not have, or that cannot be exchanged."""
+    if not isinstance(materials, list | tuple):
+        return
+    own: dict[str, bool] = {}
+    for drawn in asset.model.parts:
+        opaque = drawn.material.alpha == "opaque"
+        own[drawn.material.name] = own.get(drawn.material.name, True) and opaque
+    for index, entry in enumerate(materials):
+        part = entry.get("part") if isinstance(entry, Mapping) else None
+        if not isinstance(part, str) or part == ALL_PARTS:
+            continue
+        place = ("materials", index, "part")
+        if part not in own:
+            known = suggestion(part, [ALL_PARTS, *own], listing="its materials")
+            yield place, f"{asset.name} has no material {part!r}; {known}"
+        elif not own[part] and (entry.get("material") or entry.get("picture")):
+            yield (
+                place,
+                f"{part!r} is cut out or transparent: it takes colours and finishes, but no other "
+                "material and no picture",
+            )
 
 
 def _is_hollow(asset: Asset) -> bool:

@@ -9,15 +9,18 @@ import dataclasses
 import threading
 import weakref
 
-from sailenv_ros.model import Material, Model, ModelPart, Texture
+from sailenv_ros.model import Material, Model, Texture
 
-__all__ = ["painted"]
+__all__ = ["painted", "painted_material"]
 
 Vector3 = tuple[float, float, float]
 _Paint = tuple[Vector3 | None, float | None, float | None]
 
 _lock = threading.Lock()
-_cache: weakref.WeakKeyDictionary[Model, dict[_Paint, Model]] = weakref.WeakKeyDictionary()
+_cache: weakref.WeakKeyDictionary[Model, weakref.WeakValueDictionary[_Paint, Model]] = (
+    weakref.WeakKeyDictionary()
+)
+"""Painted models while they are used: colours that change from frame to frame must not add up."""
 
 
 def painted(
@@ -47,19 +50,21 @@ def painted(
     if paint == (None, None, None):
         return model
     with _lock:
-        variants = _cache.setdefault(model, {})
-        if paint not in variants:
+        variants = _cache.setdefault(model, weakref.WeakValueDictionary())
+        found = variants.get(paint)
+        if found is None:
             parts = tuple(
-                ModelPart(mesh=part.mesh, material=_painted(part.material, *paint))
+                dataclasses.replace(part, material=painted_material(part.material, *paint))
                 for part in model.parts
             )
-            variants[paint] = Model(name=model.name, parts=parts)
-        return variants[paint]
+            found = variants[paint] = Model(name=model.name, parts=parts)
+        return found
 
 
-def _painted(
+def painted_material(
     material: Material, colour: Vector3 | None, metallic: float | None, roughness: float | None
 ) -> Material:
+    """Return a material painted over; see `painted`."""
     if colour is not None:
         red, green, blue = colour
         material = dataclasses.replace(
@@ -68,13 +73,24 @@ def _painted(
             base_colour_texture=_outline(material),
         )
     if metallic is not None or roughness is not None:
+        # What is not given keeps its mean where the texture of both goes.
+        own_roughness, own_metallic = _means(material)
         material = dataclasses.replace(
             material,
-            metallic=material.metallic if metallic is None else metallic,
-            roughness=material.roughness if roughness is None else roughness,
+            metallic=own_metallic if metallic is None else metallic,
+            roughness=own_roughness if roughness is None else roughness,
             metallic_roughness_texture=None,
         )
     return material
+
+
+def _means(material: Material) -> tuple[float, float]:
+    """Return the mean roughness and metallic, their texture included."""
+    texture = material.metallic_roughness_texture
+    if texture is None:
+        return material.roughness, material.metallic
+    roughness, metallic = (float(texture[..., channel].mean()) / 255.0 for channel in (1, 2))
+    return material.roughness * roughness, material.metallic * metallic
 
 
 def _outline(material: Material) -> Texture | None:

@@ -34,12 +34,19 @@ class ClockOperations(Caller):
         Parameters
         ----------
         seed : int or None
-            0 to 2^63 - 1; None keeps the present one, and every byte comes back.
+            0 to 2^63 - 1; None keeps the present one, and every byte comes back, also of what
+            was drawn at random. With a seed that is drawn anew.
         """
         chosen = core.seed if seed is None else seed
         if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
             raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
-        core.begin(core.world.scene, chosen, as_registered=True, more=core.more_objects)
+        core.begin(
+            core.world.scene,
+            chosen,
+            as_registered=True,
+            more=core.more_objects,
+            chance=core.randomiser.chance_of_reset(seeded=seed is not None),
+        )
         return core.epoch
 
     @operation()

@@ -184,8 +184,8 @@ class ObjectOperations(Caller):
             Not a part of a room.
         **changes
             ``name``, ``category``, ``scale``, ``static``, ``mass``, ``gravity``, ``friction``,
-            ``restitution``, ``colour``, ``metallic``, ``roughness``, as in a scene file; None
-            takes the asset's own. Where the scale changes, the next frame has no flow.
+            ``restitution``, ``colour``, ``metallic``, ``roughness``, ``materials``, as in a scene
+            file; None takes the asset's own. Where the scale changes, the next frame has no flow.
 
         Raises
         ------

@@ -7,10 +7,12 @@ from types import MappingProxyType
 from typing import Any
 
 from sailenv_ros.operations.agent_operations import AgentOperations
+from sailenv_ros.operations.chance_operations import ChanceOperations
 from sailenv_ros.operations.clock_operations import ClockOperations
 from sailenv_ros.operations.environment import EnvironmentOperations
 from sailenv_ros.operations.frame_pictures import FramePictures
 from sailenv_ros.operations.light_operations import LightOperations
+from sailenv_ros.operations.material_operations import MaterialOperations
 from sailenv_ros.operations.models import ModelOperations
 from sailenv_ros.operations.movers import MoverOperations
 from sailenv_ros.operations.object_operations import ObjectOperations
@@ -25,12 +27,14 @@ __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 class WorldOperations(
     AgentOperations,
     ObjectOperations,
+    MaterialOperations,
     LightOperations,
     EnvironmentOperations,
     MoverOperations,
     SpaceOperations,
     SavingOperations,
     ClockOperations,
+    ChanceOperations,
 ):
     """Every operation on the world and its agents."""
 

@@ -16,7 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_msgs_py.camera_info import intrinsics_from_camera_info
-from sailenv_msgs_py.frame_info import camera_of_frame_info, states_of_frame_info
+from sailenv_msgs_py.frame_info import (
+    camera_of_frame_info,
+    randomised_of_frame_info,
+    states_of_frame_info,
+)
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
@@ -166,6 +170,7 @@ class RecordedFrames(Sequence[Frame]):
             timings_s={"render": info.render_s},
             info=scene_info,
             states=states_of_frame_info(info),
+            randomised=randomised_of_frame_info(info),
             draw_alone=self._amodal_reader(index),
         )
 

@@ -6,6 +6,7 @@ moves first. Knows no change.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -53,6 +54,8 @@ class TexelPatches:
         How many texels each has.
     albedo : (P, 3) float32
     emission : (P, 3) float32
+    materials : (P,) int32
+        Place of each one's material in `BakedScene.materials`.
     """
 
     of_map: NDArray[np.int32]
@@ -64,6 +67,7 @@ class TexelPatches:
     size: Floats
     albedo: Floats
     emission: Floats
+    materials: NDArray[np.int32]
 
     def means(self, values: Floats) -> Floats:
         """Return (P,) float32: means of (N,) values of texels."""
@@ -104,6 +108,7 @@ class BakedScene:
         Means of the layers' bounced light, the three colours of each layer in turn.
     direct : (P, L) float32
         Means of the layers' direct light.
+    materials : tuple of Material
     panes : Panes or None
     sky : (H, 2 H, 3) float32
     """
@@ -118,6 +123,7 @@ class BakedScene:
         self._shapes: dict[tuple[int, tuple[float, ...], int], tuple[object, Shape]] = {}
         self.side = len(baked.layers[0].direct)
         geometry = static_geometry_of(_as_baked(baked, contents, tuple(self.drawn.values())))
+        self.materials = geometry.materials
         self._lay_out(geometry)
         self.panes = _panes(geometry)
         self.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
@@ -139,17 +145,40 @@ class BakedScene:
             found = self._shapes[key] = (model, flat), shape_of(model, scale, flat)
         return found[1]
 
-    def radiance(self, irradiance: Floats, direct: Floats) -> Floats:
+    def albedo_with(self, painted: Mapping[int, Model]) -> Floats:
+        """Return (P, 3) float32: the albedo of the patches where some objects look otherwise.
+
+        Parameters
+        ----------
+        painted : mapping of int to Model
+            Models of the same shape with other materials, by instance id.
+        """
+        albedo = self.patches.albedo.copy()
+        for id_, model in painted.items():
+            own = self.patches.owners == id_
+            looks = {
+                id(before.material): _look(after.material)[0]
+                for before, after in zip(self.drawn[id_].model.parts, model.parts, strict=True)
+            }
+            for place in np.unique(self.patches.materials[own]):
+                chosen = own & (self.patches.materials == place)
+                albedo[chosen] = looks[id(self.materials[place])]
+        return albedo
+
+    def radiance(self, irradiance: Floats, direct: Floats, albedo: Floats | None = None) -> Floats:
         """Return (P, C) float32: what patches send out by what arrives there.
 
         Parameters
         ----------
         irradiance : (P, C) float32
         direct : (P, L) float32
+        albedo : (P, 3) float32 or None
+            None takes that of the bake.
         """
+        albedo = self.patches.albedo if albedo is None else albedo
         layers = direct.shape[1]
         light = irradiance.reshape(-1, layers, 3) + direct[:, :, None]
-        radiance = light * self.patches.albedo[:, None, :]
+        radiance = light * albedo[:, None, :]
         radiance[:, 0] += self.patches.emission
         return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
 
@@ -234,6 +263,7 @@ class BakedScene:
             size=size.astype(np.float32),
             albedo=albedo[material],
             emission=emission[material],
+            materials=np.asarray(material, np.int32),
         )
 
 

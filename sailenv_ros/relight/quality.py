@@ -24,6 +24,8 @@ class Quality:
         How many patches to each side are averaged over at most.
     least : float
         Objects that may take less of a patch's view than this share change nothing there.
+    bounces : int
+        How often light is sent on between surfaces whose colour has changed.
     """
 
     first_rays: int
@@ -33,14 +35,29 @@ class Quality:
     probe_rays: int
     smoothing: int
     least: float
+    bounces: int
 
 
 QUICK = Quality(
-    first_rays=0, rays=8, area_rays=4, light_rays=4, probe_rays=32, smoothing=3, least=0.01
+    first_rays=0,
+    rays=8,
+    area_rays=4,
+    light_rays=4,
+    probe_rays=32,
+    smoothing=3,
+    least=0.01,
+    bounces=4,
 )
 """For the frame in which something moves."""
 
 FINE = Quality(
-    first_rays=16, rays=64, area_rays=16, light_rays=16, probe_rays=128, smoothing=2, least=0.002
+    first_rays=16,
+    rays=64,
+    area_rays=16,
+    light_rays=16,
+    probe_rays=128,
+    smoothing=2,
+    least=0.002,
+    bounces=8,
 )
 """For what follows."""

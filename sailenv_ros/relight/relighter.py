@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.model import Model
 from sailenv_ros.native.library import native_is_usable, thread_count
 from sailenv_ros.relight.baked_scene import BakedScene
-from sailenv_ros.relight.quality import FINE, QUICK
+from sailenv_ros.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.relight.relighting import relit
 from sailenv_ros.relight.scene_changes import Change
-from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 __all__ = ["Relighter"]
 
@@ -35,7 +36,7 @@ STILL_NS, STILL_FRAMES = 250_000_000, 5
 SMALLEST_M = 0.15
 """Objects that came and are smaller in two directions change no light but their own."""
 
-_Key = tuple[tuple[int, bytes | None, int], ...]
+_Key = tuple[tuple[int, bytes | None, object], ...]
 
 
 @dataclass(eq=False, slots=True)
@@ -81,6 +82,7 @@ class Relighter:
         self._light: _Relit | None = None
         self._seen: WorldSnapshot | None = None
         self._changes: list[Change] = []
+        self._painted: dict[int, Model] = {}
         self._contents: tuple[SceneContents, BakedLight, SceneContents] | None = None
 
     def watch(self, snapshot: WorldSnapshot) -> None:
@@ -98,9 +100,16 @@ class Relighter:
         else:
             return
         self._scene, self._light, self._seen, self._of = None, None, None, None
-        self._places, self._refining, self._changes = {}, None, []
+        self._places, self._refining, self._changes, self._painted = {}, None, [], {}
 
-    def lit(self, snapshot: WorldSnapshot, *, wanted: bool, lockstep: bool) -> WorldSnapshot:
+    def lit(
+        self,
+        snapshot: WorldSnapshot,
+        *,
+        wanted: bool,
+        lockstep: bool,
+        changed_ns: int | None = None,
+    ) -> WorldSnapshot:
         """Return the same instant with the light that belongs to it.
 
         Parameters
@@ -111,12 +120,15 @@ class Relighter:
             False if no picture is made: light that is out of date will do.
         lockstep : bool
             True refines light within a frame, so that frames do not depend on the wall clock.
+        changed_ns : int or None
+            When what stands still changed last [ns]: in lockstep light then depends on the world
+            alone, not on which frames were rendered. None takes the frame that shows it first.
         """
         self.watch(snapshot)
         if self._original is None or not self._usable:
             return snapshot
         if wanted:
-            self._bring_up_to_date(snapshot, lockstep=lockstep)
+            self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
         if self._light is None:
             return snapshot
         contents, light = snapshot.contents, self._light.light
@@ -134,26 +146,28 @@ class Relighter:
 
     # -- inside --------------------------------------------------------------------------------
 
-    def _bring_up_to_date(self, snapshot: WorldSnapshot, *, lockstep: bool) -> None:
+    def _bring_up_to_date(
+        self, snapshot: WorldSnapshot, *, lockstep: bool, changed_ns: int | None
+    ) -> None:
         if snapshot is not self._seen:
             self._changes = self._changed(snapshot, lockstep=lockstep)
             self._seen = snapshot
-        key = _key_of(self._changes)
+        key = _key_of(self._changes, self._painted)
         if not key:
             self._light = None
             return
         if self._light is None or self._light.key != key:
-            light = relit(self._prepared(), self._changes, QUICK, threads=thread_count())
-            self._light = _Relit(key, light, refined=False, since_ns=snapshot.sim_time_ns)
+            since_ns = snapshot.sim_time_ns if changed_ns is None else changed_ns
+            rested = lockstep and snapshot.sim_time_ns - since_ns >= REST_NS
+            light = self._relit(FINE if rested else QUICK)
+            self._light = _Relit(key, light, refined=rested, since_ns=since_ns)
         elif not self._light.refined:
             self._refine(self._light, snapshot, lockstep=lockstep)
 
     def _refine(self, shown: _Relit, snapshot: WorldSnapshot, *, lockstep: bool) -> None:
         if lockstep:
             if snapshot.sim_time_ns - shown.since_ns >= REST_NS:
-                threads = thread_count()
-                shown.light = relit(self._prepared(), self._changes, FINE, threads=threads)
-                shown.refined = True
+                shown.light, shown.refined = self._relit(FINE), True
             return
         if self._refining is not None:
             key, future = self._refining
@@ -166,8 +180,19 @@ class Relighter:
         if self._pool is None:
             self._pool = ThreadPoolExecutor(1, "relighting")
         # One thread: the others draw meanwhile.
-        future = self._pool.submit(relit, self._prepared(), self._changes, FINE, threads=1)
+        future = self._pool.submit(
+            relit, self._prepared(), self._changes, FINE, threads=1, painted=self._painted
+        )
         self._refining = shown.key, future
+
+    def _relit(self, quality: Quality) -> BakedLight:
+        return relit(
+            self._prepared(),
+            self._changes,
+            quality,
+            threads=thread_count(),
+            painted=self._painted,
+        )
 
     def _prepared(self) -> BakedScene:
         if self._scene is None:
@@ -183,6 +208,7 @@ class Relighter:
         assert original.baked is not None
         if self._of is None or self._of[0] is not contents:
             self._of = contents, self._rows(contents)
+            self._painted = self._repainted(contents)
         changes: list[Change] = []
         places: dict[int, _Place] = {}
         present = set()
@@ -226,7 +252,7 @@ class Relighter:
         for row, drawn in enumerate(contents.instances):
             id_ = drawn.instance.id
             before = known.get(id_)
-            same = before is not None and (before.model, before.scale) == (drawn.model, drawn.scale)
+            same = before is not None and _has_shape_of(drawn, before)
             if same and id_ in contents.baked.charts and drawn.model.triangle_count:
                 rows.append((row, id_, original.baked.charts[id_].world_from_body))
             elif drawn.instance.static and drawn.model.triangle_count and not same:
@@ -235,14 +261,41 @@ class Relighter:
                     rows.append((row, id_, np.full((4, 4), np.nan)))
         return rows
 
+    def _repainted(self, contents: SceneContents) -> dict[int, Model]:
+        """Return the models of what was baked and is of other materials now."""
+        assert self._original is not None
+        assert self._original.baked is not None
+        charts = self._original.baked.charts
+        known = {drawn.instance.id: drawn for drawn in self._original.instances}
+        return {
+            drawn.instance.id: drawn.model
+            for drawn in contents.instances
+            if drawn.instance.id in charts
+            and drawn.model is not known[drawn.instance.id].model
+            and _has_shape_of(drawn, known[drawn.instance.id])
+        }
 
-def _key_of(changes: list[Change]) -> _Key:
-    """Return what tells sets of changes apart."""
-    return tuple(
-        (
-            change.id,
-            None if change.after is None else change.after.tobytes(),
-            0 if change.came is None else hash((id(change.came[0]), change.came[1])),
+
+def _has_shape_of(drawn: DrawnInstance, before: DrawnInstance) -> bool:
+    """Tell if something has the very triangles that another has, of whatever material."""
+    if drawn.scale != before.scale or len(drawn.model.parts) != len(before.model.parts):
+        return False
+    return drawn.model is before.model or all(
+        now.mesh is then.mesh
+        or (
+            len(now.mesh.triangles) == len(then.mesh.triangles)
+            and np.array_equal(
+                now.mesh.positions[now.mesh.triangles], then.mesh.positions[then.mesh.triangles]
+            )
         )
+        for now, then in zip(drawn.model.parts, before.model.parts, strict=True)
+    )
+
+
+def _key_of(changes: list[Change], painted: dict[int, Model]) -> _Key:
+    """Return what tells sets of changes apart; it keeps the models, which are told by identity."""
+    looks = tuple((id_, None, model) for id_, model in painted.items())
+    return looks + tuple(
+        (change.id, None if change.after is None else change.after.tobytes(), change.came)
         for change in changes
     )

@@ -7,7 +7,7 @@ itself, gets its light anew. Results do not depend on the number of threads.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere, net
 from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, SunEdges
 from sailenv_ros.geometry import invert
+from sailenv_ros.model import Model
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     gather_change,
@@ -39,7 +40,12 @@ LEAST_FAR = 0.004
 
 
 def relit(
-    scene: BakedScene, changes: Sequence[Change], quality: Quality, *, threads: int
+    scene: BakedScene,
+    changes: Sequence[Change],
+    quality: Quality,
+    *,
+    threads: int,
+    painted: Mapping[int, Model] | None = None,
 ) -> BakedLight:
     """Return the light of a scene in which some objects stand elsewhere.
 
@@ -50,15 +56,22 @@ def relit(
     changes : sequence of Change
         All that is different now.
     quality : Quality
+    painted : mapping of int to Model or None
+        Models of the same shape with other materials, by instance id.
     """
-    return _Relighting(scene, changes, quality, threads).run()
+    return _Relighting(scene, changes, quality, threads, painted or {}).run()
 
 
 class _Relighting:
     """One set of changes; what the steps share."""
 
     def __init__(
-        self, scene: BakedScene, changes: Sequence[Change], quality: Quality, threads: int
+        self,
+        scene: BakedScene,
+        changes: Sequence[Change],
+        quality: Quality,
+        threads: int,
+        painted: Mapping[int, Model],
     ) -> None:
         self._scene, self._changes, self._threads = scene, changes, threads
         self._quality = quality
@@ -67,8 +80,10 @@ class _Relighting:
         area = [(n, one) for n, one in enumerate(self._lights) if one and one.type == "area"]
         self._area, self._area_lights = [n for n, _ in area], [light for _, light in area]
         self._move()
+        self._bounces = quality.bounces if painted else 0
+        self._albedo = scene.albedo_with(painted)
         self._before = scene.radiance(scene.irradiance, scene.direct)
-        self._after = self._before.copy()
+        self._after = scene.radiance(scene.irradiance, scene.direct, self._albedo)
         self._world = ray_world(scene, changes, self._before, self._after, self._radiance_of_new)
         self._rays = self._world.record
 
@@ -81,18 +96,55 @@ class _Relighting:
         _take(irradiance, found, change)
         self._take_area(direct, found, area)
         shone = self._shine(found, direct)
-        self._after[:] = self._scene.radiance(np.maximum(irradiance, 0.0), direct)
+        self._send_out(irradiance, direct)
         if quality.first_rays:
             wanted = np.where(found == 2, 2, self._wanted)
             found, change, area = self._gather(wanted, quality.rays)
-        far, near = self._probe_change()
-        self._add_far(found, change, far)
+        found, change, far, near = self._bounced(found, change, direct)
         layers = self._spread(found, change, area)
         layers = [
             self._with_direct(layer, shone.get(number)) for number, layer in enumerate(layers)
         ]
         layers = self._with_probes(layers, far, near)
         return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
+
+    def _send_out(self, irradiance: Floats, direct: Floats) -> None:
+        self._after[:] = self._scene.radiance(np.maximum(irradiance, 0.0), direct, self._albedo)
+
+    def _bounced(
+        self, found: NDArray[np.uint8], change: Floats, direct: Floats
+    ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
+        """Add what comes from surfaces that became brighter or darker; also by further bounces."""
+        share = self._share_of_probes() if self._bounces else None
+        for left in range(self._bounces, -1, -1):
+            far, near = self._probe_change()
+            found_far, changed = found.copy(), change.copy()
+            self._add_far(found_far, changed, far, share)
+            if left:
+                irradiance = self._scene.irradiance.copy()
+                _take(irradiance, found_far, changed)
+                self._send_out(irradiance, direct)
+        return found_far, changed, far, near
+
+    def _share_of_probes(self) -> Floats:
+        """Return (P, 1): what patches get by the bake, over what they get by way of the probes.
+
+        Probes within and behind surfaces know nothing, and four numbers are not all directions:
+        near walls and in corners light that comes by the probes falls short.
+        """
+        before, after = self._before.copy(), self._after.copy()
+        self._after[:], self._before[:] = before, 0.0
+        total, _ = self._probe_change()
+        self._before[:], self._after[:] = before, after
+        by_probes = self._of_probes(total, self._patch_positions, self._patch_normals)
+        # What the sky gives straight is no light of surfaces.
+        lamps = [n for n, light in enumerate(self._lights) if light is not None]
+        channels = [3 * n + colour for n in lamps for colour in range(3)]
+        known = self._scene.irradiance[:, channels].sum(axis=1)
+        guessed = by_probes[:, channels].sum(axis=1)
+        least = LEAST_FAR * float(np.percentile(known, 90)) if known.any() else np.inf
+        share = np.where(guessed > least, known / np.maximum(guessed, 1e-12), 1.0)
+        return np.clip(share, 0.25, 4.0).astype(np.float32)[:, None]
 
     # -- what is there -----------------------------------------------------------------------
 
@@ -150,6 +202,10 @@ class _Relighting:
         self, wanted: NDArray[np.integer], rays: int
     ) -> tuple[NDArray[np.uint8], Floats, Floats]:
         """Gather at all patches, and smooth what was found."""
+        if not self._changes:
+            patches = len(wanted)
+            empty = np.zeros((patches, len(self._area)), np.float32)
+            return np.zeros(patches, np.uint8), np.zeros_like(self._before), empty
         lights = np.concatenate(
             [np.zeros(0, RAY_LIGHT), *(ray_light(light) for light in self._area_lights)]
         )
@@ -183,7 +239,7 @@ class _Relighting:
         """Find what changes of lamps and sun at texels, and bring means of patches up to date."""
         patches, shone = self._scene.patches, {}
         for number, light in enumerate(self._lights):
-            if light is None or light.type == "area":
+            if light is None or light.type == "area" or not self._changes:
                 continue
             state, value, share = shine_change(
                 self._rays, ray_light(light), self._positions, self._normals, patches.of_texel,
@@ -226,9 +282,13 @@ class _Relighting:
             threads=self._threads,
         )  # fmt: skip
 
-    def _add_far(self, found: NDArray[np.uint8], change: Floats, far: Floats) -> None:
+    def _add_far(
+        self, found: NDArray[np.uint8], change: Floats, far: Floats, share: Floats | None
+    ) -> None:
         """Add what comes from surfaces whose own light has changed, where it is seen."""
         light = self._of_probes(far, self._patch_positions, self._patch_normals)
+        if share is not None:
+            light *= share
         brightest = float(np.percentile(self._scene.irradiance.sum(axis=1), 90))
         seen = np.abs(light).sum(axis=1) > LEAST_FAR * brightest
         chosen = seen & (found < 2) & (self._wanted == 1)

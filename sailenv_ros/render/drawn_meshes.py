@@ -6,6 +6,7 @@ every back end draws the same meshes.
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,7 +97,52 @@ def unwrappings(contents: SceneContents) -> list[Unwrapping | None]:
     """Return how each instance is unwrapped into the light map; None for those that are not."""
     charts = contents.baked.charts if contents.baked is not None else {}
     found = (charts.get(drawn.instance.id) for drawn in contents.instances)
-    return [None if chart is None else chart.unwrapping for chart in found]
+    return [
+        None if chart is None else _unwrapped(drawn.model, chart.unwrapping)
+        for drawn, chart in zip(contents.instances, found, strict=True)
+    ]
+
+
+_unwrapped_models: weakref.WeakKeyDictionary[Model, tuple[Unwrapping, Unwrapping]] = (
+    weakref.WeakKeyDictionary()
+)
+"""What each model was unwrapped by last: the unwrapping that was baked, and the model's own."""
+
+
+def _unwrapped(model: Model, baked: Unwrapping) -> Unwrapping:
+    """Return how a model lies in the light map that was baked for it.
+
+    With another material it has the same triangles in the same order, but perhaps other vertices.
+    """
+    kept = _unwrapped_models.get(model)
+    if kept is None or kept[0] is not baked:
+        kept = _unwrapped_models[model] = baked, _fitted(model, baked)
+    return kept[1]
+
+
+def _fitted(model: Model, baked: Unwrapping) -> Unwrapping:
+    vertices, triangles, uvs, changed = [], [], [], False
+    for part, copies, corners, places in zip(
+        model.parts, baked.vertices, baked.triangles, baked.uvs, strict=True
+    ):
+        mesh = part.mesh
+        same = not len(corners) or (
+            int(copies.max(initial=0)) < len(mesh.positions)
+            and np.array_equal(copies[corners], mesh.triangles)
+        )
+        if not same:
+            # A corner's place in the map, and the vertex that it has now: each pair once.
+            pairs = corners.astype(np.int64) * len(mesh.positions) + mesh.triangles
+            used, again = np.unique(pairs, return_inverse=True)
+            places = places[used // len(mesh.positions)]
+            copies = (used % len(mesh.positions)).astype(np.uint32)
+            corners, changed = again.reshape(-1, 3).astype(np.uint32), True
+        vertices.append(copies)
+        triangles.append(corners)
+        uvs.append(places)
+    if not changed:
+        return baked
+    return Unwrapping(vertices=tuple(vertices), triangles=tuple(triangles), uvs=tuple(uvs))
 
 
 def chart_table(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

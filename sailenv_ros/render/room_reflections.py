@@ -73,7 +73,7 @@ class RoomReflections:
         self._blur = blur
         self._sum = add
         self._shares: dict[Hashable, _Share] = {}
-        self._of: tuple[object, ...] | None = None
+        self._of: tuple[object, bytes] | None = None
         self._alone_of: dict[Light, Light] = {}
         self._environment: Environment | None = None
         self._sky: Environment | None = None
@@ -100,8 +100,8 @@ class RoomReflections:
         """
         contents = snapshot.contents
         assert contents.baked is not None
-        of = (contents.baked, contents.instances, contents.instance_ids[still].tobytes())
-        if self._of != of:
+        of = (contents.baked, contents.instance_ids[still].tobytes())
+        if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
             self._shares, self._of = {}, of
             self.points.choose(snapshot)
         if self._environment is not contents.environment:

@@ -35,6 +35,9 @@ class SceneKnowledge:
         Every name that the material of a room's walls, floor or ceiling may have.
     skies : tuple of str
         Names of the photographed skies.
+    material_fault, picture_fault : callable
+        ``material_fault(name)`` returns why there is no such material, if it is none of `surfaces`;
+        ``picture_fault(name)`` why a picture cannot be used. Nothing is wrong with an empty text.
     """
 
     assets: tuple[str, ...]
@@ -43,3 +46,5 @@ class SceneKnowledge:
     object_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
     surfaces: tuple[str, ...] = ()
     skies: tuple[str, ...] = ()
+    material_fault: Callable[[str], str] | None = None
+    picture_fault: Callable[[str], str] | None = None

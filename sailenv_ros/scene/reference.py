@@ -27,10 +27,17 @@ _TITLES = {
     "DirectionalLightSpec": "A directional light",
     "DoorSpec": "A door",
     "EnvironmentSpec": "The environment",
+    "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",
     "PictureSpec": "A picture",
     "PointLightSpec": "A point light",
+    "RandomCamera": "Random cameras",
+    "RandomDistractors": "Random distractors",
+    "RandomEnvironment": "Random surroundings",
+    "RandomLight": "Random lights",
+    "RandomMaterial": "Random materials",
+    "RandomObject": "Random objects",
     "RoomSpec": "The room",
     "SkirtingSpec": "The skirting",
     "SpotLightSpec": "A spot light",
@@ -106,6 +113,8 @@ def _takes(entry: Mapping[str, Any]) -> str:
 
 def _plain(entry: Mapping[str, Any]) -> str:
     kind = entry.get("type")
+    if "log_uniform" in entry.get("properties", ()):
+        return "[a distribution](randomisation.md#distributions)"
     if kind == "array":
         items = entry.get("items")
         each = _takes(items) if isinstance(items, Mapping) else "values"

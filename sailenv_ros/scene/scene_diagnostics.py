@@ -17,7 +17,10 @@ from sailenv_ros.scene.field_types import FIELD_ERROR
 from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
+from sailenv_ros.scene.randomise.random_rules import drawn_names
+from sailenv_ros.scene.randomise.thing import Thing
 from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
+from sailenv_ros.scene.spec_materials import LookSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_room import (
     FloorAreaSpec,
@@ -113,7 +116,11 @@ def _unknown_names(
             for place, sentence in knowledge.object_errors(entry):
                 yield Diagnostic((*loc, *place), sentence)
         elif issubclass(model, RoomSpec | WallMaterialsSpec | PartitionSpec | FloorAreaSpec):
-            yield from _unknown_surfaces(loc, model, entry, knowledge.surfaces)
+            yield from _unknown_surfaces(loc, model, entry, knowledge)
+        elif issubclass(model, LookSpec):
+            yield from _unknown_looks(loc, entry, knowledge)
+        elif issubclass(model, Thing):
+            yield from _unknown_drawn(loc, entry, knowledge)
         elif issubclass(model, EnvironmentSpec):
             if entry.get("sky_map"):
                 yield from _unknown(loc, entry, "sky_map", knowledge.skies)
@@ -137,19 +144,54 @@ def _unknown(
         yield Diagnostic((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
 
 
-def _unknown_surfaces(
-    loc: Loc, model: type[SceneModel], entry: Mapping[str, Any], known: Iterable[str]
+def _unknown_drawn(
+    loc: Loc, entry: Mapping[str, Any], knowledge: SceneKnowledge
 ) -> Iterator[Diagnostic]:
-    """Check the materials of a room, each a name or a mapping with it."""
+    """Check the names that may be drawn at random."""
+    listed = entry.get("assets")
+    for index, name in enumerate(listed if isinstance(listed, list) else ()):
+        for found in _unknown((), {"asset": name}, "asset", knowledge.assets):
+            yield Diagnostic((*loc, "assets", index), found.message)
+    for key, known in (("asset", knowledge.assets), ("sky_map", ("", *knowledge.skies))):
+        for name in drawn_names(entry.get(key)):
+            yield from (
+                Diagnostic((*loc, key), found.message)
+                for found in _unknown((), {key: name}, key, known)
+            )
+    for key in ("material", "picture"):
+        for name in drawn_names(entry.get(key)):
+            for found in _unknown_looks((), {key: name}, knowledge):
+                yield Diagnostic((*loc, key), found.message)
+
+
+def _unknown_surfaces(
+    loc: Loc, model: type[SceneModel], entry: Mapping[str, Any], knowledge: SceneKnowledge
+) -> Iterator[Diagnostic]:
+    """Check the materials of a room that are names alone; those with more keys are entries."""
     for key, field in model.model_fields.items():
         value = entry.get(key)
-        if SurfaceSpec not in (field.annotation, *get_args(field.annotation)):
-            continue
-        if isinstance(value, str):
-            for diagnostic in _unknown((), {"material": value}, "material", known):
+        surfaces = SurfaceSpec in (field.annotation, *get_args(field.annotation))
+        if surfaces and isinstance(value, str):
+            for diagnostic in _unknown_looks((), {"material": value}, knowledge):
                 yield Diagnostic((*loc, key), diagnostic.message)
-        elif isinstance(value, Mapping):
-            yield from _unknown((*loc, key), value, "material", known)
+
+
+def _unknown_looks(
+    loc: Loc, entry: Mapping[str, Any], knowledge: SceneKnowledge
+) -> Iterator[Diagnostic]:
+    """Check the names of a material and of a picture."""
+    name, picture = entry.get("material"), entry.get("picture")
+    if isinstance(name, str) and name not in knowledge.surfaces:
+        if "/" in name and knowledge.material_fault is not None:
+            fault = knowledge.material_fault(name)
+            if fault:
+                yield Diagnostic((*loc, "material"), fault)
+        else:
+            yield from _unknown(loc, entry, "material", knowledge.surfaces)
+    if isinstance(picture, str) and knowledge.picture_fault is not None:
+        fault = knowledge.picture_fault(picture)
+        if fault:
+            yield Diagnostic((*loc, "picture"), fault)
 
 
 def _translated(details: ErrorDetails, data: Mapping[str, Any], models: Models) -> Diagnostic:

@@ -15,6 +15,8 @@ from pydantic import Field
 from sailenv_ros.labels import MAX_CATEGORY_ID, Category
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
+from sailenv_ros.scene.randomise.random_rules import random_targets_exist
+from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.room_rules import names_beside_room
 from sailenv_ros.scene.rules import (
     at_most_one,
@@ -96,7 +98,8 @@ class SceneSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         at_most_one("mover", "movers"),
-        distinct("name", "lights", "objects", "movers", "agents", "categories"),
+        distinct("name", "lights", "objects", "movers", "agents", "categories", "randomise"),
+        random_targets_exist,
         distinct("id", "categories"),
         movers_exist,
         carriers_exist,
@@ -134,6 +137,9 @@ class SceneSpec(SceneModel):
     )
     agents: tuple[AgentSpecModel, ...] = Field(
         default=(), max_length=16, description="cameras that the scene brings along"
+    )
+    randomise: tuple[RandomThing, ...] = Field(
+        default=(), max_length=1000, description="what is drawn at random, by its seed"
     )
     categories: tuple[CategorySpec, ...] = Field(
         default=(), max_length=10000, description="categories that the fixed table lacks"

@@ -23,7 +23,8 @@ from sailenv_ros.scene.fields import (
 )
 from sailenv_ros.scene.placing import Turned
 from sailenv_ros.scene.room_rules import WALLS
-from sailenv_ros.scene.rules import at_most_one, only_beside, static_never_moves
+from sailenv_ros.scene.rules import at_most_one, distinct, only_beside, static_never_moves
+from sailenv_ros.scene.spec_materials import MaterialSpec
 from sailenv_ros.scene.spec_room import WallName
 
 __all__ = ["BehaviourSpec", "ObjectSpec"]
@@ -63,6 +64,7 @@ class ObjectSpec(Turned):
         at_most_one("on", "wall"),
         only_beside("wall", "at", "height", "gap"),
         static_never_moves,
+        distinct("part", "materials"),
     )
 
     name: Name = Field(description="unique among the objects of the scene")
@@ -125,6 +127,11 @@ class ObjectSpec(Turned):
         default=None, description="0 for paint, plastic, wood; 1 for bare metal"
     )
     roughness: Fraction | None = Field(default=None, description="0 for a mirror, 1 for chalk")
+    materials: tuple[MaterialSpec, ...] = Field(
+        default=(),
+        max_length=64,
+        description="what it, or each of its materials, is made of instead, one after another",
+    )
     velocity: MetresPerSecond = Field(
         default=(0.0, 0.0, 0.0), description="at the start, in the world's axes [m/s]"
     )

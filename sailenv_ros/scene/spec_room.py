@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from sailenv_ros.scene.field_types import Choice, Number, Several, Text
+from sailenv_ros.scene.field_types import Choice, Number, Several
 from sailenv_ros.scene.fields import LinearColour, Name, Rule, SceneModel
 from sailenv_ros.scene.partition_rules import (
     along_an_axis,
@@ -37,6 +37,7 @@ from sailenv_ros.scene.room_rules import (
     inside_walls,
     without_overlaps,
 )
+from sailenv_ros.scene.spec_materials import LookSpec, MaterialName
 
 __all__ = [
     "CurtainSpec",
@@ -55,7 +56,6 @@ __all__ = [
 
 WallName: TypeAlias = Literal["north", "east", "south", "west"]
 
-_Seed: TypeAlias = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
 _Extent: TypeAlias = Annotated[float, Number(least=1.0, most=100.0, unit="m")]
 _Opening: TypeAlias = Annotated[float, Number(least=0.3, most=100.0, unit="m")]
 _Along: TypeAlias = Annotated[float, Number(least=-50.0, most=50.0, unit="m")]
@@ -91,24 +91,24 @@ class _OrNone:
         return {"anyOf": [{"type": "boolean"}, handler(schema)]}
 
 
-class SurfaceSpec(SceneModel):
+class SurfaceSpec(LookSpec):
     """What a wall, floor or ceiling is made of; a name alone stands for its material."""
 
-    material: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a material")] = Field(
+    material: MaterialName = Field(
         default="plaster", description="e.g. plaster, oak_planks, white_tiles, wallpaper_damask"
-    )
-    colour: LinearColour | None = Field(
-        default=None, description="of the paint, wood or tiles, instead of the material's own"
-    )
-    seed: _Seed = Field(default=0, description="others give other grain, clouds and tones")
-    turn: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
-        default=0.0, description="by which it is laid counter-clockwise, e.g. 90 for boards along y"
     )
 
     @model_validator(mode="wrap")
     @classmethod
     def _by_name(cls, value: Any, handler: ModelWrapValidatorHandler[SurfaceSpec]) -> SurfaceSpec:
         return handler({"material": value} if isinstance(value, str) else value)
+
+    def keys(self) -> dict[str, Any]:
+        """Return what differs from the defaults, and the material, as a file would have it."""
+        dumped: Any = self.model_dump(mode="json", exclude_defaults=True)
+        given = {"material": dumped} if isinstance(dumped, str) else dict(dumped)
+        # A picture takes the place of the material that is there of itself.
+        return given if self.picture is not None else {"material": self.material, **given}
 
     @model_serializer(mode="wrap", when_used="json")
     def _to_name(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any] | str:
@@ -286,6 +286,18 @@ class RoomSpec(SceneModel):
     floors: tuple[FloorAreaSpec, ...] = Field(
         default=(), max_length=64, description="rectangles whose floor differs"
     )
+
+    def look_of(self, part: str) -> dict[str, Any] | None:
+        """Return the keys of the look of a wall, the ceiling or a floor; None for other parts."""
+        spec = {f"{wall} wall": self.surface_of(wall) for wall in WALLS}.get(part)
+        spec = next((area.surface for area in self.floors if area.name == part), spec)
+        for partition in self.partitions:
+            if partition.name == part:
+                sides = (getattr(partition, wall) for wall in WALLS)
+                spec = next((side for side in sides if side is not None), self.walls)
+        if part in ("floor", "ceiling"):
+            spec = getattr(self, part)
+        return None if spec is None else spec.keys()
 
     def surface_of(self, wall: WallName) -> SurfaceSpec:
         """Return what a wall is made of."""

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import inspect
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -29,6 +30,7 @@ from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
 from sailenv_ros.simulation.present_scene import PresentScene
+from sailenv_ros.simulation.randomiser import Chance, Randomiser
 from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.space_queries import SpaceQueries
@@ -109,6 +111,9 @@ class SimulationCore(WorldOperations):
         self.more_objects: Entries = ()
         self.editor = SceneEditor(self)
         self.scene_writer = SceneWriter(self)
+        self.randomiser = Randomiser(self)
+        self._holds_announcements = False
+        self._unannounced = False
         self.space = SpaceQueries(lambda: self.world)
         self.on_free_space: Callable[[FreeSpace], None] = lambda space: None
         self.on_info: Callable[[SceneInfo], None] = lambda info: None
@@ -126,6 +131,8 @@ class SimulationCore(WorldOperations):
         self._relighter.watch(self.world.snapshot())
         for spec in library.agents_of(self.world.scene):
             self.agents.add(spec, self.world)
+        self.randomiser.begin(Chance())
+        self.randomiser.place_cameras()
 
     # -- operations ------------------------------------------------------------------------
 
@@ -173,11 +180,50 @@ class SimulationCore(WorldOperations):
 
     def announce(self) -> None:
         """Tell the scene as it is now, under a new revision."""
+        if self._holds_announcements:
+            self._unannounced = True
+            return
         self._next_revision()
         self._announced = self.info
         self.on_info(self._announced)
 
-    def begin(self, scene: str, seed: int, *, as_registered: bool, more: Entries = ()) -> None:
+    @contextmanager
+    def announced_once(self) -> Iterator[None]:
+        """Tell the scene once after several changes, if there were any."""
+        if self._holds_announcements:
+            yield
+            return
+        self._holds_announcements, self._unannounced = True, False
+        try:
+            yield
+        finally:
+            self._holds_announcements = False
+            if self._unannounced:
+                self.announce()
+
+    def randomise_now(
+        self, seed: int | None, index: int | None, things: object, record: object
+    ) -> dict[str, Any]:
+        """Begin the scene anew with drawn values; see the operation `randomise`."""
+        chance = self.randomiser.next_chance(index, things, record, seeded=seed is not None)
+        chosen = self.seed if seed is None else seed
+        if chance.record is not None:
+            chosen = int(chance.record["seed"])
+        self.begin(
+            self.world.scene, chosen, as_registered=True, more=self.more_objects, chance=chance
+        )
+        self.randomiser.before_frame()
+        return dict(self.randomiser.record or {})
+
+    def begin(
+        self,
+        scene: str,
+        seed: int,
+        *,
+        as_registered: bool,
+        more: Entries = (),
+        chance: Chance | None = None,
+    ) -> None:
         """Leave the present world for a new one at simulated time 0.
 
         Parameters
@@ -189,6 +235,8 @@ class SimulationCore(WorldOperations):
             False adds those that the scene brings along.
         more : sequence of mapping
             Objects besides those of the scene.
+        chance : Chance or None
+            What decides what is drawn at random; None is the first epoch of what the scene draws.
         """
         world = self.library.build(scene, seed, self.epoch + 1, self._next_revision, more=more)
         brought = () if as_registered else self.library.agents_of(world.scene)
@@ -197,13 +245,25 @@ class SimulationCore(WorldOperations):
         except BaseException:
             world.close()
             raise
-        self.world.close()
         world.frustum_planes = self._frustum_planes
+        before = self.world, self.seed, self.more_objects
         self.world, self.seed, self.more_objects = world, seed, more
         self._relighter.watch(world.snapshot())
+        self._holds_announcements = True
+        try:
+            self.randomiser.begin(chance or Chance())
+        except BaseException:
+            world.close()
+            self.world, self.seed, self.more_objects = before
+            raise
+        finally:
+            self._holds_announcements = False
+        before[0].close()
         self.epoch += 1
         self.agents.begin_epoch(world, as_registered=as_registered)
         self.agents.add_missing(brought, world)
+        with self.announced_once():
+            self.randomiser.place_cameras()
         for record in self.agents:
             for stream in record.streams:
                 stream.discard()
@@ -270,10 +330,12 @@ class SimulationCore(WorldOperations):
         """
         wanted = checked_views(views, supported=self.supported_views)
         began = time.perf_counter()
+        self.randomiser.before_frame()
         snapshot = self._relighter.lit(
             self.world.snapshot(),
             wanted="rgb" in wanted,
             lockstep=self.clock.mode == "lockstep",
+            changed_ns=self.world.changed_ns,
         )
         camera = self.agents.camera(record, self.world)
         past = record.past(snapshot.sim_time_ns)
@@ -295,6 +357,7 @@ class SimulationCore(WorldOperations):
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began},
             info=info,
             states=self.world.states(),
+            randomised=self.randomiser.record,
             draw_alone=lambda only=0: self.run_later(
                 lambda: self.draw_alone(snapshot, camera, only)
             ),

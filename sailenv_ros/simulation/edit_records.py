@@ -17,6 +17,7 @@ from sailenv_ros.lights import Environment, Light
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.scene.spec import EnvironmentSpec
+from sailenv_ros.simulation.material_edits import set_surface, surface_keys
 from sailenv_ros.world.support import overlap_m, standing_place
 
 if TYPE_CHECKING:
@@ -48,12 +49,15 @@ class ObjectRecord:
     pose : Pose
     behaviours : tuple of mapping
         Each with its ``type`` and all its parameters.
+    surface : mapping or None
+        What a scene file says of the look of a part of the room; None if it can say nothing.
     """
 
     name: str
     entry: Mapping[str, Any] | None
     pose: Pose
     behaviours: tuple[Mapping[str, Any], ...]
+    surface: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,7 +89,13 @@ def record_of(core: SimulationCore, number: int) -> ObjectRecord:
             "scale": state.scale,
             "static": state.static,
         }
-    return ObjectRecord(name=state.name, entry=entry, pose=state.pose, behaviours=state.behaviours)
+    return ObjectRecord(
+        name=state.name,
+        entry=entry,
+        pose=state.pose,
+        behaviours=state.behaviours,
+        surface=surface_keys(core, number) if spec is None else None,
+    )
 
 
 class EditOperations(Caller):
@@ -132,6 +142,8 @@ class EditOperations(Caller):
             }
             if changes:
                 core.editor.change_object(number, changes)
+        if wanted.surface is not None and wanted.surface != present.surface:
+            set_surface(core, number, wanted.surface)
         if wanted.behaviours != present.behaviours:
             core.world.body(number).detach()
             for behaviour in wanted.behaviours:

@@ -17,6 +17,7 @@ from sailenv_ros.model import Asset
 from sailenv_ros.scene.entries import checked_scene, free_name, plain_value, read_document
 from sailenv_ros.scene.serialisation import MOTION_KEYS, PLACE_KEYS
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
+from sailenv_ros.simulation.material_edits import set_material
 from sailenv_ros.simulation.saving import environment_entry
 from sailenv_ros.simulation.scenario import scenario_entries
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
@@ -38,6 +39,7 @@ CHANGEABLE = (
     "colour",
     "metallic",
     "roughness",
+    "materials",
 )
 """Keys of an object that `change_object` takes; it is moved by `move_object`."""
 
@@ -83,6 +85,8 @@ class SceneEditor:
         for key in changes:
             if key not in CHANGEABLE:
                 raise UnknownName("key of an object that can be changed", key, CHANGEABLE)
+        if changes.get("materials", ()) is None:
+            changes = {**changes, "materials": ()}
         placement = self._core.library.placement(
             {**_without_place(present), **_place(body.pose()), **changes},
             world,
@@ -94,6 +98,10 @@ class SceneEditor:
         entry = present.model_copy(update=changed)
         world.replace_body(instance_id, replace(placement, entry=entry))
         self._core.announce()
+
+    def set_material(self, instance_id: int, part: str, changes: Mapping[str, Any]) -> None:
+        """Change what an object or a part of the room is made of."""
+        set_material(self._core, instance_id, part, changes)
 
     def add_behaviour(self, instance_id: int, behaviour: Mapping[str, Any]) -> None:
         """Let an object move by one more behaviour: its ``type`` and its parameters."""

@@ -176,7 +176,7 @@ def _exchange(core: SimulationCore, present: RoomRecord, wanted: RoomRecord) -> 
         if record.name in staying:
             raise NameTaken("object", record.name)
     world.replace_room(
-        room_placements(wanted.room, world.categories),
+        room_placements(wanted.room, world.categories, core.library.materials_of(world.scene)),
         world.described.model_copy(update={"room": wanted.room}),
         without=going,
     )
@@ -188,7 +188,7 @@ def _exchange(core: SimulationCore, present: RoomRecord, wanted: RoomRecord) -> 
 
 def _checked(core: SimulationCore, entry: Mapping[str, Any]) -> RoomSpec:
     data = {"version": 1, "room": entry}
-    room = checked_scene(data, core.library.knowledge, what="room").room
+    room = checked_scene(data, core.library.knowledge_of(core.world.scene), what="room").room
     assert room is not None
     return room
 

@@ -67,7 +67,7 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
     """
     spec = world.described
     assert spec is not None
-    data: Entry = spec.model_dump(mode="json", exclude_unset=True, exclude={"name"})
+    data: Entry = spec.model_dump(mode="json", exclude_unset=True, exclude={"name", "randomise"})
     if world.gravity != spec.gravity:
         data["gravity"] = world.gravity
     changed: dict[str, Any] = {

@@ -15,8 +15,10 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.folders import standard_pack_folder
+from sailenv_ros.assets.material_stock import MaterialStock
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
+from sailenv_ros.assets.pictures import Pictures
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
@@ -96,6 +98,8 @@ class SceneLibrary:
         self._uploaded: set[str] = set()
         self._unkept: set[str] = set()
         self._files: dict[str, Path] = {}
+        self._scene_folders: dict[str, Path] = {}
+        self.pictures = Pictures()
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
 
     @property
@@ -153,7 +157,9 @@ class SceneLibrary:
         SceneError
             If its file has errors.
         """
-        return load_scene(self.path(scene), knowledge=self.knowledge)
+        path = self.path(scene)
+        known = self._with_materials(self.knowledge, self._stock_beside(path))
+        return load_scene(path, knowledge=known)
 
     def build(
         self,
@@ -171,7 +177,10 @@ class SceneLibrary:
         """
         if _standard_pack_version() != self._pack_version:
             self.refresh()
-        spec = load_scene(self.path(scene), knowledge=self._knowledge_to_build)
+        path = self.path(scene)
+        known = self._with_materials(self._knowledge_to_build, self._stock_beside(path))
+        spec = load_scene(path, knowledge=known)
+        self._scene_folders[spec.name] = path.absolute().parent
         world = build_world(
             spec.model_copy(update={"objects": (*spec.objects, *self._described(more, spec))}),
             assets=self._assets,
@@ -180,6 +189,7 @@ class SceneLibrary:
             epoch=epoch,
             next_revision=next_revision,
             skies=self._skies,
+            materials=self.materials_of(spec.name),
         )
         self._load_light(world, str(scene))
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
@@ -292,8 +302,9 @@ class SceneLibrary:
             If it cannot be placed.
         """
         names = tuple(category.name for category in world.categories.values())
+        stock = self.materials_of(world.scene)
         known = replace(self._knowledge_of_strangers, categories=names)
-        spec = checked_object(entry, known)
+        spec = checked_object(entry, self._with_materials(known, stock))
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -301,7 +312,26 @@ class SceneLibrary:
             world.categories,
             seed,
             start_s=start_s,
+            materials=stock,
         )
+
+    def knowledge_of(self, scene: str) -> SceneKnowledge:
+        """Return what a scene that was built may name, its pictures among it."""
+        return self._with_materials(self.knowledge, self.materials_of(scene))
+
+    def materials_of(self, scene: str) -> MaterialStock:
+        """Return where the materials of a scene that was built come from."""
+        return MaterialStock(self._assets, self.pictures, self._picture_folders(scene))
+
+    def picture_content(self, picture: str, scene: str) -> bytes:
+        """Return the bytes of a picture that a scene shows.
+
+        Raises
+        ------
+        AssetError
+            If it is there no more.
+        """
+        return self.pictures.content(picture, self._picture_folders(scene))
 
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Return the agents that a scene that was built brings along."""
@@ -364,6 +394,19 @@ class SceneLibrary:
         self._packs = installed_packs()
         self._skies = sky_files(pack.folder for pack in self._packs)
 
+    def _picture_folders(self, scene: str) -> tuple[Path, ...]:
+        """Return where pictures of a scene that was built lie: beside it, or beside saved ones."""
+        beside = self._scene_folders.get(scene)
+        return tuple(dict.fromkeys((beside or self._own_folder, self._own_folder)))
+
+    def _stock_beside(self, path: Path) -> MaterialStock:
+        return MaterialStock(
+            self._assets, self.pictures, (path.absolute().parent, self._own_folder)
+        )
+
+    def _with_materials(self, known: SceneKnowledge, stock: MaterialStock) -> SceneKnowledge:
+        return replace(known, material_fault=stock.fault, picture_fault=stock.picture_fault)
+
     def _load_light(self, world: World, scene: str) -> None:
         if world.described is not None and world.described.room is not None:
             self._light_cache.hang(world, scene)
@@ -382,7 +425,7 @@ class SceneLibrary:
                 taken.add(str(entry["name"]))
             named.append(entry)
         own = tuple(category.name for category in spec.categories)
-        known = self._knowledge_of_strangers
+        known = self._with_materials(self._knowledge_of_strangers, self.materials_of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
 
 

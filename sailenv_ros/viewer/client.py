@@ -86,6 +86,7 @@ class Client:
         history: EditHistory,
     ) -> None:
         self.history = history
+        self.picture_pieces = bytearray()
         self.debug_agent = debug_agent
         self._socket = socket
         self._simulation = simulation

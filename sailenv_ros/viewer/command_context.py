@@ -27,6 +27,7 @@ class CommandContext(Protocol):
 
     debug_agent: DebugAgent
     history: EditHistory
+    picture_pieces: bytearray
 
     @property
     def info(self) -> SceneInfo:

@@ -17,8 +17,10 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import Operations
 from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.viewer.chance_commands import CHANCE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
+from sailenv_ros.viewer.material_commands import MATERIAL_COMMANDS
 from sailenv_ros.viewer.object_overlay import overlay_of
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from sailenv_ros.viewer.recorded_commands import edits_object
@@ -31,7 +33,9 @@ __all__ = ["COMMANDS"]
 MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
-_commands = CommandTable({**LIGHT_COMMANDS, **ROOM_COMMANDS})
+_commands = CommandTable(
+    {**LIGHT_COMMANDS, **ROOM_COMMANDS, **MATERIAL_COMMANDS, **CHANCE_COMMANDS}
+)
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cache
@@ -12,6 +13,7 @@ from typing import Any, get_args, get_type_hints
 
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs
+from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import BehaviourKind, behaviour_kinds
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import UNLABELLED_CATEGORY
@@ -22,6 +24,7 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo
 
 __all__ = [
     "behaviours_to_json",
+    "materials_to_json",
     "object_to_json",
     "picture_settings_to_json",
     "pose_to_json",
@@ -60,6 +63,8 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
                 "category": instance.category,
                 "static": instance.static,
                 "moves": instance.id in info.moving,
+                "materials": list(instance.materials),
+                "painted": json.loads(instance.painted or "[]"),
                 "parent": instance.parent,
                 "is_part": instance.is_part,
             }
@@ -134,6 +139,11 @@ def picture_settings_to_json() -> list[dict[str, Any]]:
         }
         for name in NAMES
     ]
+
+
+def materials_to_json() -> list[str]:
+    """Tell the names of the materials that are made for rooms."""
+    return list(surface_names())
 
 
 def skies_to_json() -> list[str]:

@@ -30,6 +30,7 @@ from sailenv_ros.viewer.encoding import views_to_json
 from sailenv_ros.viewer.page_files import page_file
 from sailenv_ros.viewer.scene_json import (
     behaviours_to_json,
+    materials_to_json,
     picture_settings_to_json,
     skies_to_json,
 )
@@ -257,6 +258,7 @@ class ViewerServer:
                 "views": views_to_json(self._simulation.supported_views),
                 "behaviours": behaviours_to_json(),
                 "picture_settings": picture_settings_to_json(),
+                "materials": materials_to_json(),
                 "skies": await asyncio.to_thread(skies_to_json),
             },
             touch=self._touch,

@@ -9,6 +9,8 @@ from pathlib import Path
 
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.material_stock import MaterialStock, material_names
+from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.assets.skies import load_sky
@@ -34,6 +36,7 @@ def build_world(
     epoch: int,
     next_revision: Callable[[], int],
     skies: Mapping[str, Path] | None = None,
+    materials: MaterialStock | None = None,
 ) -> World:
     """Build the world of a scene.
 
@@ -49,6 +52,8 @@ def build_world(
         As `World` takes them.
     skies : mapping of str to Path or None
         Files of the photographed skies by name.
+    materials : MaterialStock or None
+        Where materials and pictures come from; None knows no pictures.
 
     Raises
     ------
@@ -59,14 +64,17 @@ def build_world(
     poses = arranged(spec.objects, stock, spec.room)
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
+    found = materials or MaterialStock(assets)
     return World(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
         placements=[
-            *room_placements(spec.room, table),
+            *room_placements(spec.room, table, found),
             *(
-                make_placement(entry, stock[entry.name], poses[entry.name], table, seed)
+                make_placement(
+                    entry, stock[entry.name], poses[entry.name], table, seed, materials=found
+                )
                 for entry in spec.objects
             ),
         ],
@@ -96,9 +104,11 @@ def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Enviro
     )
 
 
-def room_placements(room: RoomSpec | None, categories: CategoryTable) -> Iterator[Placement]:
+def room_placements(
+    room: RoomSpec | None, categories: CategoryTable, materials: MaterialStock | None = None
+) -> Iterator[Placement]:
     """Yield the parts of a room, none if there is no room."""
-    for part in () if room is None else room_parts(room):
+    for part in () if room is None else room_parts(room, materials):
         yield Placement(
             name=part.asset.display_name,
             asset=part.asset,
@@ -116,6 +126,7 @@ def make_placement(
     seed: int,
     *,
     start_s: float = 0.0,
+    materials: MaterialStock | None = None,
 ) -> Placement:
     """Turn an object's description into what `World.spawn` takes.
 
@@ -131,13 +142,16 @@ def make_placement(
         Of its behaviours' generators.
     start_s : float
         Simulated time at which they start [s].
+    materials : MaterialStock or None
+        Needed for an entry that has materials.
 
     Raises
     ------
     UnknownName, InvalidRequest
         If something does not exist or does not fit.
     """
-    asset = _painted(entry, asset)
+    names = material_names(asset)
+    asset = _painted(entry, asset, materials)
     for part in asset.parts:
         categories.named(part.category)  # which must be there
     behaviours = [
@@ -166,14 +180,18 @@ def make_placement(
         linear_velocity=entry.velocity,
         angular_velocity=(x, y, z),
         behaviours=tuple(behaviours),
+        materials=names,
         entry=entry,
     )
 
 
-def _painted(entry: ObjectSpec, asset: Asset) -> Asset:
+def _painted(entry: ObjectSpec, asset: Asset, materials: MaterialStock | None) -> Asset:
     model = painted(
         asset.model, colour=entry.colour, metallic=entry.metallic, roughness=entry.roughness
     )
+    if entry.materials:
+        stock = materials or MaterialStock(AssetLibrary())
+        model = finished(model, entry.materials, stock, entry.scale)
     return asset if model is asset.model else replace(asset, model=model)
 
 

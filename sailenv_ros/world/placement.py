@@ -41,6 +41,8 @@ class Placement:
     angular_velocity : (3,) tuple of float
         At the start, world frame [rad/s].
     behaviours : tuple of RunningBehaviour
+    materials : tuple of str
+        Names of the asset's own materials.
     entry : ObjectSpec or None
         What a scene file says of it; None for a part of a room.
     """
@@ -58,6 +60,7 @@ class Placement:
     linear_velocity: Vector3 = (0.0, 0.0, 0.0)
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
     behaviours: tuple[RunningBehaviour, ...] = ()
+    materials: tuple[str, ...] = ()
     entry: ObjectSpec | None = None
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ the same bytes.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -21,7 +22,7 @@ from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import PART_MARK, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
-from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.scene.spec import RoomSpec, SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable, LabelledPiece
@@ -93,6 +94,7 @@ class World:
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
+        self._changed_step = 0
         self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
@@ -138,6 +140,16 @@ class World:
         return self._contents
 
     @property
+    def changed_ns(self) -> int:
+        """When what stands still was last moved, painted, put there or taken away [ns]."""
+        return sim_time_ns(self._changed_step)
+
+    @property
+    def numbered_bodies(self) -> Iterable[tuple[int, Body]]:
+        """All bodies with their instance ids."""
+        return self._bodies.items()
+
+    @property
     def client(self) -> BulletClient:
         """The physics engine; for what lies in this package."""
         return self._client
@@ -164,8 +176,14 @@ class World:
 
     @property
     def room_changed(self) -> bool:
-        """True if the room that is described is another than that of the start."""
-        return self.described is not None and self.described.room != self._first_room
+        """True if what stands at the walls would stand elsewhere than in the room of the start."""
+        now = None if self.described is None else self.described.room
+        return _walls_of(now) != _walls_of(self._first_room)
+
+    @property
+    def first_room(self) -> RoomSpec | None:
+        """The room of the start, as its file describes it."""
+        return self._first_room
 
     @property
     def first_bodies(self) -> Mapping[str, Body]:
@@ -258,19 +276,30 @@ class World:
             If an object of that name is there.
         """
         instance_id = self._bodies.add(placement)
+        self._changed_step = self._step
         self._changed()
         return instance_id
 
     def despawn(self, instance_id: int) -> None:
         """Take an object out of the world with its parts; their ids are not used again."""
         self._bodies.remove(instance_id)
+        self._changed_step = self._step
         self._changed()
 
-    def replace_body(self, instance_id: int, placement: Placement) -> None:
+    def replace_body(
+        self, instance_id: int, placement: Placement, described: SceneSpec | None = None
+    ) -> None:
         """Make of an object what another placement says; it stays where it is, and its id too.
 
         It keeps its motion and its behaviours. Another scale cuts its past off: a point of its
         surface has no place of before.
+
+        Parameters
+        ----------
+        instance_id : int
+        placement : Placement
+        described : SceneSpec or None
+            What a scene file says of it all from now on; None leaves it.
 
         Raises
         ------
@@ -284,6 +313,8 @@ class World:
         if placement.scale != old.placement.scale:
             self._bodies.cut_off_past(instance_id)
             self._forget_chart(instance_id)
+        self.described = described or self.described
+        self._changed_step = self._step
         self._changed()
 
     def replace_room(
@@ -323,6 +354,8 @@ class World:
         moved = self.body(instance_id)
         self._bodies.rouse_beside(moved)
         moved.put(pose)
+        if moved.placement.static:
+            self._changed_step = self._step
         if teleport:
             self._bodies.cut_off_past(instance_id)
         self._snapshot = self._states = None
@@ -440,12 +473,35 @@ class World:
             low_m=_scaled(low, placement.scale),
             high_m=_scaled(high, placement.scale),
             parent=parent,
+            materials=_material_names(placement) if part is None else (),
+            painted=_painted(placement, self.described) if part is None else "",
             keypoints=tuple(
                 Keypoint(name=point, position_m=_scaled(place, placement.scale))
                 for point, place in keypoints
             ),
         )
         return DrawnInstance(instance=instance, model=model, scale=placement.scale)
+
+
+def _material_names(placement: Placement) -> tuple[str, ...]:
+    """Return the names of an object's own materials; none of a part of a room."""
+    if placement.entry is None:
+        return ()
+    return placement.materials
+
+
+def _painted(placement: Placement, described: SceneSpec | None) -> str:
+    """Return as JSON what a scene file says of an object's materials; empty for the asset's own."""
+    if placement.entry is not None:
+        entries = [m.model_dump(mode="json", exclude_unset=True) for m in placement.entry.materials]
+        return json.dumps(entries, sort_keys=True) if entries else ""
+    look = None if described is None else described.room and described.room.look_of(placement.name)
+    return "" if not look else json.dumps([look], sort_keys=True)
+
+
+def _walls_of(room: RoomSpec | None) -> tuple[object, ...] | None:
+    """Return what decides where things at a room's walls stand."""
+    return None if room is None else (room.size, room.skirting and room.skirting.depth)
 
 
 def _scaled(point: Sequence[float], scale: Sequence[float]) -> tuple[float, float, float]:

@@ -156,6 +156,14 @@ def test_a_program_of_the_page_on_motion_runs(
     assert "False" not in out
 
 
+def test_the_example_of_random_scenes_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Epochs differ, and the frame that is made again does not."""
+    out = run((ROOT / "examples" / "13_randomise.py").read_text(), capsys)
+    assert out.rstrip().endswith("has the same bytes: True")
+    pictures = {(here / f"random_{index}.png").read_bytes() for index in range(4)}
+    assert len(pictures) == 4
+
+
 @pytest.mark.gl
 def test_the_example_of_tracks_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Points become hidden and leave; the picture of their trails is written."""

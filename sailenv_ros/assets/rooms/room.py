@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -13,6 +14,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.material_stock import MaterialStock
 from sailenv_ros.assets.rooms.doors import (
     ARCHITRAVE_M,
     door_collision,
@@ -31,7 +34,7 @@ from sailenv_ros.assets.rooms.walls import (
 )
 from sailenv_ros.assets.rooms.windows import curtain_parts, window_collision, window_parts
 from sailenv_ros.assets.solids import joined
-from sailenv_ros.assets.surfaces import Surface, surface
+from sailenv_ros.assets.surfaces import Surface
 from sailenv_ros.model import Asset, BoxShape, CollisionShape, Material, Mesh, Model, ModelPart
 from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.spec_room import (
@@ -50,6 +53,9 @@ __all__ = ["RoomPart", "room_parts"]
 
 Vector3 = tuple[float, float, float]
 _Frames: TypeAlias = Mapping[WallName, WallFrame]
+_Looks: TypeAlias = Mapping[SurfaceSpec, Surface]
+
+_surfaces: weakref.WeakValueDictionary[tuple[object, ...], Surface] = weakref.WeakValueDictionary()
 
 _OUTWARD: dict[str, Vector3] = {
     "north": (0.0, 1.0, 0.0),
@@ -75,31 +81,58 @@ class RoomPart:
     position_m: Vector3
 
 
-@lru_cache(maxsize=4)
-def room_parts(spec: RoomSpec) -> tuple[RoomPart, ...]:
+def room_parts(spec: RoomSpec, stock: MaterialStock | None = None) -> tuple[RoomPart, ...]:
     """Build a room; the same objects for an equal description while they are kept.
+
+    Parameters
+    ----------
+    spec : RoomSpec
+    stock : MaterialStock or None
+        Where its materials come from; None knows those that are made for rooms.
 
     Raises
     ------
-    UnknownName
-        If a material is not known.
+    UnknownName, InvalidRequest, AssetError
+        If a material is not known, or a picture cannot be used.
     """
+    found = stock or MaterialStock(AssetLibrary())
+    looks = {look: _surface(look, found) for look in dict.fromkeys(_looks(spec))}
+    return _room_parts(spec, tuple(looks.items()))
+
+
+def _looks(spec: RoomSpec) -> Iterator[SurfaceSpec]:
+    """Yield what says of what something is made."""
+    yield spec.floor
+    if spec.ceiling is not None:
+        yield spec.ceiling
+    yield spec.walls
+    yield from (spec.surface_of(wall) for wall in WALLS)
+    for partition in spec.partitions:
+        yield from (look for wall in WALLS if (look := getattr(partition, wall)) is not None)
+    yield from (area.surface for area in spec.floors)
+
+
+@lru_cache(maxsize=4)
+def _room_parts(
+    spec: RoomSpec, looks: tuple[tuple[SurfaceSpec, Surface], ...]
+) -> tuple[RoomPart, ...]:
     frames: _Frames = {wall: _frame(spec, wall) for wall in WALLS}
+    surfaces = dict(looks)
     return (
-        *_slabs(spec),
-        *(_wall(spec, wall, frames[wall]) for wall in WALLS),
+        *_slabs(spec, surfaces),
+        *(_wall(spec, wall, frames[wall], surfaces[spec.surface_of(wall)]) for wall in WALLS),
         *_skirting(spec, frames),
         *_openings(spec, frames),
-        *_partitions(spec),
+        *_partitions(spec, surfaces),
     )
 
 
-def _partitions(spec: RoomSpec) -> Iterator[RoomPart]:
+def _partitions(spec: RoomSpec, looks: _Looks) -> Iterator[RoomPart]:
     """Yield the walls inside the room, each with its doorways."""
     for partition in spec.partitions:
         frame, sides = partition_frame(partition, spec.size[2])
         holes = [_doorway_hole(doorway) for doorway in partition.doorways]
-        surfaces = [_surface(getattr(partition, side) or spec.walls) for side in sides]
+        surfaces = [looks[getattr(partition, side) or spec.walls] for side in sides]
         parts = [*wall_parts(frame, holes, surfaces[0], surfaces[1])]
         shapes = [*wall_collision(frame, holes)]
         for doorway in partition.doorways:
@@ -166,7 +199,7 @@ def _frame(spec: RoomSpec, wall: WallName) -> WallFrame:
     )
 
 
-def _slabs(spec: RoomSpec) -> Iterator[RoomPart]:
+def _slabs(spec: RoomSpec, looks: _Looks) -> Iterator[RoomPart]:
     """Yield floor and ceiling, which reach under and over the walls."""
     thick = spec.thickness
     size = (spec.size[0] + 2.0 * thick, spec.size[1] + 2.0 * thick)
@@ -176,11 +209,11 @@ def _slabs(spec: RoomSpec) -> Iterator[RoomPart]:
     ):
         if of is not None:
             areas = [_floor_rectangle(area) for area in spec.floors] if up else []
-            part = slab_part(size, thick, _surface(of), up=up, without=areas)
+            part = slab_part(size, thick, looks[of], up=up, without=areas)
             shape = collision_of(box_of_slab(size, thick, up=up))
             yield _part(name, name, [part], [shape], (0.0, 0.0, height))
     for area in spec.floors:
-        rectangle, of_area = _floor_rectangle(area), _surface(area.surface)
+        rectangle, of_area = _floor_rectangle(area), looks[area.surface]
         (west, east), (south, north) = rectangle.along, rectangle.up
         faces = Faces()
         faces.add((west, south, 0.0), (east - west, 0, 0), (0, north - south, 0), (0, 0, 1))
@@ -195,13 +228,13 @@ def _floor_rectangle(area: FloorAreaSpec) -> Hole:
     return Hole((min(x0, x1), max(x0, x1)), (min(y0, y1), max(y0, y1)))
 
 
-def _wall(spec: RoomSpec, wall: WallName, frame: WallFrame) -> RoomPart:
+def _wall(spec: RoomSpec, wall: WallName, frame: WallFrame, surface: Surface) -> RoomPart:
     holes = [
         Hole((o.at - o.width / 2.0, o.at + o.width / 2.0), _rise(o))
         for o in spec.openings
         if o.wall == wall
     ]
-    parts = wall_parts(frame, holes, _surface(spec.surface_of(wall)))
+    parts = wall_parts(frame, holes, surface)
     return _part(f"{wall} wall", "wall", parts, wall_collision(frame, holes), frame.middle_m)
 
 
@@ -276,9 +309,27 @@ def _openings(spec: RoomSpec, frames: _Frames) -> Iterator[RoomPart]:
             yield _part(f"curtains {number}", "curtain", looks, [], frame.world_point(window.at))
 
 
-def _surface(spec: SurfaceSpec) -> Surface:
-    found = surface(spec.material, colour=spec.colour, seed=spec.seed)
-    return replace(found, turn_deg=found.turn_deg + spec.turn)
+def _surface(spec: SurfaceSpec, stock: MaterialStock) -> Surface:
+    """Return what a surface is made of; the same object for equal finishes while they are kept."""
+    finish = stock.finish(spec)
+    material, tile_m = finish.material, finish.tile_m or (1.0, 1.0)
+    key = _look(material), tile_m, finish.turn_deg
+    found = _surfaces.get(key)
+    if found is None:
+        found = Surface(material=material, tile_m=tile_m, turn_deg=finish.turn_deg)
+        _surfaces[key] = found
+    return found
+
+
+def _look(material: Material) -> tuple[object, ...]:
+    """Return what tells materials of surfaces apart, while their textures live."""
+    textures = (
+        material.base_colour_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+    )
+    numbers = (material.base_colour, material.metallic, material.roughness)
+    return (material.name, *numbers, *(id(texture) for texture in textures))
 
 
 def _part(

@@ -46,7 +46,7 @@ class SurfaceMaps:
     turn_deg: float = 0.0
 
 
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Surface:
     """A material that tiles, and the size at which it is true.
 

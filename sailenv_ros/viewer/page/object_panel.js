@@ -1,6 +1,7 @@
 // The selected object: where it is, how large, what it is, what moves it; and all objects to choose.
 
 import { button, el, fixed, put, section } from "./dom.js";
+import { MaterialEditor } from "./material_editor.js";
 import { pairs } from "./view_panel.js";
 
 const AXES = ["x", "y", "z"];
@@ -12,6 +13,7 @@ export class ObjectPanel {
     this.app = app;
     this.state = null;
     this.editor = el("div", { id: "editor" });
+    this.materials = new MaterialEditor(app);
     this.search = el("input", {
       type: "search", placeholder: "Search objects", id: "object-search",
       on: { input: () => this.#list() },
@@ -27,6 +29,7 @@ export class ObjectPanel {
   update() {
     this.#list();
     if (this.state && !this.app.instances.has(this.state.id)) this.app.select(0);
+    else if (this.state) this.materials.show(this.state.id);
   }
 
   /** Show another object; null for none. */
@@ -131,8 +134,10 @@ export class ObjectPanel {
         ),
         this.facts,
       ),
+      this.materials.root,
       section("Moves by", this.behaviours, this.#adder()),
     );
+    this.materials.show(state.id);
     this.#fill(state);
   }
 

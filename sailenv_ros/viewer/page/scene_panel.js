@@ -63,6 +63,9 @@ export class ScenePanel {
         el("label", { class: "line" }, el("span", {}, "real-time factor"), this.factor),
         el("label", { class: "line" }, el("span", {}, "seed"), this.seed,
           button("Begin anew", () => app.try("reset", { seed: Number(this.seed.value) }))),
+        el("div", { class: "buttons" },
+          button("Randomise", () => this.#randomise(), { title: "Begin the scene anew, drawn at random", kind: "randomise" }),
+          button("Keep it", () => this.#keepDrawn(), { title: "Save what was drawn as a scene", kind: "keep-drawn" })),
         el("label", { class: "line" }, el("span", {}, "picture here"), this.size),
       ),
       section("Agents", this.agents),
@@ -90,6 +93,18 @@ export class ScenePanel {
       ["objects", String(scene.instances.filter(({ is_part }) => !is_part).length)],
       ["mode", scene.mode],
     ]));
+  }
+
+  async #randomise() {
+    const index = await this.app.try("randomise", {});
+    if (index !== undefined) this.drawn = index;
+  }
+
+  /** Save what was drawn, under a name of its own unless one is typed. */
+  async #keepDrawn() {
+    const { scene, seed } = this.app.scene;
+    if (!this.name.value.trim()) this.name.value = `${scene.replace(/[^A-Za-z0-9 _-]/g, "_").slice(0, 40)}_${seed}_${this.drawn ?? 0}`;
+    await this.#save();
   }
 
   async #kinds() {

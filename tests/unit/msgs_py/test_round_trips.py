@@ -24,6 +24,7 @@ from sailenv_msgs_py.frame_info import (
     camera_of_frame_info,
     frame_info_to_msg,
     header_of_frame,
+    randomised_of_frame_info,
     states_of_frame_info,
 )
 from sailenv_msgs_py.object_msgs import (
@@ -88,6 +89,8 @@ INSTANCES = st.builds(
     high_m=TRIPLES,
     parent=st.integers(0, 65535),
     keypoints=st.lists(KEYPOINTS, max_size=2).map(tuple),
+    materials=st.lists(TEXTS, max_size=2).map(tuple),
+    painted=TEXTS,
 )
 LIGHTS = st.builds(
     lambda inner, outer, **light: Light(
@@ -249,6 +252,7 @@ def frames(draw: st.DrawFn) -> Frame:
         views={},
         timings_s={"render": draw(st.floats(0.0, 1e3))},
         states=draw(st.none() | instance_states()),
+        randomised=draw(st.none() | st.dictionaries(TEXTS, COORDINATES, max_size=2)),
     )
 
 
@@ -491,6 +495,8 @@ def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float)
     told.pop("camera_pose")
     assert ns_from_stamp(told.pop("header").stamp) == frame.stamp_ns
     same_states(states_of_frame_info(msg), frame.states)
+    assert randomised_of_frame_info(msg) == frame.randomised
+    told.pop("randomised")
     for name in [name for name in told if name.startswith(("instance_", "has_"))]:
         told.pop(name)
     assert told == {

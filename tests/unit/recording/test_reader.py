@@ -295,9 +295,10 @@ class _WithoutStates:
 
     def write(self, topic: str, parts: Any, log_ns: int) -> None:
         if topic.endswith("frame_info"):
-            # A false, three bytes that fill up, and three empty arrays.
+            # A false, three bytes that fill up, three empty arrays, and an empty text.
             (data,) = parts
-            assert data[-16] == 0
-            assert not any(data[-12:])
-            parts = (data[:-16],)
+            assert data[-21] == 0
+            assert not any(data[-17:-5])
+            assert bytes(data[-5:]) == b"\x01\0\0\0\0"
+            parts = (data[:-21],)
         self._writer.write(topic, parts, log_ns)

@@ -198,3 +198,39 @@ def test_a_tree_holds_every_box_once() -> None:
         assert (boxes[chosen, :3] >= node["low"]).all()
         assert (boxes[chosen, 3:] <= node["high"]).all()
     assert (held == 1).all()
+
+
+BLUE = Thing(hollow((6.0, 6.0, 3.0), base_colour=(0.15, 0.35, 0.7, 1.0)), ROOM.pose)
+
+
+@pytest.mark.parametrize(("quality", "most"), [(QUICK, 0.12), (FINE, 0.08)])
+def test_a_painted_room_is_lit_as_if_baked_so(
+    scene: BakedScene, quality: Quality, most: float
+) -> None:
+    """Another colour of the walls colours what bounces, on the walls and on the chest."""
+    snapshot = still([BLUE, Thing(CHEST, HERE)], lights=LIGHTS, environment=Environment())
+    expected = bake(snapshot, settings=FINER)
+    got = relit(scene, [], quality, threads=2, painted={1: BLUE.model})
+    assert got.charts == scene.baked.charts
+    for instance in (1, 2):
+        for number, layer in enumerate(expected.layers):
+            mine, wanted, before = (
+                read(light, instance, snapshot, light.layers[number].bounced)[1]
+                for light in (got, expected, scene.baked)
+            )
+            assert layer.light == got.layers[number].light
+            mine, wanted, before = (np.asarray(a).mean(axis=0) for a in (mine, wanted, before))
+            changed = np.abs(before - wanted).mean()
+            if instance == 1:
+                assert np.abs(mine - wanted).mean() <= most * wanted.mean() + 5e-4
+            assert np.abs(mine - wanted).mean() <= 0.4 * changed
+
+
+def test_paint_gives_the_same_bytes_on_any_number_of_threads(scene: BakedScene) -> None:
+    """As moves do."""
+    one, two = (
+        relit(scene, [], QUICK, threads=threads, painted={1: BLUE.model}) for threads in (1, 2)
+    )
+    for a, b in zip(one.layers, two.layers, strict=True):
+        np.testing.assert_array_equal(a.bounced, b.bounced)
+        np.testing.assert_array_equal(a.probe_bounced, b.probe_bounced)

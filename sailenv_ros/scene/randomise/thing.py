@@ -1,0 +1,116 @@
+"""The base of everything that can be drawn at random, and the values that come of it.
+
+A thing says in the words of a scene file what becomes of what it is about; it knows no simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import core_schema
+
+from sailenv_ros.scene.field_types import Choice, Text, field_error
+from sailenv_ros.scene.fields import Name, SceneModel
+from sailenv_ros.scene.messages import shown
+from sailenv_ros.scene.randomise.drawn import Draw
+
+__all__ = ["EVERY", "Pick", "RandomTargets", "Thing", "ThingOfEpochs", "Values", "Which"]
+
+Values: TypeAlias = dict[str, Any]
+"""What was drawn, in plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
+``environment`` by its keys, ``added`` a list of objects."""
+
+Pick: TypeAlias = Callable[[str, str, Draw], Any]
+"""``pick(target, key, draw)`` returns a value; each target and key has a generator of its own."""
+
+EVERY = ("epoch", "frame")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomTargets:
+    """What there is to be drawn for, by name.
+
+    Attributes
+    ----------
+    objects, surfaces, agents : tuple of str
+        Objects, parts of the room, cameras.
+    lights : mapping of str to (3,) tuple of float
+        Where each light is [m].
+    """
+
+    objects: tuple[str, ...] = ()
+    surfaces: tuple[str, ...] = ()
+    agents: tuple[str, ...] = ()
+    lights: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+
+
+class _Names:
+    """One name or pattern, or several; kept as a tuple."""
+
+    _text = Text(r"[^\x00-\x1f]{1,100}", "a name, or a pattern with * and ?")
+
+    def check(self, value: object) -> tuple[str, ...]:
+        names = [value] if isinstance(value, str) else value
+        if not isinstance(names, list | tuple) or not names:
+            raise field_error(f"must be a name or a list of names, got {shown(value)}")
+        return tuple(self._text.check(name) for name in names)
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        writing = core_schema.plain_serializer_function_ser_schema(
+            lambda names: names[0] if len(names) == 1 else list(names),
+            when_used="json-unless-none",
+        )
+        return core_schema.no_info_plain_validator_function(self.check, serialization=writing)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        text = self._text.json_schema()
+        return {"anyOf": [text, {"type": "array", "items": text, "minItems": 1}]}
+
+
+Which: TypeAlias = Annotated[tuple[str, ...], _Names()]
+
+
+class Thing(SceneModel):
+    """What every entry of `randomise` has."""
+
+    KEY: ClassVar[str] = ""
+    """Which of `Values` it fills."""
+
+    name: Name = Field(
+        description="unique among them; its values depend on it and the seed, not on other entries"
+    )
+    every: Annotated[Literal["epoch", "frame"], Choice(EVERY)] = Field(
+        default="epoch",
+        description="`epoch`: drawn when the scene begins; `frame`: for each instant that is drawn",
+    )
+
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
+        """Return what is drawn for all its targets."""
+        raise NotImplementedError
+
+    def draws(self, *besides: str) -> dict[str, Draw]:
+        """Return what is to be drawn, by its keys."""
+        given = {key: getattr(self, key) for key in type(self).model_fields if key not in besides}
+        return {key: value for key, value in given.items() if isinstance(value, Draw)}
+
+
+class ThingOfEpochs(Thing):
+    """A thing that physics knows: it is drawn when the scene begins, and stays."""
+
+    every: Annotated[Literal["epoch"], Choice(("epoch",))] = Field(
+        default="epoch", description="when the scene begins: what physics knows stays until then"
+    )
+
+
+def chosen(which: Iterable[str], names: Iterable[str]) -> list[str]:
+    """Return the names that one of the names and patterns means, in their order."""
+    patterns = tuple(which)
+    return [name for name in names if any(name == p or fnmatchcase(name, p) for p in patterns)]

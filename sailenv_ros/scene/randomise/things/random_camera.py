@@ -1,0 +1,62 @@
+"""Cameras: where they stand, where they look, their lens and exposure."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from sailenv_ros.picture_settings import LIMITS
+from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.fields import Position, Rotation, Rule
+from sailenv_ros.scene.randomise.drawn import Draw, Drawn
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
+from sailenv_ros.scene.rules import at_most_one, only_beside
+
+__all__ = ["RandomCamera"]
+
+_Angle = Annotated[float, Number(least=1.0, most=170.0, unit="deg")]
+_Stops = Annotated[float, Number(least=-16.0, most=16.0, unit="stops")]
+_Well = Annotated[float, Number(least=0.0, most=LIMITS["full_well"][1], unit="electrons")]
+
+
+class RandomCamera(Thing):
+    """Cameras, those of the scene and those that programs have registered."""
+
+    KEY: ClassVar[str] = "agents"
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        at_most_one("look_at", "rotation"),
+        only_beside("position", "look_at", "rotation"),
+    )
+
+    type: Literal["camera"]
+    of: Which = Field(default=("*",), description="names of agents; * and ?")
+    position: Annotated[Draw, Drawn(Position)] | None = Field(
+        default=None, description="where it stands, in the world [m]"
+    )
+    look_at: Annotated[Draw, Drawn(Position)] | None = Field(
+        default=None, description="the point that it faces [m]"
+    )
+    rotation: Annotated[Draw, Drawn(Rotation)] | None = Field(
+        default=None, description="[roll, pitch, yaw], instead of look_at [deg]"
+    )
+    vertical_fov: Annotated[Draw, Drawn(_Angle)] | None = Field(
+        default=None, description="full vertical angle of view [deg]"
+    )
+    exposure: Annotated[Draw, Drawn(_Stops)] | None = Field(
+        default=None, description="of its pictures, on top of the scene's [stops]"
+    )
+    full_well: Annotated[Draw, Drawn(_Well)] | None = Field(
+        default=None, description="of its pictures, see the keys of a picture; 0: no noise"
+    )
+
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
+        """Return position, look_at or rotation, and settings, for each camera."""
+        draws = self.draws()
+        return {
+            "agents": {
+                name: {key: pick(name, key, draw) for key, draw in draws.items()}
+                for name in chosen(self.of, targets.agents)
+            }
+        }

@@ -1,0 +1,53 @@
+"""The surroundings: sky, ambient light, background, exposure."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from sailenv_ros.scene.field_types import Number, Text
+from sailenv_ros.scene.fields import Fraction, Radiance
+from sailenv_ros.scene.randomise.drawn import Draw, Drawn
+from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values
+
+__all__ = ["RandomEnvironment"]
+
+_Stops = Annotated[float, Number(least=-20.0, most=20.0, unit="stops")]
+_Sky = Annotated[str, Text(r"[^\x00-\x1f]{0,200}", "the name of a sky, or an empty text")]
+
+
+class RandomEnvironment(Thing):
+    """Keys of `environment`."""
+
+    KEY: ClassVar[str] = "environment"
+
+    type: Literal["environment"]
+    sky_map: Annotated[Draw, Drawn(_Sky)] | None = Field(
+        default=None, description="name of a photographed sky; empty for that of the three colours"
+    )
+    exposure: Annotated[Draw, Drawn(_Stops)] | None = Field(
+        default=None, description="the picture is brightened by 2 to the power of it [stops]"
+    )
+    sky_share: Annotated[Draw, Drawn(Fraction)] | None = Field(
+        default=None, description="share of the sky's light that reaches the objects"
+    )
+    ambient: Annotated[Draw, Drawn(Radiance)] | None = Field(
+        default=None, description="light that arrives from everywhere"
+    )
+    background_colour: Annotated[Draw, Drawn(Radiance)] | None = Field(
+        default=None, description="the colour for `background: colour`"
+    )
+    sky_zenith: Annotated[Draw, Drawn(Radiance)] | None = Field(
+        default=None, description="sky straight above"
+    )
+    sky_horizon: Annotated[Draw, Drawn(Radiance)] | None = Field(
+        default=None, description="sky at the horizon"
+    )
+    sky_ground: Annotated[Draw, Drawn(Radiance)] | None = Field(
+        default=None, description="below the horizon"
+    )
+
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
+        """Return keys of `environment`."""
+        return {"environment": {key: pick("", key, draw) for key, draw in self.draws().items()}}

@@ -1,0 +1,60 @@
+"""Objects: which they are, whether they are there, how large, where and how they stand."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from sailenv_ros.scene.field_types import Number, Switch, Text
+from sailenv_ros.scene.fields import Position
+from sailenv_ros.scene.randomise.drawn import Draw, Drawn
+from sailenv_ros.scene.randomise.thing import (
+    Pick,
+    RandomTargets,
+    ThingOfEpochs,
+    Values,
+    Which,
+    chosen,
+)
+
+__all__ = ["RandomObject"]
+
+_Asset = Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of an asset")]
+_Degrees = Annotated[float, Number(least=-360.0, most=360.0, unit="deg")]
+_Factor = Annotated[float, Number(least=1e-3, most=1e3)]
+_Bool = Annotated[bool, Switch()]
+
+
+class RandomObject(ThingOfEpochs):
+    """Objects of the scene; what stands on one goes with it."""
+
+    KEY: ClassVar[str] = "objects"
+
+    type: Literal["object"]
+    of: Which = Field(description="names of objects; * and ?")
+    asset: Annotated[Draw, Drawn(_Asset)] | None = Field(
+        default=None, description="what it is: names of the catalogue"
+    )
+    there: Annotated[Draw, Drawn(_Bool)] | None = Field(
+        default=None, description="false takes it out, with what stands on it"
+    )
+    scale: Annotated[Draw, Drawn(_Factor)] | None = Field(
+        default=None, description="instead of its scale: one factor for all axes"
+    )
+    offset: Annotated[Draw, Drawn(Position)] | None = Field(
+        default=None, description="from where the file puts it, in the world's axes [m]"
+    )
+    turn: Annotated[Draw, Drawn(_Degrees)] | None = Field(
+        default=None, description="about the vertical, counter-clockwise [deg]"
+    )
+
+    def values(self, targets: RandomTargets, pick: Pick) -> Values:
+        """Return asset, there, scale, offset and turn for each object."""
+        draws = self.draws()
+        return {
+            "objects": {
+                name: {key: pick(name, key, draw) for key, draw in draws.items()}
+                for name in chosen(self.of, targets.objects)
+            }
+        }

@@ -1,0 +1,182 @@
+"""Other materials for what stands in a running world: objects, walls, floor, ceiling.
+
+What was asked for is written down in the words of a scene file, so that it is saved and can be
+undone. Shapes, places and ids stay; baked light stays too, and is brought up to date elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.scene.entries import checked_scene, plain_value
+from sailenv_ros.scene.room_rules import WALLS, room_part_names
+from sailenv_ros.scene.spec import RoomSpec
+from sailenv_ros.scene.spec_materials import ALL_PARTS, LookSpec, MaterialSpec
+from sailenv_ros.world.build import room_placements
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+
+__all__ = ["merged_look", "set_material", "set_surface", "surface_keys"]
+
+_EXCLUSIVE = ("material", "picture")
+"""One of them takes the other's place."""
+
+_WALL = " wall"
+
+
+def set_material(
+    core: SimulationCore, instance_id: int, part: str, changes: Mapping[str, Any]
+) -> None:
+    """Change what an object or a part of the room is made of; see `operations` for arguments."""
+    body = core.world.body(instance_id)
+    present = body.placement.entry
+    if present is None:
+        if part not in ("", ALL_PARTS):
+            raise UnknownName(f"material of {body.placement.name}", part, (ALL_PARTS,))
+        keys = surface_keys(core, instance_id) or {}
+        set_surface(core, instance_id, merged_look(keys, changes, LookSpec) if changes else None)
+        return
+    chosen = part or ALL_PARTS
+    entries = [m.model_dump(mode="json", exclude_unset=True) for m in present.materials]
+    parts = [entry.get("part", ALL_PARTS) for entry in entries]
+    if chosen == ALL_PARTS:
+        # What is asked for last is what is seen.
+        before = entries[parts.index(ALL_PARTS)] if ALL_PARTS in parts else {}
+        kept: list[dict[str, Any]] = []
+    else:
+        before = entries[parts.index(chosen)] if chosen in parts else {"part": chosen}
+        kept = [entry for entry, name in zip(entries, parts, strict=True) if name != chosen]
+    if changes:
+        kept.append(merged_look(before, changes, MaterialSpec))
+    core.editor.change_object(instance_id, {"materials": kept})
+
+
+def merged_look(
+    present: Mapping[str, Any], changes: Mapping[str, Any], model: type[LookSpec]
+) -> dict[str, Any]:
+    """Return the keys of a look with some of them changed; None takes one out.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such key.
+    """
+    known = {**model.model_fields, **LookSpec.model_fields}
+    for key in changes:
+        if key not in known or key == "part":
+            raise UnknownName("key of a material", key, [k for k in known if k != "part"])
+    wanted = plain_value(changes)
+    merged = {**present, **wanted}
+    for key, other in (_EXCLUSIVE, _EXCLUSIVE[::-1]):
+        if wanted.get(key) is not None and wanted.get(other) is None:
+            merged.pop(other, None)
+    return {key: value for key, value in merged.items() if value is not None}
+
+
+def surface_keys(core: SimulationCore, instance_id: int) -> dict[str, Any] | None:
+    """Return what the scene says of the look of a part of the room; None for what is none."""
+    described = core.world.described
+    name = core.world.body(instance_id).placement.name
+    if described is None or described.room is None or name not in _part_names(described.room):
+        return None
+    return _keys_of(described.room, name)
+
+
+def set_surface(core: SimulationCore, instance_id: int, keys: Mapping[str, Any] | None) -> None:
+    """Give a part of the room the look of these keys; None gives it that of the scene's file."""
+    world = core.world
+    body = world.body(instance_id)
+    name = body.placement.name
+    described = world.described
+    assert described is not None
+    room = _room(described.room, name)
+    if keys is None:
+        keys = _keys_of(_room(world.first_room, name), name)
+    entry = _with_keys(room, name, keys)
+    spec = checked_scene(
+        {"version": 1, "room": entry}, core.library.knowledge_of(world.scene), what=f"{name!r}"
+    ).room
+    assert spec is not None
+    stock = core.library.materials_of(world.scene)
+    made = {p.name: p for p in room_placements(spec, world.categories, stock)}
+    world.replace_body(
+        instance_id,
+        replace(body.placement, asset=made[name].asset),
+        described.model_copy(update={"room": spec}),
+    )
+    core.announce()
+
+
+def _part_names(room: RoomSpec) -> frozenset[str]:
+    return frozenset(room_part_names(room.model_dump(mode="json", exclude_unset=True)))
+
+
+def _room(room: RoomSpec | None, name: str) -> RoomSpec:
+    if room is None:
+        raise InvalidRequest("object", name, "one of the scene's own, or a part of its room")
+    return room
+
+
+def _keys_of(room: RoomSpec, name: str) -> dict[str, Any]:
+    """Return the keys of a part's look, of all that it could have those that differ."""
+    look = room.look_of(name)
+    if look is not None:
+        return look
+    entry = room.model_dump(mode="json", exclude_unset=True)
+    place = _colour_place(room, name, entry)
+    return {"colour": place["colour"]} if "colour" in place else {}
+
+
+def _with_keys(room: RoomSpec, name: str, keys: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the room as a file would have it, with another look of one of its parts."""
+    entry: dict[str, Any] = room.model_dump(mode="json", exclude_unset=True)
+    if name.removesuffix(_WALL) in WALLS and name.endswith(_WALL):
+        walls = dict(entry.get("wall_materials", {}))
+        walls[name.removesuffix(_WALL)] = dict(keys)
+        entry["wall_materials"] = walls
+    elif name in ("floor", "ceiling"):
+        entry[name] = dict(keys)
+    elif any(area.name == name for area in room.floors):
+        for area in entry["floors"]:
+            if area["name"] == name:
+                area["surface"] = dict(keys)
+    elif any(partition.name == name for partition in room.partitions):
+        for partition in entry["partitions"]:
+            if partition["name"] == name:
+                partition.update({wall: dict(keys) for wall in _sides(partition)})
+    else:
+        place = _colour_place(room, name, entry)
+        place.pop("colour", None)
+        place.update(keys)
+    return entry
+
+
+def _sides(partition: Mapping[str, Any]) -> tuple[str, str]:
+    """Return where the two sides of a wall inside the room look."""
+    (x0, y0), (x1, y1) = partition["start"], partition["end"]
+    return ("north", "south") if abs(x1 - x0) > abs(y1 - y0) else ("east", "west")
+
+
+def _colour_place(room: RoomSpec, name: str, entry: dict[str, Any]) -> dict[str, Any]:
+    """Return the mapping within a room's entry that holds the colour of a board or an opening."""
+    if name == "skirting":
+        if not isinstance(entry.get("skirting"), dict):
+            entry["skirting"] = {}
+        board: dict[str, Any] = entry["skirting"]
+        return board
+    kind, _, number = name.partition(" ")
+    wanted = {"window": "window", "door": "door", "curtains": "window"}.get(kind)
+    if wanted is None or not number.isdecimal():
+        raise InvalidRequest("object", name, "a wall, the floor, the ceiling, a window or a door")
+    same = [one for one in entry.get("openings", ()) if one["type"] == wanted]
+    opening: dict[str, Any] = same[int(number) - 1]
+    if kind != "curtains":
+        return opening
+    if not isinstance(opening.get("curtains"), dict):
+        opening["curtains"] = {}
+    cloth: dict[str, Any] = opening["curtains"]
+    return cloth

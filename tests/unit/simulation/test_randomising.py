@@ -1,0 +1,244 @@
+"""Scenes drawn at random in a running simulation: the same again, frame by frame, byte by byte."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sailenv_ros import Simulation
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
+from sailenv_ros.frame import Frame
+from sailenv_ros.geometry import Pose
+
+VIEWS = ["rgb", "depth", "instance", "albedo"]
+DEN = """
+version: 1
+room: {size: [4, 4, 3]}
+lights: [{name: lamp, type: point, position: [0, 0, 2.5], intensity: 1}]
+objects:
+  - {name: desk, asset: cube, wall: north, scale: [1, 0.6, 0.7], static: true}
+  - {name: cup, asset: cube, on: desk, scale: 0.1, static: true}
+  - {name: crate, asset: cube, position: [1, -1, 0.2], scale: 0.4, static: true}
+  - {name: ball, asset: sphere, position: [0, -0.5, 2], scale: 0.3, restitution: 0.8}
+agents:
+  - {name: eye, width: 96, height: 72, rate: 0, following: false, position: [-1.8, -1.8, 1.5],
+     rotation: [0, 20, 45]}
+randomise:
+  - {name: layout, type: object, of: desk, offset: {uniform: [[-1, 0, 0], [1, 0, 0]]}}
+  - {name: kind, type: object, of: crate, asset: {choice: [sphere, cylinder, cone]}}
+  - {name: walls, type: material, of: "* wall", colour: {uniform: ["#202020", "#f0f0f0"]}}
+  - {name: floor, type: material, of: floor, material: {choice: [carpet, white_tiles, concrete]}}
+  - {name: lamp, type: light, of: lamp, every: frame, intensity: {log_uniform: [0.3, 3]},
+     offset: {uniform: [[-1, -1, -0.5], [1, 1, 0]]}}
+  - {name: look, type: camera, of: eye, every: frame, position: [-1.7, -1.7, 1.4],
+     look_at: {uniform: [[-0.5, -0.5, 0], [0.5, 0.5, 1]]}, exposure: {normal: [0, 0.5]}}
+  - {name: junk, type: distractors, assets: [cube, cone], count: {uniform: [1, 3]},
+     within: [[-1, -1, 1], [1, 1, 2]], scale: {uniform: [0.05, 0.2]}}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("scenes")
+    (folder / "den.yaml").write_text(DEN, encoding="utf-8")
+    plain = DEN[: DEN.index("randomise:")]
+    (folder / "plain.yaml").write_text(plain, encoding="utf-8")
+    return folder
+
+
+def simulation(folder: Path, scene: str = "den", seed: int = 3) -> Simulation:
+    return Simulation(scene, mode="lockstep", seed=seed, scene_paths=[folder], backend="native")
+
+
+@pytest.fixture
+def den(folder: Path) -> Iterator[Simulation]:
+    with simulation(folder) as made:
+        yield made
+
+
+def capture(of: Simulation) -> Frame:
+    return of.capture(VIEWS, agent="eye")
+
+
+def same(one: Frame, other: Frame) -> bool:
+    return all(np.array_equal(one[view], other[view], equal_nan=True) for view in VIEWS)
+
+
+def test_frames_are_made_again_from_their_records(den: Simulation, folder: Path) -> None:
+    frames = [capture(den)]
+    den.randomise()
+    frames.append(capture(den))
+    for steps in (7, 40):
+        den.step(steps)
+        frames.append(capture(den))
+    assert not same(frames[1], frames[2])
+    with simulation(folder, seed=77) as other:
+        for frame in frames[::-1]:
+            record = json.loads(json.dumps(frame.randomised))
+            other.randomise(record=record)
+            if record["step"]:
+                other.step(record["step"])
+            again = capture(other)
+            assert same(frame, again)
+            assert again.randomised == frame.randomised
+
+
+def test_record_holds_also_if_the_scene_draws_otherwise_now(den: Simulation, folder: Path) -> None:
+    den.randomise(seed=8)
+    den.step(5)
+    frame = capture(den)
+    with simulation(folder, "plain") as other:
+        other.randomise(record=frame.randomised)
+        other.step(5)
+        assert same(frame, capture(other))
+
+
+def test_seed_and_index_decide(den: Simulation) -> None:
+    first = den.randomise(seed=5)
+    second = den.randomise()
+    assert (first["index"], second["index"]) == (0, 1)
+    assert first["epoch"] != second["epoch"]
+    assert den.randomise(seed=5, index=1) == second
+    assert den.randomise(5) == den.randomise(5, index=0)
+
+
+def test_reset_brings_the_same_back_and_another_seed_draws_anew(den: Simulation) -> None:
+    den.randomise()
+    frame = capture(den)
+    den.reset()
+    assert same(frame, capture(den))
+    den.reset(seed=1234)
+    other = capture(den)
+    assert other.randomised is not None
+    assert other.randomised["index"] == 0
+    assert not same(frame, other)
+
+
+def test_two_frames_of_one_instant_are_drawn_once(den: Simulation) -> None:
+    one, two = capture(den), capture(den)
+    assert one.randomised == two.randomised
+    assert same(one, two)
+
+
+def test_what_stands_on_something_goes_with_it(den: Simulation) -> None:
+    for _ in range(3):
+        record = den.randomise()
+        offset = record["epoch"]["objects"]["desk"]["offset"]
+        desk, cup = den.get_object("desk").pose, den.get_object("cup").pose
+        assert abs(offset[0]) > 1e-6
+        np.testing.assert_allclose(desk.position_m[0], offset[0], atol=1e-9)
+        np.testing.assert_allclose(cup.position_m[:2], desk.position_m[:2], atol=1e-6)
+
+
+def test_objects_of_the_epoch_are_there(den: Simulation) -> None:
+    record = den.randomise()
+    added = record["epoch"]["added"]
+    names = {instance.name: instance for instance in den.info.instances}
+    assert 1 <= len(added) <= 3
+    assert all(entry["name"] in names for entry in added)
+    assert names["crate"].asset == record["epoch"]["objects"]["crate"]["asset"]
+    painted = json.loads(names["floor"].painted)
+    assert painted[0]["material"] == record["epoch"]["materials"]["floor"]["all"]["material"]
+
+
+def test_absent_object_takes_along_what_stands_on_it(folder: Path) -> None:
+    with simulation(folder, "plain") as plain:
+        plain.randomise(things=[{"name": "x", "type": "object", "of": "desk", "there": False}])
+        names = {instance.name for instance in plain.info.instances}
+        assert not names & {"desk", "cup"}
+        assert "crate" in names
+
+
+def test_physics_is_not_touched_by_what_is_drawn_for_frames(folder: Path) -> None:
+    poses = []
+    for frames in (0, 5):
+        with simulation(folder) as made:
+            made.randomise(seed=9)
+            for _ in range(max(frames, 1)):
+                made.step(60 // max(frames, 1))
+                if frames:
+                    capture(made)
+            poses.append(made.get_object("ball").pose)
+    assert poses[0] == poses[1]
+
+
+def test_things_of_a_call_take_the_place_of_the_scenes(folder: Path) -> None:
+    with simulation(folder, "plain") as plain:
+        with pytest.raises(InvalidState):
+            plain.randomise()
+        text = "[{name: l, type: light, of: lamp, intensity: {uniform: [1, 2]}}]"
+        record = plain.randomise(seed=1, things=text)
+        assert list(record["epoch"]) == ["lights"]
+        assert plain.get_light("lamp").intensity == record["epoch"]["lights"]["lamp"]["intensity"]
+        assert plain.randomise()["epoch"] != record["epoch"]
+        plain.change_scene("plain")
+        with pytest.raises(InvalidState):
+            plain.randomise()
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"things": [{"name": "x", "type": "light", "of": "sun", "intensity": 1}]},
+        {"things": [{"name": "x", "type": "light", "of": "lamp", "intensity": {"uniform": 1}}]},
+        {"things": 3},
+        {"things": "[{"},
+        {"record": {}},
+        {"record": "no json"},
+        {"record": {"seed": -1, "index": 0, "step": 0, "epoch": {}, "frame": {}}},
+        {"seed": -1},
+        {"index": 1.5},
+    ],
+)
+def test_refusal_changes_nothing(den: Simulation, given: dict[str, Any]) -> None:
+    epoch, frame = den.info.epoch, capture(den)
+    with pytest.raises((InvalidRequest, InvalidEntry)):
+        den.randomise(**given)
+    assert den.info.epoch == epoch
+    assert same(frame, capture(den))
+
+
+def test_what_cannot_be_placed_leaves_the_world(den: Simulation) -> None:
+    epoch, frame = den.info.epoch, capture(den)
+    record = dict(frame.randomised or {})
+    record["epoch"] = {"added": [{"name": "x", "asset": "marzipan", "position": [0, 0, 0],
+                                  "orientation": [0, 0, 0, 1]}]}  # fmt: skip
+    with pytest.raises(InvalidRequest):
+        den.randomise(record=record)
+    assert den.info.epoch == epoch
+    assert same(frame, capture(den))
+
+
+def test_saved_scene_is_what_was_drawn_and_draws_no_more(den: Simulation, folder: Path) -> None:
+    den.randomise(seed=21)
+    den.save_scene("kept", overwrite=True)
+    saved = (folder / "kept.yaml").read_text(encoding="utf-8")
+    assert "randomise" not in saved
+    drawn = {i.name: (i.asset, i.painted) for i in den.info.instances}
+    with simulation(folder, "kept") as kept:
+        assert {i.name: (i.asset, i.painted) for i in kept.info.instances} == drawn
+
+
+def test_cameras_of_programs_are_drawn_too(folder: Path) -> None:
+    thing = {
+        "name": "eyes",
+        "type": "camera",
+        "position": {"uniform": [[-1, -1, 1], [1, 1, 2]]},
+        "look_at": [0, 0, 0],
+        "vertical_fov": {"uniform": [30, 90]},
+    }
+    with simulation(folder, "plain") as plain:
+        lens = CameraIntrinsics(width=32, height=24)
+        plain.register_agent(AgentSpec(name="mine", following=False, intrinsics=lens))
+        plain.set_pose(Pose((0.0, 0.0, 1.0)), agent="mine")
+        record = plain.randomise(things=[thing])
+        for name in ("mine", "eye"):
+            place = record["epoch"]["agents"][name]["position"]
+            np.testing.assert_allclose(plain.get_pose(agent=name).position_m, place, atol=1e-12)
