@@ -62,6 +62,8 @@ ASSETS = [
 ]
 # What only baking light needs; light that was baked before is read without.
 BAKE = ["embreex>=4.4.0", "xatlas>=0.0.9"]
+# What only importing URDF and MJCF scenes needs.
+IMPORT = ["mujoco>=3.3"]
 # What the experiments compare with and draw with: `sailenv bench`, `report`, and `sailenv eval`.
 # The SAILenv client, which is timed at the gateway and tested there, declares no dependencies.
 BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
@@ -81,6 +83,7 @@ DEV = [
     "jsonschema",
     "matplotlib>=3.8",
     "mcap-ros2-support",
+    "mujoco>=3.3",
     "mypy",
     "onnxruntime>=1.17",
     # Drives Debian's Chromium, for the tests of the web viewer.
@@ -207,10 +210,11 @@ setup(
         "ros": ROS,
         "assets": ASSETS,
         "bake": BAKE,
+        "import": IMPORT,
         "bench": BENCH,
         "eval": EVAL,
         # Everything but ROS, which may be there already, and the tools for developers.
-        "all": sorted({*ASSETS, *BAKE, *BENCH, *EVAL}),
+        "all": sorted({*ASSETS, *BAKE, *BENCH, *EVAL, *IMPORT}),
         "dev": DEV,
     },
     entry_points={

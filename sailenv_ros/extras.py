@@ -18,7 +18,7 @@ _EXTRA_OF = {
     "coacd": "assets",
     "embreex": "bake",
     "matplotlib": "bench",
-    "mujoco": "bench",
+    "mujoco": "import",
     "onnxruntime": "eval",
     "sailenv": "bench",
     "xatlas": "bake",

@@ -1,8 +1,6 @@
 """Scenes of other programs → scene files with their packs.
 
-A file in, an `ImportedScene` from the importer of its kind, a pack and a scene file out.
+A file in, an `ImportedScene` from the importer of its kind, a pack and a scene file out;
+`importers.import_scene` does all of it. Nothing is imported here, because the process that reads
+URDF and MJCF begins with this package.
 """
-
-from sailenv_ros.scene_import.importers import IMPORTED_SUFFIXES, ImportReport, import_scene
-
-__all__ = ["IMPORTED_SUFFIXES", "ImportReport", "import_scene"]

@@ -15,6 +15,7 @@ from sailenv_ros.errors import AssetError, InvalidRequest
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.scene_import.gltf_scene import import_gltf
 from sailenv_ros.scene_import.imported import ImportedScene, Names
+from sailenv_ros.scene_import.robot_scene import import_robot_scene
 from sailenv_ros.scene_import.sweet_home import import_sweet_home
 from sailenv_ros.scene_import.writing import write_scene
 
@@ -23,7 +24,14 @@ __all__ = ["IMPORTED_SUFFIXES", "ImportReport", "import_scene"]
 Importer: TypeAlias = Callable[[Path, Names, Mapping[str, PackEntry]], ImportedScene]
 
 _IMPORTERS: Mapping[str, Importer] = MappingProxyType(
-    {".sh3d": import_sweet_home, ".glb": import_gltf, ".gltf": import_gltf}
+    {
+        ".sh3d": import_sweet_home,
+        ".glb": import_gltf,
+        ".gltf": import_gltf,
+        ".urdf": import_robot_scene,
+        ".xml": import_robot_scene,
+        ".mjcf": import_robot_scene,
+    }
 )
 
 IMPORTED_SUFFIXES = tuple(_IMPORTERS)

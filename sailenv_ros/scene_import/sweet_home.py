@@ -72,10 +72,10 @@ def import_sweet_home(
                 "by a later one",
             )
         home = read_home(read_xml(plan.read_bytes(), path.name))
-        return _Builder(path, home, folder, names, ours or {}).scene()
+        return _HomeBuilder(path, home, folder, names, ours or {}).scene()
 
 
-class _Builder:
+class _HomeBuilder:
     def __init__(
         self,
         path: Path,

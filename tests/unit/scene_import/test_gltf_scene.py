@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 
 from sailenv_ros import Simulation
 from sailenv_ros.errors import AssetError, SailenvError
-from sailenv_ros.scene_import import import_scene
 from sailenv_ros.scene_import.gltf_scene import import_gltf
 from sailenv_ros.scene_import.imported import Names
+from sailenv_ros.scene_import.importers import import_scene
 
 HALF = math.sqrt(0.5)
 

@@ -17,8 +17,9 @@ from sailenv_ros import Simulation
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import AssetError, InvalidRequest, SailenvError
-from sailenv_ros.scene_import import import_scene, imported
+from sailenv_ros.scene_import import imported
 from sailenv_ros.scene_import.imported import Names
+from sailenv_ros.scene_import.importers import import_scene
 from sailenv_ros.scene_import.sweet_home import import_sweet_home
 from tests.support.home_files import CUBE, FLAT, write_home
 
