@@ -52,7 +52,7 @@ def main() -> int:
             for fault in faults:
                 print(f"{kind} {seed}: {fault}", flush=True)
             faulty += bool(faults)
-            if sum(map(len, times.values())) % 50 == 0:
+            if sum(map(len, times.values())) % 10 == 0:
                 print(f"{seed + 1 - args.seeds[0]} rooms, {faulty} with a fault", file=sys.stderr)
     print(f"{sum(map(len, times.values()))} rooms, {faulty} with a fault")
     print(f"{'kind':<12} rooms  mean [s]  slowest [s]  objects  drawn")

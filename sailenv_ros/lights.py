@@ -167,6 +167,9 @@ class Environment:
         What is seen of the sky instead of the three colours, which still light the objects.
     sky_map : str
         Name of a sky picture, empty for the analytic sky.
+    sky_rotation : float
+        By what the picture is turned about the vertical, counter-clockwise as seen from above
+        [deg]; `sky` is turned already.
     exposure : float
         Stops that the picture is brightened by (factor 2**exposure).
     """
@@ -180,6 +183,7 @@ class Environment:
     sky_share: float = 1.0
     sky: SkyMap | None = None
     sky_map: str = ""
+    sky_rotation: float = 0.0
     exposure: float = 0.0
 
     def __post_init__(self) -> None:

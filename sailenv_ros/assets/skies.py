@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -41,8 +42,16 @@ def sky_files(folders: Iterable[Path]) -> Mapping[str, Path]:
     }
 
 
-def load_sky(name: str, files: Mapping[str, Path]) -> SkyMap:
+def load_sky(name: str, files: Mapping[str, Path], rotation_deg: float = 0.0) -> SkyMap:
     """Return a sky; the same object each time.
+
+    Parameters
+    ----------
+    name : str
+    files : mapping of str to Path
+        See `sky_files`.
+    rotation_deg : float
+        Turns it about the vertical, counter-clockwise as seen from above, to the nearest column.
 
     Raises
     ------
@@ -53,7 +62,19 @@ def load_sky(name: str, files: Mapping[str, Path]) -> SkyMap:
     """
     if name not in files:
         raise UnknownName("sky", name, files)
-    return _loaded(files[name])
+    sky = _loaded(files[name])
+    columns = sky.radiance.shape[1]
+    # Columns run clockwise.
+    turned = -round(rotation_deg / 360.0 * columns) % columns
+    return sky if turned == 0 else _turned(files[name], turned)
+
+
+@lru_cache(maxsize=8)
+def _turned(path: Path, columns: int) -> SkyMap:
+    sky = _loaded(path)
+    radiance = np.roll(sky.radiance, columns, axis=1)
+    radiance.flags.writeable = False
+    return replace(sky, radiance=radiance)
 
 
 @lru_cache(maxsize=8)

@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.cpu_render.part_table import PartTable
-from sailenv_ros.cpu_render.room_reflections import RoomReflections
 from sailenv_ros.lights import Light, SkyMap
 from sailenv_ros.native.drawing import ROW_PADDING, Drawing
-from sailenv_ros.native.light_maps import LayeredMap
-from sailenv_ros.native.render_types import LAMP, LIGHT, address, record
+from sailenv_ros.native.light_maps import LayeredMap, blur_directions, sum_texels
+from sailenv_ros.native.render_types import LAMP, LIGHT, REFLECTION_POINT, address, record
 from sailenv_ros.render import reflection_map as reflections
 from sailenv_ros.render.baked_state import BakedState
 from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
@@ -31,6 +30,8 @@ from sailenv_ros.render.lightmap_compositing import (
     light_alone,
     main_light,
 )
+from sailenv_ros.render.room_reflections import RoomReflections
+from sailenv_ros.render.seen_sky import seen_sky
 from sailenv_ros.render.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
@@ -121,7 +122,10 @@ class FrameLight:
         self._shadow = ShadowMap(drawing)
         self._static_shadow: ShadowMap | None = None
         self._baked = BakedState()
-        self._reflections = RoomReflections(threads)
+        self._reflections = RoomReflections(
+            partial(blur_directions, threads=threads), partial(sum_texels, threads=threads)
+        )
+        self._reflection_points = np.zeros(1, REFLECTION_POINT)
         self._sky: tuple[SkyMap, NDArray[np.float16]] | None = None
         self._lamps = np.zeros(MAX_LIGHTS, LAMP)
         self._warned_of: Sequence[Light] | None = None
@@ -163,6 +167,7 @@ class FrameLight:
         self._set_shadows(light, self._shadow, self._static_shadow)
         light["instance_light_at"] = address(self._baked.instances)
         if same:
+            self._set_reflection_table(light, snapshot)
             return light
         self._set_lamps(light, composited.live)
         if self._reflected is not composited or self._light_map is None:
@@ -170,9 +175,10 @@ class FrameLight:
         _set_baked(light, composited, self._light_map)
         if self._reflected is not composited:
             look = partial(self._look, light, snapshot, main, radiance, still)
-            self._reflections.update(contents, still, main, look)
+            self._reflections.update(snapshot, still, main, look)
             self._reflected = composited
         self._set_reflections(light)
+        self._set_reflection_table(light, snapshot)
         self._of = contents, composited
         return light
 
@@ -220,14 +226,20 @@ class FrameLight:
         light["lamps_at"] = address(self._lamps)
 
     def _set_reflections(self, light: NDArray[np.void]) -> None:
-        layers = self._reflections.layers
+        layers, points = self._reflections.layers, self._reflections.points
+        self._reflection_points = np.zeros(len(layers), REFLECTION_POINT)
+        self._reflection_points["position"] = points.points
+        self._reflection_points["light"] = self._reflections.around
         light["reflecting"] = 1
         light["reflections_at"] = address(layers)
-        light["reflection_layers"], light["reflection_edge"] = layers.shape[:2]
-        light["reflection_scale"] = reflections.EDGE / layers.shape[1]
+        light["reflection_layers"], light["reflection_edge"] = layers.shape[1:3]
+        light["reflection_scale"] = reflections.EDGE / layers.shape[2]
         light["layers_per_roughness"] = reflections.layers_per_roughness()
-        for name, value in self._reflections.room.items():
-            light[name][0] = value
+        light["reflection_points_at"] = address(self._reflection_points)
+        light["room_low"][0], light["room_high"][0] = points.box
+
+    def _set_reflection_table(self, light: NDArray[np.void], snapshot: WorldSnapshot) -> None:
+        light["reflection_table_at"] = address(self._reflections.points.table(snapshot))
 
     def _look(
         self,
@@ -302,6 +314,6 @@ def _sky_texels(sky: SkyMap) -> NDArray[np.float16]:
     """Return (H, W + 1, 4): the first column is repeated behind the last."""
     height, width, _ = sky.radiance.shape
     texels = np.zeros((height, width + 1, 4), np.float16)
-    texels[:, :width, :3] = np.clip(sky.radiance, 0.0, 6e4)
+    texels[:, :width, :3] = seen_sky(sky)
     texels[:, width] = texels[:, 0]
     return texels

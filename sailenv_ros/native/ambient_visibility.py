@@ -34,11 +34,12 @@ def find_ambient_visibility(
         Depth [m] and instance id.
     baked : (65536,) bool
         By instance id: surfaces whose light was baked.
-    numbers : (9,) float32
+    numbers : (10,) float32
         Focal length and principal point of the samples [px], radius [m], the least and the
-        greatest radius [px], bias, scale, and the share of its depth by which a sample may lie
-        off another's surface.
-    pattern : (16, 2, 6) float32
+        greatest radius [px], bias, scale, the share of its depth by which a sample may lie off
+        another's surface, and how many samples lie from one to the next of the second average,
+        1 to 4.
+    pattern : (16, 2, 12) float32
         For each place in a block, points in the unit disc.
     threads : int
 
@@ -59,8 +60,8 @@ def find_ambient_visibility(
     height, width = surface.shape[:2]
     checked("surface", surface, np.float32, (height, width, 2))
     checked("baked", baked, np.bool_, (65536,))
-    checked("numbers", numbers, np.float32, (9,))
-    checked("pattern", pattern, np.float32, (16, 2, 6))
+    checked("numbers", numbers, np.float32, (10,))
+    checked("pattern", pattern, np.float32, (16, 2, 12))
     shape = (height + 1) // 2, (width + 1) // 2
     inverse, visibility = np.empty(shape, np.float32), np.empty(shape, np.uint8)
     _KERNEL(threads, height, width, surface, baked, numbers, pattern, inverse, visibility)

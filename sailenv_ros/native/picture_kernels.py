@@ -42,7 +42,8 @@ def make_picture(
     visibility, inverse : arrays or None
         What `find_ambient_visibility` returns; None where all light arrives.
     surface : (H, W, 2) float32 or None
-        Depth [m] and instance id; needed beside `visibility`.
+        Depth [m] and instance id; needed beside `visibility`. Without it nothing that is narrower
+        than a pixel is smoothed.
     same_surface : float
         Share of its depth by which a sample of `visibility` may lie off a pixel's own surface.
     least_contrast : int
@@ -66,13 +67,14 @@ def make_picture(
     height, width = radiance.shape[:2]
     checked("radiance", radiance, np.float16, (height, width, 4))
     checked("table", table, np.uint8, (65536,))
+    if surface is not None:
+        checked("surface", surface, np.float32, (height, width, 2))
     if visibility is not None and inverse is not None and surface is not None:
         half = (height + 1) // 2, (width + 1) // 2
         checked("visibility", visibility, np.uint8, half)
         checked("inverse", inverse, np.float32, half)
-        checked("surface", surface, np.float32, (height, width, 2))
     else:
-        visibility = inverse = surface = None
+        visibility = inverse = None
     rgb = np.empty((height, width, 3), np.uint8)
     _KERNEL(
         *(threads, height, width, radiance, table, visibility, inverse, surface),

@@ -109,6 +109,11 @@ LAYER_SUM = _structure(
     ("states_at", _ADDRESS),
 )
 
+REFLECTION_POINT = _structure(
+    ("position", "<f4", 3),
+    ("light", "<f4", 4),
+)
+
 LIGHT = _structure(
     ("main_colour", "<f4", 3),
     ("main_towards", "<f4", 3),
@@ -145,10 +150,10 @@ LIGHT = _structure(
     ("reflection_layers", "<i4"),
     ("reflection_scale", "<f4"),
     ("layers_per_roughness", "<f4"),
-    ("reflection_from", "<f4", 3),
+    ("reflection_points_at", _ADDRESS),
+    ("reflection_table_at", _ADDRESS),
     ("room_low", "<f4", 3),
     ("room_high", "<f4", 3),
-    ("room_light", "<f4", 4),
 )
 
 VIEW = _structure(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import SunEdges
 from sailenv_ros.render.baked_state import ROW_IDS, BakedState
@@ -45,16 +46,16 @@ class BakedTextures:
             self._uploaded = composited
         table = self._state.instances
         if table is not self._table:
-            # Red, green and blue of an instance lie side by side, ROW_IDS instances in a row.
-            rows = len(table) // ROW_IDS
-            if self._instances is None or self._instances.height != rows:
-                if self._instances is not None:
-                    self._instances.release()
-                self._instances = self._context.texture((3 * ROW_IDS, rows), 4, dtype="f4")
-                self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
-            self._instances.write(table)
-            self._table = table
+            self._write(table)
         return composited
+
+    def show_alone(self, snapshot: WorldSnapshot, composited: CompositedLight) -> None:
+        """Show other light than that of a snapshot, which is that of the last `show`'s scene."""
+        self._state.update(snapshot)
+        self._upload(composited)
+        self._upload_edges(composited.main_edges)
+        self._uploaded = composited
+        self._write(self._state.around(snapshot, composited.probes))
 
     def bind(self, program: moderngl.Program) -> None:
         """Make the textures readable for a program."""
@@ -76,6 +77,17 @@ class BakedTextures:
         for texture in (self._light_map, self._instances, self._edge_index, self._edge_blocks):
             if texture is not None:
                 texture.release()
+
+    def _write(self, table: NDArray[np.float32]) -> None:
+        # Red, green and blue of an instance lie side by side, ROW_IDS instances in a row.
+        rows = len(table) // ROW_IDS
+        if self._instances is None or self._instances.height != rows:
+            if self._instances is not None:
+                self._instances.release()
+            self._instances = self._context.texture((3 * ROW_IDS, rows), 4, dtype="f4")
+            self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self._instances.write(np.ascontiguousarray(table))
+        self._table = table
 
     def _upload_edges(self, edges: SunEdges | None) -> None:
         """Lay the blocks out side by side; without any, one texel says so."""

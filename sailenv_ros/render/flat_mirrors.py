@@ -42,6 +42,10 @@ LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.1
 CATEGORY = "mirror"
 """In objects of this category any flat metal is a mirror, however rough its material says."""
 
+SILVERED = 0.9
+"""What such a mirror reflects at least of the colour that it reflects best, as silver behind glass
+does: models give their mirrors the grey of what they happen to reflect."""
+
 NEAR_PLANE_M = 4e-3
 """Pixels this near to the mirror's plane belong to it; its frame stands out further."""
 
@@ -114,7 +118,16 @@ class FlatMirrors:
             named = drawn.instance.category == CATEGORY
             scale = np.asarray(drawn.scale)
             self._faces += [
-                (row, drawn.instance.id, replace(f, low=f.low * scale, high=f.high * scale))
+                (
+                    row,
+                    drawn.instance.id,
+                    replace(
+                        f,
+                        low=f.low * scale,
+                        high=f.high * scale,
+                        tint=_silvered(f.tint) if named else f.tint,
+                    ),
+                )
                 for f, polished in found[1]
                 if polished or named
             ]
@@ -221,6 +234,11 @@ def _faces(model: Model) -> Iterator[tuple[_Face, bool]]:
             continue
         tint = np.asarray(look.base_colour[:3], np.float32)
         yield _Face(int(thin), low, high, tint), look.roughness <= MOST_ROUGHNESS
+
+
+def _silvered(tint: NDArray[np.float32]) -> NDArray[np.float32]:
+    brightest = float(tint.max())
+    return tint * np.float32(max(SILVERED / brightest, 1.0)) if brightest > 0.0 else tint
 
 
 def _window(camera: Camera, pose: NDArray[np.float64], face: _Face, front: float) -> Window | None:

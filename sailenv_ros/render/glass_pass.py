@@ -24,6 +24,7 @@ from sailenv_ros.render.geometry_pass import (
 from sailenv_ros.render.lighting_pass import Illumination, set_camera
 from sailenv_ros.render.materials import MaterialBuffers
 from sailenv_ros.render.programs import ProgramCache, set_uniform
+from sailenv_ros.render.reflection_points import MOST
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["GlassPass"]
@@ -128,5 +129,5 @@ class GlassPass:
         if illumination.baked is not None:
             switches["BAKED"] = 1
             if illumination.reflections is not None:
-                switches["REFLECTIONS"] = 1
+                switches["REFLECTIONS"], switches["REFLECTION_POINTS"] = 1, MOST
         return self._programs.get("geometry.vert", "glass.frag", ROWS=ROWS, **switches)

@@ -6,10 +6,14 @@ only where the package was installed from its sources without a C++ compiler.
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sailenv_ros.native import (
     ambient_visibility,
     annotation,
     light_gathering,
+    light_maps,
     motion_kernels,
     picture_kernels,
     ray_kernels,
@@ -20,6 +24,7 @@ from sailenv_ros.render import reference_kernels, reference_motion, reference_ra
 
 __all__ = [
     "annotate_pixels",
+    "blur_directions",
     "build_tree",
     "cast_rays",
     "find_ambient_visibility",
@@ -30,8 +35,24 @@ __all__ = [
     "transform_points",
 ]
 
+
+def _blur_directions(
+    radiance: NDArray[np.float32],
+    directions: NDArray[np.float32],
+    lobe: NDArray[np.float32],
+    result: NDArray[np.float32],
+    *,
+    threads: int,
+) -> None:
+    # Imported here: numba takes a quarter of a second, and the native library has a kernel.
+    from sailenv_ros.render.reflection_blur import blur_with_numba
+
+    blur_with_numba(radiance, directions, lobe, result)
+
+
 if native_is_usable():
     annotate_pixels = annotation.annotate_pixels
+    blur_directions = light_maps.blur_directions
     build_tree = ray_kernels.build_tree
     cast_rays = ray_kernels.cast_rays
     find_ambient_visibility = ambient_visibility.find_ambient_visibility
@@ -42,6 +63,7 @@ if native_is_usable():
     transform_points = motion_kernels.transform_points
 else:
     annotate_pixels = reference_kernels.annotate_pixels
+    blur_directions = _blur_directions
     build_tree = reference_rays.build_tree
     cast_rays = reference_rays.cast_rays
     find_ambient_visibility = reference_kernels.find_ambient_visibility

@@ -20,7 +20,9 @@ from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.geometry_pass import Targets
 from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
 from sailenv_ros.render.programs import ProgramCache, set_uniform
+from sailenv_ros.render.reflection_points import MOST
 from sailenv_ros.render.reflection_texture import ReflectionTexture
+from sailenv_ros.render.seen_sky import seen_sky
 from sailenv_ros.render.shadow_pass import ShadowPass
 from sailenv_ros.render.shadow_plan import SIZE_PX
 
@@ -67,6 +69,8 @@ class Illumination:
     main_transmittance : float
         Share of the main light that glass lets through to what is not in the light map.
     reflections : ReflectionTexture or None
+    glows : bool
+        Whether what emits light does so.
     """
 
     main: Light | None
@@ -78,6 +82,7 @@ class Illumination:
     main_baked: bool = False
     main_transmittance: float = 1.0
     reflections: ReflectionTexture | None = None
+    glows: bool = True
 
 
 class LightingPass:
@@ -133,7 +138,7 @@ class LightingPass:
         if illumination.baked is not None:
             lit["BAKED"] = 1
             if illumination.reflections is not None:
-                lit["REFLECTIONS"] = 1
+                lit["REFLECTIONS"], lit["REFLECTION_POINTS"] = 1, MOST
         if illumination.environment.sky is not None:
             seen["SKY_MAP"] = 1
         return (
@@ -152,7 +157,7 @@ class LightingPass:
             if self._sky_texture is not None:
                 self._sky_texture.release()
             height, width, _ = sky.radiance.shape
-            data = np.ascontiguousarray(sky.radiance).tobytes()
+            data = seen_sky(sky).tobytes()
             self._sky_texture = self._context.texture((width, height), 3, data, dtype="f2")
             self._sky_texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._sky_texture.repeat_y = False
@@ -170,6 +175,7 @@ class LightingPass:
             _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, len(lamps))
         self._lights.write(_light_rows(lamps, camera).tobytes())
         self._lights.bind_to_uniform_block(0)
+        set_uniform(program, "glow", float(illumination.glows))
         set_uniform(program, "light_count", min(len(lamps), MAX_LIGHTS))
         colour, towards = np.zeros(3), np.array([0.0, 0.0, 1.0])
         if sun is not None:

@@ -30,6 +30,9 @@ FAR_M = F32(1e9)
 TILE = 16
 """Edge of the tiles of samples that are left out where everything around them is baked."""
 
+LEAST_BEND = F32(0.0005)
+"""Share of 1 / depth by which something narrower than a pixel lies off what is beside it."""
+
 ROUNDING_PX = 1e-3
 """How far from a pixel's centre that pixel alone decides whether a point was hidden."""
 
@@ -151,9 +154,10 @@ def find_ambient_visibility(
     np.divide(np.where(is_baked, F32(-1.0), F32(1.0)), depth, out=inverse, where=hit)
     tiles = _live_tiles(inverse > 0.0, int(numbers[5]) // TILE)
     share = np.where(tiles, _raw_visibility(inverse, numbers, pattern), np.uint8(255))
-    same_surface = numbers[8]
-    for axis in (1, 0):
-        share = np.where(tiles, _mean_of_four(share, inverse, same_surface, axis), np.uint8(255))
+    same_surface, wide = numbers[8], int(numbers[9])
+    for step, axis in ((1, 1), (1, 0), (wide, 1), (wide, 0)):
+        mean = _mean_of_four(share, inverse, same_surface, step, axis)
+        share = np.where(tiles, mean, np.uint8(255))
     return share, inverse
 
 
@@ -172,7 +176,7 @@ def _live_tiles(live: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
 
 
 def _raw_visibility(inverse: Floats, numbers: Floats, pattern: Floats) -> NDArray[np.uint8]:
-    focal, cx, cy, radius_m, least_reach_px, reach_px, bias, scale, _ = numbers
+    focal, cx, cy, radius_m, least_reach_px, reach_px, bias, scale, _, _ = numbers
     rows, columns = inverse.shape
     one, zero, half = F32(1.0), F32(0.0), F32(0.5)
     per_f, per_r2 = one / focal, one / (radius_m * radius_m)
@@ -223,17 +227,21 @@ def _slope(w: Floats, axis: int) -> Floats:
 
 
 def _mean_of_four(
-    share: NDArray[np.uint8], inverse: Floats, same_surface: np.float32, axis: int
+    share: NDArray[np.uint8], inverse: Floats, same_surface: np.float32, step: int, axis: int
 ) -> NDArray[np.uint8]:
-    """Average over four neighbours in a line that lie on one surface."""
-    w = np.abs(np.moveaxis(inverse, axis, 1))
-    size = w.shape[1]
-    beside = np.pad(w, ((0, 0), (1, 2)), constant_values=np.inf)
-    shares = np.pad(np.moveaxis(share, axis, 1).astype(np.int32), ((0, 0), (1, 2)))
-    off = same_surface * w
-    total, count = np.zeros(w.shape, np.int32), np.zeros(w.shape, np.int32)
-    for first in range(4):
-        same = np.abs(beside[:, first : first + size] - w) <= off
+    """Average over four samples in a line, `step` apart, that lie on one surface.
+
+    Of unlike sign are surfaces with and without baked light, which do not count as one.
+    """
+    own = np.moveaxis(inverse, axis, 1)
+    size = own.shape[1]
+    around = ((0, 0), (step, 2 * step))
+    beside = np.pad(own, around, constant_values=np.inf)
+    shares = np.pad(np.moveaxis(share, axis, 1).astype(np.int32), around)
+    off = same_surface * np.abs(own)
+    total, count = np.zeros(own.shape, np.int32), np.zeros(own.shape, np.int32)
+    for first in range(0, 4 * step, step):
+        same = np.abs(beside[:, first : first + size] - own) <= off
         total += np.where(same, shares[:, first : first + size], 0)
         count += same
     return np.moveaxis(((total + (count >> 1)) // count).astype(np.uint8), 1, axis)
@@ -258,7 +266,7 @@ def make_picture(
         factors = _arriving_factors(bits[..., 3], visibility, inverse, surface, 1, same_surface)
         light = _bits(_small_numbers(light) * factors[..., None])
     rgb = table[light]
-    return _smooth_edges(rgb, least_contrast, reach_px) if least_contrast > 0 else rgb
+    return _smooth_edges(rgb, surface, least_contrast, reach_px) if least_contrast > 0 else rgb
 
 
 def resolve_samples(
@@ -402,7 +410,9 @@ def _arriving_factors(
     return factors
 
 
-def _smooth_edges(rgb: NDArray[np.uint8], least_contrast: int, reach_px: int) -> NDArray[np.uint8]:
+def _smooth_edges(
+    rgb: NDArray[np.uint8], surface: Floats | None, least_contrast: int, reach_px: int
+) -> NDArray[np.uint8]:
     weighted = rgb.astype(np.int32) * np.array([77, 150, 29], np.int32)
     luma = (weighted.sum(axis=2) + 128) >> 8
     height, width = luma.shape
@@ -431,7 +441,48 @@ def _smooth_edges(rgb: NDArray[np.uint8], least_contrast: int, reach_px: int) ->
     share = np.where(crosses & (near < reach_px), np.maximum(share, 0.0), 0.0)
     own, across = rgb[v, u].astype(np.float64), rgb[v + dv, u + du].astype(np.float64)
     result[v, u] = (own + (across - own) * share[:, None] + 0.5).astype(np.uint8)
+    if surface is not None:
+        _smooth_thin(rgb, luma, surface, v, u, least_contrast, result)
     return result
+
+
+def _smooth_thin(
+    rgb: NDArray[np.uint8],
+    luma: NDArray[np.int32],
+    surface: Floats,
+    v: NDArray[np.intp],
+    u: NDArray[np.intp],
+    least_contrast: int,
+    result: NDArray[np.uint8],
+) -> None:
+    """Mix what is narrower than a pixel with what lies on both sides."""
+
+    def stands_out(dv: int, du: int) -> NDArray[np.int32]:
+        own, before, after = luma[v, u], luma[v - dv, u - du], luma[v + dv, u + du]
+        above, below = own - np.maximum(before, after), np.minimum(before, after) - own
+        least = np.maximum(np.maximum(above, below), 0)
+        return np.where(np.abs(before - after) <= least, least, 0)
+
+    across, down = stands_out(0, 1), stands_out(1, 0)
+    found = np.maximum(across, down) >= least_contrast
+    du = (across >= down).astype(np.intp)
+    dv = 1 - du
+    with np.errstate(all="ignore"):
+        nearness = F32(1.0) / surface[..., 0]
+        own = nearness[v, u]
+        both = nearness[v - dv, u - du] + nearness[v + dv, u + du]
+        found &= np.abs(both - (own + own)) > LEAST_BEND * own
+    v, u, dv, du = v[found], u[found], dv[found], du[found]
+    steps = [(k - 1, j - 1) for k, j in np.ndindex(3, 3) if (k, j) != (1, 1)]
+    ring = np.array([luma[v + k, u + j] for k, j in steps])
+    low, high = ring.min(axis=0), ring.max(axis=0)
+    least = np.where(luma[v, u] > high, luma[v, u] - high, low - luma[v, u])
+    dot = ((least >= least_contrast) & (high - low <= least))[:, None]
+    wide = rgb.astype(np.int32)
+    beside = wide[v - dv, u - du] + wide[v + dv, u + du]
+    around = wide[v, u - 1] + wide[v, u + 1] + wide[v - 1, u] + wide[v + 1, u]
+    line, point = 2 * wide[v, u] + beside + 2 >> 2, around + 2 >> 2
+    result[v, u] = np.where(dot, point, line).astype(np.uint8)
 
 
 def _end(

@@ -114,14 +114,14 @@ Blur: TypeAlias = Callable[
 """``blur(radiance, directions, lobe, result)``: averages over a lobe about each direction."""
 
 
-def prefilter(radiance: NDArray[np.float32], *, blur: Blur | None = None) -> NDArray[np.float16]:
+def prefilter(radiance: NDArray[np.float32], *, blur: Blur) -> NDArray[np.float16]:
     """Blur a map of all directions as rough surfaces would.
 
     Parameters
     ----------
     radiance : (N, N, 3) float32
-    blur : Blur or None
-        Does it for one roughness; None for this module's own.
+    blur : Blur
+        Does it for one roughness.
 
     Returns
     -------
@@ -133,11 +133,6 @@ def prefilter(radiance: NDArray[np.float32], *, blur: Blur | None = None) -> NDA
     Importance sampling of the GGX distribution with the viewer along the normal (Karis 2013, "Real
     shading in Unreal Engine 4").
     """
-    if blur is None:
-        # Imported here: numba takes a quarter of a second, and the native renderer has a kernel.
-        from sailenv_ros.render.reflection_blur import blur_with_numba
-
-        blur = blur_with_numba
     edge = len(radiance)
     layers = np.zeros((len(ROUGHNESSES), edge + 2, edge + 2, 4), np.float16)
     directions = octahedral_directions(edge)

@@ -8,28 +8,31 @@ once, and only what moves is drawn again.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.camera import Camera
 from sailenv_ros.lights import Light
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.kernels import blur_directions
 from sailenv_ros.render.lighting_pass import Illumination
-from sailenv_ros.render.lightmap_compositing import CompositedLight, main_light
-from sailenv_ros.render.programs import ProgramCache
-from sailenv_ros.render.reflection_map import (
-    EDGE,
-    cube_cameras,
-    flattened,
-    prefilter,
-    view_point,
+from sailenv_ros.render.lightmap_compositing import (
+    CompositedLight,
+    composite_lightmap,
+    light_alone,
+    main_light,
+    sum_texels,
 )
+from sailenv_ros.render.programs import ProgramCache
 from sailenv_ros.render.reflection_texture import ReflectionTexture
+from sailenv_ros.render.room_reflections import RoomReflections
 from sailenv_ros.render.shadow_pass import ShadowPass
 from sailenv_ros.snapshot import WorldSnapshot
 
@@ -48,7 +51,8 @@ class SceneLight:
         self._static_shadow: ShadowPass | None = None
         self._programs = programs
         self._baked = BakedTextures(context)
-        self._reflections: ReflectionTexture | None = None
+        self._room = RoomReflections(partial(blur_directions, threads=thread_count()), sum_texels)
+        self._reflections = ReflectionTexture(context)
         self._reflected: CompositedLight | None = None
 
     def at(
@@ -72,12 +76,25 @@ class SceneLight:
                 shadow=self._shadow,
             )
         still = draws.at_baked_pose(snapshot)
-        static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still)
         if self._reflected is not composited:
-            plain = self._illumination(snapshot, composited, static_shadow, None)
-            self._reflect(plain, contents.baked.probes, radiance, still)
+            # Nothing that moves casts a shadow into what is mirrored.
+            nothing = np.zeros_like(still)
+            static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, nothing)
+            self._reflect(snapshot, main, static_shadow, radiance, still)
             self._reflected = composited
-        return self._illumination(snapshot, composited, static_shadow, self._reflections)
+        static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, ~still)
+        self._reflections.write_table(self._room.points.table(snapshot))
+        return Illumination(
+            main=main,
+            lamps=composited.live,
+            environment=contents.environment,
+            shadow=self._shadow,
+            static_shadow=static_shadow,
+            baked=self._baked,
+            main_baked=composited.main_baked,
+            main_transmittance=composited.main_transmittance,
+            reflections=self._reflections,
+        )
 
     def close(self) -> None:
         """Free everything on the GPU."""
@@ -92,46 +109,66 @@ class SceneLight:
         draws: DrawList,
         geometry: GeometryBuffers,
         still: NDArray[np.bool_],
+        moving: NDArray[np.bool_],
     ) -> ShadowPass:
         if self._static_shadow is None:
             self._static_shadow = ShadowPass(self._context, self._programs)
         if main is not None:
             self._static_shadow.draw(main, snapshot, draws, geometry, casting=still, framed=still)
-            self._shadow.draw(main, snapshot, draws, geometry, casting=~still, framed=still)
+            self._shadow.draw(main, snapshot, draws, geometry, casting=moving, framed=still)
         return self._static_shadow
-
-    def _illumination(
-        self,
-        snapshot: WorldSnapshot,
-        composited: CompositedLight,
-        static_shadow: ShadowPass,
-        reflections: ReflectionTexture | None,
-    ) -> Illumination:
-        contents = snapshot.contents
-        return Illumination(
-            main=main_light(contents.lights),
-            lamps=composited.live,
-            environment=contents.environment,
-            shadow=self._shadow,
-            static_shadow=static_shadow,
-            baked=self._baked,
-            main_baked=composited.main_baked,
-            main_transmittance=composited.main_transmittance,
-            reflections=reflections,
-        )
 
     def _reflect(
         self,
-        plain: Illumination,
-        probes: ProbeGrid,
+        snapshot: WorldSnapshot,
+        main: Light | None,
+        static_shadow: ShadowPass,
         radiance: Radiance,
         still: NDArray[np.bool_],
     ) -> None:
-        """Look around from the middle of the room, at what stands still."""
-        middle, box = view_point(probes)
-        cameras = cube_cameras(middle)
-        pictures = [radiance(camera, plain, still) for camera in cameras]
-        if self._reflections is None:
-            self._reflections = ReflectionTexture(self._context)
-        layers = prefilter(flattened(cameras, pictures, EDGE))
-        self._reflections.write(layers, middle, box)
+        """Bring the reflection maps up to date."""
+        alone_textures = BakedTextures(self._context)
+        look = partial(self._look, alone_textures, snapshot, main, static_shadow, radiance, still)
+        try:
+            self._room.update(snapshot, still, main, look)
+        finally:
+            alone_textures.close()
+        points = self._room.points
+        self._reflections.write(self._room.layers, self._room.around, points.points, points.box)
+
+    def _look(
+        self,
+        textures: BakedTextures,
+        snapshot: WorldSnapshot,
+        main: Light | None,
+        static_shadow: ShadowPass,
+        radiance: Radiance,
+        still: NDArray[np.bool_],
+        alone: Light | None,
+        cameras: list[Camera],
+    ) -> list[NDArray[np.float32]]:
+        """Look at what stands still under one light alone; see `room_reflections.Look`."""
+        contents = snapshot.contents
+        assert contents.baked is not None
+        environment, is_main = contents.environment, False
+        if alone is None:
+            composited = composite_lightmap(contents.baked, (), environment)
+        else:
+            is_main = main is not None and alone.name == main.name
+            composited = light_alone(contents.baked, alone, is_main=is_main)
+            environment = replace(
+                environment, background="colour", background_colour=(0.0, 0.0, 0.0)
+            )
+        textures.show_alone(snapshot, composited)
+        illumination = Illumination(
+            main=alone if is_main else None,
+            lamps=composited.live,
+            environment=environment,
+            shadow=self._shadow,
+            static_shadow=static_shadow,
+            baked=textures,
+            main_baked=composited.main_baked,
+            main_transmittance=composited.main_transmittance,
+            glows=alone is None,
+        )
+        return [radiance(camera, illumination, still) for camera in cameras]

@@ -55,6 +55,11 @@ class EnvironmentSpec(SceneModel):
         max_length=200,
         description="name of a photographed sky, e.g. forest; empty for that of the three colours",
     )
+    sky_rotation: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
+        default=_STANDARD.sky_rotation,
+        description="turns the photographed sky about the vertical, counter-clockwise as seen from "
+        "above [deg], so that its sun stands where the light does",
+    )
     exposure: Annotated[float, Number(least=-20.0, most=20.0, unit="stops")] = Field(
         default=_STANDARD.exposure,
         description="the picture is brightened by 2 to the power of it [stops]",

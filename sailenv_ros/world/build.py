@@ -98,7 +98,7 @@ def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Enviro
     environment = spec.to_environment()
     if not environment.sky_map:
         return environment
-    sky = load_sky(environment.sky_map, skies)
+    sky = load_sky(environment.sky_map, skies, environment.sky_rotation)
     return replace(
         environment, sky=sky, sky_zenith=sky.zenith, sky_horizon=sky.horizon, sky_ground=sky.ground
     )

@@ -136,6 +136,26 @@ def test_a_mirror_shows_the_room(render: Render) -> None:
     np.testing.assert_allclose(middle, 0.8 * ALBEDO, rtol=0.1)
 
 
+def test_polished_metal_mirrors_what_is_where_it_stands(render: Render) -> None:
+    """A metal block behind a red screen shows the screen, not the green wall behind it."""
+    metal = model_of(
+        box_mesh((0.3, 0.3, 0.3)), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0
+    )
+    # Screens have no back: from the room's middle, and from the eye, nothing is seen of this one.
+    red = model_of(wall_mesh(0.9, 0.9), base_colour=(0.6, 0.1, 0.1, 1.0), roughness=1.0)
+    green = model_of(wall_mesh(40.0, 40.0), base_colour=(0.1, 0.6, 0.1, 1.0), roughness=1.0)
+    poses = [Pose((3.5, 0.0, 0.0))] + [
+        Pose.from_rpy_deg((x, 0.0, 0.0), (0.0, 0.0, 180.0)) for x in (2.9, -4.0)
+    ]
+    room = layer(None, bounced=0.8, probe_bounced=np.array([[0.8] * 3] + [[0.0] * 3] * 3))
+    light = baked({2: chart(red, poses[1]), 3: chart(green, poses[2])}, [], room)
+    things = [Thing(model, pose) for model, pose in zip((metal, red, green), poses, strict=True)]
+    scene = snapshot_of(things, lights=(), environment=DARK, baked=light)
+    got = linear(render(scene, camera_at(), "rgb")["rgb"])
+    middle = got[got.shape[0] // 2, got.shape[1] // 2]
+    np.testing.assert_allclose(middle, 0.8 * np.array([0.6, 0.1, 0.1]), rtol=0.1, atol=0.04)
+
+
 def test_where_less_light_arrives_less_of_the_room_is_mirrored(render: Render) -> None:
     """In proportion to the light of the room's middle; where more arrives, the room as it is."""
     # As thick as this it is no flat mirror, which would show what stands before it.

@@ -141,17 +141,17 @@ def corner(width: int = 160, height: int = 120) -> tuple[np.ndarray, CameraIntri
 
 def test_corners_are_dark_and_what_is_free_is_not() -> None:
     """Within the radius of the joint of wall and floor light is lost; beyond it none."""
-    surface, intrinsics = corner()
+    surface, intrinsics = corner(320, 240)
     share, inverse = ambient_visibility(
         surface, intrinsics, strength=1.0, radius_m=0.4, baked=NONE_BAKED
     )
     points = intrinsics.unproject(surface[..., 0])[::2, ::2]
     away = np.hypot(points[..., 1] - 1.0, points[..., 2] - 3.0)
-    # Averaging over a block carries it a little farther.
-    assert (share[away > 0.55] == 255).all()
+    # Averaging carries it a little farther.
+    assert (share[away > 0.6] == 255).all()
     assert share[away < 0.06].mean() < 180
     # The sides of the picture lack neighbours.
-    inner = slice(10, -10)
+    inner = slice(20, -20)
     profile = [
         share[:, inner][(away[:, inner] >= a) & (away[:, inner] < a + 0.08)].mean()
         for a in (0.08, 0.16, 0.24, 0.32)

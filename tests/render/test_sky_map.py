@@ -91,3 +91,16 @@ def test_skies_are_found_and_checked(tmp_path: Path) -> None:
             load_sky(name, files)
     with pytest.raises(UnknownName, match="did you mean 'good'"):
         load_sky("goood", files)
+
+
+def test_a_sky_is_turned_counter_clockwise(tmp_path: Path) -> None:
+    """By a quarter what was towards +x is towards +y, which lies left of the middle column."""
+    radiance = np.zeros((8, 16, 3), np.float16)
+    radiance[3, 8] = 5.0
+    np.save(tmp_path / "spot.npy", radiance)
+    files = {"spot": tmp_path / "spot.npy"}
+    turned = load_sky("spot", files, 90.0)
+    assert np.argwhere(turned.radiance[..., 0]).tolist() == [[3, 4]]
+    assert load_sky("spot", files, 90.0) is turned is load_sky("spot", files, -270.0)
+    assert load_sky("spot", files, 360.0) is load_sky("spot", files)
+    assert turned.horizon == load_sky("spot", files).horizon

@@ -34,7 +34,7 @@ vec3 light_around(vec3 world_normal) {
 
 vec3 mirrored_light(vec3 point, vec3 direction, float roughness) {
 #ifdef REFLECTIONS
-    return mirrored_room(world_from_optical * point + eye, direction, roughness);
+    return mirrored_room(reflection_point(int(INSTANCE_ID + 0.5)), world_from_optical * point + eye, direction, roughness);
 #else
     return ambient + sky_share * sky(direction);
 #endif

@@ -24,6 +24,7 @@ uniform mat4 shadow_from_optical;
 uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, penumbra [texels]
 uniform vec3 ambient;
 uniform float sky_share;
+uniform float glow;                // 1 if what emits light does so
 #ifdef BAKED
 uniform sampler2D light_at;        // place in the light map, 0 where there is none
 uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
@@ -182,9 +183,10 @@ void main() {
     vec3 mirrored = world_from_optical * reflect(-view, normal);
 #endif
 #ifdef REFLECTIONS
-    vec3 room = mirrored_room(world_from_optical * point + eye, mirrored, roughness);
-    // Where less light arrives than in the middle of the room, less of the room is seen as well.
-    float in_the_open = dot(room_light, vec4(1.0, world_normal));
+    int seen_from = reflection_point(id);
+    vec3 room = mirrored_room(seen_from, world_from_optical * point + eye, mirrored, roughness);
+    // Where less light arrives than where the room was seen from, less of it is seen as well.
+    float in_the_open = dot(room_light[seen_from], vec4(1.0, world_normal));
     room *= clamp(dot(around, LUMA) / max(in_the_open, 1e-4), 0.0, 1.0);
     // The rougher, the more of the half space it mirrors: that is the light around the point.
     reflected = mix(room, around, smoothstep(0.25, 0.7, roughness));
@@ -201,7 +203,7 @@ void main() {
     vec3 again = lost * once * mean / (1.0 - mean * lost);
     vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
     vec3 from_around = radiance;
-    radiance += base * (a.a * 16.0);
+    radiance += base * (a.a * 16.0 * glow);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     radiance += reflected_light(here, main_towards, main_colour * main_arrives);
 #ifdef LAMPS

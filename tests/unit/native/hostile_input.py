@@ -156,8 +156,8 @@ def drive_ambient_visibility() -> None:
     """Radii that are endless or none, depths that are no depths."""
     baked = np.zeros(65536, np.bool_)
     baked[0] = True
-    plain = (300.0, 2.0, 2.0, 0.3, 1.5, 48.0, 0.08, 1.3, 0.03)
-    wild = (np.nan, np.inf, -1.0, np.inf, 1.5, 48.0, np.nan, 1e30, np.nan)
+    plain = (300.0, 2.0, 2.0, 0.3, 1.5, 48.0, 0.08, 1.3, 0.03, 4.0)
+    wild = (np.nan, np.inf, -1.0, np.inf, 1.5, 48.0, np.nan, 1e30, np.nan, 1.0)
     for surface in surfaces(*SIZES, LARGEST):
         for numbers in (plain,) if surface.shape[:2] == LARGEST else (plain, wild):
             find_ambient_visibility(

@@ -9,8 +9,9 @@ namespace {
 
 constexpr float FAR_M = 1e9f;  // depth that stands for no surface: its square is finite
 constexpr int64_t TILE = 16;   // edge of the tiles that are left out where all around is baked
-constexpr int64_t TAPS = 6;
-constexpr int64_t PAD = 8;  // samples beyond both ends of a row that count as on no surface
+constexpr int64_t TAPS = 12;
+constexpr int64_t MOST_STEP = 4;  // from one sample to the next of the second average
+constexpr int64_t PAD = 16;  // samples beyond both ends of a row that count as on no surface
 constexpr int64_t INSTANCES = 65536;
 
 struct Settings {
@@ -172,14 +173,15 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
     }
 }
 
-// Averages over four neighbours, from the one before to the second after, that lie on one surface.
+// Averages over four samples, from the one before to the second after, that lie on one surface.
 // `inverse` and `share` begin at the first of the four; `next` is the way to the others.
-LANES_INLINE i8 mean_of_four(const float* inverse, const float* share, int64_t next, f8 w,
+// Of unlike sign are surfaces with and without baked light, which do not count as one.
+LANES_INLINE i8 mean_of_four(const float* inverse, const float* share, int64_t next, f8 own,
                              float same_surface) {
-    const f8 off = same_surface * w;
+    const f8 off = same_surface * abs8(own);
     f8 total = splat(0.0f), count = splat(0.0f);
     for (int64_t k = 0; k < 4; k++) {
-        const i8 same = abs8(abs8(load(inverse + k * next)) - w) <= off;
+        const i8 same = abs8(load(inverse + k * next) - own) <= off;
         total = total + select8(same, load(share + k * next), splat(0.0f));
         count = count + select8(same, splat(1.0f), splat(0.0f));
     }
@@ -188,12 +190,12 @@ LANES_INLINE i8 mean_of_four(const float* inverse, const float* share, int64_t n
     return truncated((total + as_float(truncated(count) >> 1)) / count);
 }
 
-// Averages a band of rows: first along the rows, three rows beyond included, then along the
-// columns. `padded` has three rows of floats per row of the band and three beyond.
-void average_rows(const Samples& s, const Settings& set, const uint8_t* share, int64_t first,
-                  int64_t last, float* padded, uint8_t* out) {
+// Averages a band of rows over samples `step` apart: first along the rows, 3 * step rows beyond
+// included, then along the columns. `padded` has three rows of floats for each of these rows.
+void average_rows(const Samples& s, const Settings& set, const uint8_t* share, int64_t step,
+                  int64_t first, int64_t last, float* padded, uint8_t* out) {
     const int64_t stride = s.columns + 2 * PAD;
-    const int64_t rows = last - first + 3;
+    const int64_t rows = last - first + 3 * step;
     float* inverse = padded;
     float* means = padded + rows * stride;
     float* shares = means + rows * stride;
@@ -202,7 +204,7 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
     for (int64_t k = 0; k < rows * stride; k++) inverse[k] = __builtin_inff();
     for (int64_t k = 0; k < stride; k++) shares[k] = 0.0f;
     for (int64_t i = 0; i < rows; i++) {
-        const int64_t v = first - 1 + i;
+        const int64_t v = first - step + i;
         if (v < 0 || v >= s.rows) continue;
         float* inverse_row = inverse + i * stride + PAD;
         float* mean_row = means + i * stride + PAD;
@@ -210,16 +212,16 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
         for (int64_t u = 0; u < s.columns; u++) shares[PAD + u] = share[v * s.columns + u];
         const uint8_t* tiles = s.tiles + v / TILE * s.tile_columns;
         for (int64_t u = 0; u < s.columns; u += 8) {
-            const f8 w = abs8(load(inverse_row + u));
+            const f8 own = load(inverse_row + u);
             const i8 mean = tiles[u / TILE]
-                                ? mean_of_four(inverse_row + u - 1, shares + PAD + u - 1, 1, w,
-                                               set.same_surface)
+                                ? mean_of_four(inverse_row + u - step, shares + PAD + u - step, step,
+                                               own, set.same_surface)
                                 : splat(255);
             store(mean_row + u, as_float(mean));
         }
     }
     for (int64_t v = first; v < last; v++) {
-        const int64_t i = v - first + 1;
+        const int64_t i = v - first + step;
         const uint8_t* tiles = s.tiles + v / TILE * s.tile_columns;
         for (int64_t u = 0; u < s.columns; u += 8) {
             const int64_t count = s.columns - u < 8 ? s.columns - u : 8;
@@ -230,11 +232,11 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
             }
             const float* of_inverse = inverse + i * stride + PAD + u;
             const float* of_means = means + i * stride + PAD + u;
-            const f8 w = abs8(load(of_inverse));
-            store_bytes(
-                target,
-                mean_of_four(of_inverse - stride, of_means - stride, stride, w, set.same_surface),
-                count);
+            const f8 own = load(of_inverse);
+            const int64_t next = step * stride;
+            store_bytes(target,
+                        mean_of_four(of_inverse - next, of_means - next, next, own, set.same_surface),
+                        count);
         }
     }
 }
@@ -243,20 +245,22 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
 
 // `surface` is (height, width, 2); `inverse` and `visibility` are of half that size, rounded up.
 // `numbers` holds fx, cx, cy of the samples, radius_m, least_reach_px, reach_px, bias, scale,
-// same_surface.
+// same_surface, step of the second average.
 SAILENV_KERNEL(ambient_visibility)
 (int64_t threads, int64_t height, int64_t width, const float* surface, const uint8_t* baked,
  const float* numbers, const float* pattern, float* inverse, uint8_t* visibility) {
     if (height < 1 || width < 1) return sailenv::STATUS_INVALID_ARGUMENT;
     const Settings set{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4],
                        numbers[5], numbers[6], numbers[7], numbers[8]};
+    const int64_t step = numbers[9] >= 1.0f && numbers[9] <= MOST_STEP ? int64_t(numbers[9]) : 0;
+    if (step == 0) return sailenv::STATUS_INVALID_ARGUMENT;
     const int64_t rows = (height + 1) / 2, columns = (width + 1) / 2;
     const int64_t tile_rows = (rows + TILE - 1) / TILE, tile_columns = (columns + TILE - 1) / TILE;
     const int64_t tile_count = tile_rows * tile_columns;
-    const int64_t band = 3 * (TILE + 3) * (columns + 2 * PAD);
+    const int64_t band = 3 * (TILE + 3 * MOST_STEP) * (columns + 2 * PAD);
     const auto depth = sailenv::allocate<float>(rows * columns);
     const auto tiles = sailenv::allocate<uint8_t>(2 * tile_count);
-    const auto raw = sailenv::allocate<uint8_t>(rows * columns);
+    const auto raw = sailenv::allocate<uint8_t>(2 * rows * columns);
     const auto bands = sailenv::allocate<float>(band * threads);
     if (!depth || !tiles || !raw || !bands) return sailenv::STATUS_OUT_OF_MEMORY;
     uint8_t* own = tiles.get() + tile_count;
@@ -272,8 +276,15 @@ SAILENV_KERNEL(ambient_visibility)
             find_row(samples, set, pattern, v, raw.get() + v * columns);
         }
     });
-    sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t slot) {
-        average_rows(samples, set, raw.get(), first, last, bands.get() + slot * band, visibility);
-    });
+    uint8_t* means = raw.get() + rows * columns;
+    const auto average = [&](const uint8_t* from, int64_t apart, uint8_t* to) {
+        sailenv::parallel_for(
+            threads, rows, TILE, [&](int64_t first, int64_t last, int64_t slot) {
+                float* scratch = bands.get() + slot * band;
+                average_rows(samples, set, from, apart, first, last, scratch, to);
+            });
+    };
+    average(raw.get(), 1, means);
+    average(means, step, visibility);
     return sailenv::STATUS_OK;
 }

@@ -106,10 +106,12 @@ void tone_map_row(const Picture& p, int64_t v, uint8_t* four, uint8_t* luma, uin
 // Stored values and their luma: row by row and, for edges that run down the picture, column by
 // column. The luma begins PAD bytes into each line, so that what is read beyond an end is there.
 constexpr int64_t PAD = 16;
+constexpr float LEAST_BEND = 0.0005f;  // share of 1 / depth
 
 struct Edges {
     int64_t height, width;
     const uint8_t* four;     // (H, W, 4)
+    const float* surface;    // (H, W, 2): depth and instance id; or null
     const uint8_t* rows;     // (H, PAD + W + PAD)
     const uint8_t* columns;  // (W, PAD + H + PAD)
     int64_t row_stride, column_stride;
@@ -193,9 +195,60 @@ double share_across(const Edges& e, const uint8_t* here, const uint8_t* there, i
     return e.shares[nearer.steps][other.steps];
 }
 
+// How far a pixel's luma lies above both neighbours or below both, if these are alike.
+LANES_INLINE int32_t stands_out(int32_t own, int32_t before, int32_t after) {
+    int32_t least = 0;
+    if (own > before && own > after) least = own - (before > after ? before : after);
+    if (own < before && own < after) least = (before < after ? before : after) - own;
+    const int32_t unlike = before > after ? before - after : after - before;
+    return unlike <= least ? least : 0;
+}
+
+// Tells if a pixel's surface lies off that between its neighbours: over a plane 1 / depth is linear.
+LANES_INLINE bool bends(const float* surface, int64_t next) {
+    const float own = 1.0f / surface[0];
+    const float both = 1.0f / surface[-2 * next] + 1.0f / surface[2 * next];
+    return __builtin_fabsf(both - (own + own)) > LEAST_BEND * own;
+}
+
+// Something narrower than a pixel is seen in one pixel and missed in the next. Of a line half is
+// left, half is what lies on both sides; of a dot nothing. Tells if the pixel was one.
+bool smooth_thin(const Edges& e, int64_t v, int64_t u, uint8_t* out) {
+    if (e.surface == nullptr) return false;
+    const uint8_t* row = e.rows + v * e.row_stride + PAD + u;
+    const int32_t across = stands_out(row[0], row[-1], row[1]);
+    const int32_t down = stands_out(row[0], row[-e.row_stride], row[e.row_stride]);
+    if ((across > down ? across : down) < e.least_contrast) return false;
+    const int64_t next = across >= down ? 1 : e.width;
+    const int64_t at = v * e.width + u;
+    if (!bends(e.surface + 2 * at, next)) return false;
+    const uint8_t* own = e.four + 4 * at;
+    int32_t low = 255, high = 0;
+    for (int64_t k = -1; k <= 1; k++) {
+        for (int64_t j = -1; j <= 1; j++) {
+            if (k == 0 && j == 0) continue;
+            const int32_t there = row[k * e.row_stride + j];
+            low = there < low ? there : low;
+            high = there > high ? there : high;
+        }
+    }
+    // A dot stands out from all that is around it, by more than that differs.
+    const int32_t least = row[0] > high ? row[0] - high : low - row[0];
+    const bool dot = least >= e.least_contrast && high - low <= least;
+    for (int c = 0; c < 3; c++) {
+        const uint8_t* p = own + c;
+        const int32_t beside = p[-4 * next] + p[4 * next];
+        const int32_t around = p[-4] + p[4] + p[-4 * e.width] + p[4 * e.width];
+        const int32_t mixed = dot ? (around + 2) >> 2 : (2 * *p + beside + 2) >> 2;
+        out[c] = static_cast<uint8_t>(mixed);
+    }
+    return true;
+}
+
 LANES_INLINE int32_t distance(uint8_t a, uint8_t b) { return a > b ? a - b : b - a; }
 
 void smooth_pixel(const Edges& e, int64_t v, int64_t u, int32_t contrast, uint8_t* out) {
+    if (smooth_thin(e, v, u, out)) return;
     const uint8_t* row = e.rows + v * e.row_stride + PAD + u;
     const int32_t up = distance(row[-e.row_stride], row[0]);
     const int32_t down = distance(row[e.row_stride], row[0]);
@@ -252,7 +305,7 @@ void smooth_row(const Edges& e, int64_t v, uint8_t* three) {
 
 }  // namespace
 
-// `visibility` may be null, and then `inverse` and `surface` too. `least_contrast` 0 leaves edges
+// `visibility` may be null, and then `inverse` too; without it `surface` may be. `least_contrast` 0 leaves edges
 // as they are. `rgb` is (height, width, 3).
 SAILENV_KERNEL(make_picture)
 (int64_t threads, int64_t height, int64_t width, const uint16_t* radiance, const uint8_t* table,
@@ -282,6 +335,7 @@ SAILENV_KERNEL(make_picture)
     Edges edges{height,
                 width,
                 four.get(),
+                surface,
                 rows.get(),
                 columns.get(),
                 row_stride,

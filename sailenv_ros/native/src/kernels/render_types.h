@@ -94,6 +94,12 @@ struct LayerSum {
     uint8_t* states;                // RunState of each run; zeros at first
 };
 
+// From where a room was looked at for what is mirrored.
+struct ReflectionPoint {
+    float position[3];
+    float light[4];  // irradiance / pi there: c0, cx, cy, cz; luma
+};
+
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
     float main_colour[3];
@@ -119,12 +125,13 @@ struct Light {
     float main_baked, main_clear;
     const int32_t* edge_index;   // (height, width) of the light map: number of a block, or -1; null
     const uint8_t* edge_blocks;  // (blocks, 6, 6): share of main light, see SunEdges
-    const uint16_t* reflections;  // halves (layers, edge, edge, 4)
+    const uint16_t* reflections;  // halves (points, layers, edge, edge, 4)
     int32_t reflection_edge, reflection_layers;
     float reflection_scale;  // share of the square without its border
     float layers_per_roughness;
-    float reflection_from[3], room_low[3], room_high[3];
-    float room_light[4];
+    const ReflectionPoint* reflection_points;
+    const int32_t* reflection_table;  // (ids,): the point that an instance uses
+    float room_low[3], room_high[3];
 };
 
 struct View {

@@ -617,7 +617,6 @@ LANES_INLINE Direction8 mirrored_ray(const Chunk& c, int32_t i) {
 
 void mirrored_light(const Shading& s, Chunk& c) {
     const Light& light = *s.light;
-    const float* open = light.room_light;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const Colour8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
         const f8 roughness = load(c.roughness + i);
@@ -635,11 +634,21 @@ void mirrored_light(const Shading& s, Chunk& c) {
                     light.ambient[2] + light.sky_share * sky.b};
         } else if (light.reflecting && any((roughness < 0.7f) & ~load(c.empty + i))) {
             const Direction8 d = mirrored_ray(c, i);
-            const Colour8 room = mirrored_room(light, load(c.px + i), load(c.py + i),
+            i8 point{};
+            alignas(32) float open[4][8];
+            const i8 ids = load(c.id + i);
+            for (int k = 0; k < 8; k++) {
+                // Where nothing is, the id is 0, and so is the point.
+                point[k] = light.reflection_table[ids[k]];
+                for (int j = 0; j < 4; j++) {
+                    open[j][k] = light.reflection_points[point[k]].light[j];
+                }
+            }
+            const Colour8 room = mirrored_room(light, point, load(c.px + i), load(c.py + i),
                                                load(c.pz + i), d.x, d.y, d.z, roughness);
             // Where less light arrives than in the middle of the room, less of the room is seen.
-            const f8 there = open[0] + open[1] * load(c.nx + i) + open[2] * load(c.ny + i) +
-                             open[3] * load(c.nz + i);
+            const f8 there = load(open[0]) + load(open[1]) * load(c.nx + i) +
+                             load(open[2]) * load(c.ny + i) + load(open[3]) * load(c.nz + i);
             const f8 share = clamp8(luma8(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
             const Colour8 dimmed = {room.r * share, room.g * share, room.b * share};
             // The rougher, the more of the half space it mirrors: that is the light around.
@@ -908,15 +917,22 @@ void shade_chunk(const Shading& s, Chunk& c) {
 
 }  // namespace
 
-Colour8 mirrored_room(const Light& light, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz, f8 roughness) {
+Colour8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz,
+                      f8 roughness) {
     const f8 ix = 1.0f / (dx + 1e-6f), iy = 1.0f / (dy + 1e-6f), iz = 1.0f / (dz + 1e-6f);
-    const float *low = light.room_low, *high = light.room_high, *from = light.reflection_from;
+    const float *low = light.room_low, *high = light.room_high;
+    alignas(32) float from[3][8];
+    for (int k = 0; k < 8; k++) {
+        for (int j = 0; j < 3; j++) {
+            from[j][k] = light.reflection_points[point[k]].position[j];
+        }
+    }
     const f8 end_x = max8((low[0] - x) * ix, (high[0] - x) * ix);
     const f8 end_y = max8((low[1] - y) * iy, (high[1] - y) * iy);
     const f8 end_z = max8((low[2] - z) * iz, (high[2] - z) * iz);
     const f8 reach = max8(min8(end_x, min8(end_y, end_z)), splat(0.05f));
-    const f8 tx = x + dx * reach - from[0], ty = y + dy * reach - from[1],
-             tz = z + dz * reach - from[2];
+    const f8 tx = x + dx * reach - load(from[0]), ty = y + dy * reach - load(from[1]),
+             tz = z + dz * reach - load(from[2]);
     const f8 inverse = 1.0f / max8(abs8(tx) + abs8(ty) + abs8(tz), splat(1e-20f));
     f8 nx = tx * inverse, ny = ty * inverse;
     const f8 fold = max8(-tz * inverse, splat(0.0f));
@@ -930,7 +946,9 @@ Colour8 mirrored_room(const Light& light, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz,
                             static_cast<float>(light.reflection_layers) - 1.001f);
     const i8 iu = truncated(u), iv = truncated(v), il = truncated(layer);
     const f8 across = u - as_float(iu), down = v - as_float(iv), share = layer - as_float(il);
-    const i8 at = (il * light.reflection_edge + iv) * light.reflection_edge + iu;
+    const i8 at = ((point * light.reflection_layers + il) * light.reflection_edge + iv) *
+                      light.reflection_edge +
+                  iu;
     const int64_t row = 4 * static_cast<int64_t>(light.reflection_edge);
     const int64_t next = row * light.reflection_edge;
     alignas(32) float texels[4 * 8];

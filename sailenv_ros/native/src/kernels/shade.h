@@ -41,9 +41,10 @@ LANES_INLINE Colour8 analytic_sky(const Light& light, f8 up) {
     return mix3(upper, splat3(light.sky_ground), smoothstep8(splat(0.0f), splat(0.12f), -up));
 }
 
-// What shiny surfaces mirror of a room; see shaders/reflections.glsl. Points and directions in the
-// world frame.
-Colour8 mirrored_room(const Light& light, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz, f8 roughness);
+// What shiny surfaces mirror of a room, as `point` says for each; see shaders/reflections.glsl.
+// Points and directions in the world frame.
+Colour8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz,
+                      f8 roughness);
 
 // Shades the pixels of one band: radiance, surfaces, normals, as wanted.
 void shade_band(const Shading& shading, int32_t first_row, int32_t last_row);

@@ -2,14 +2,14 @@
 
 Radiance is linear in the power of each light. So the room is looked at once for each light alone,
 at power 1, and once for the sky and what glows; when a light is made brighter or gets another
-colour, that costs a sum. Pictures in six directions come in, reflection maps go out.
+colour, that costs a sum. Pictures in six directions from several points come in, reflection maps
+go out. Every back end draws with it. Knows no graphics library.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -17,15 +17,21 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.lights import Environment, Light
-from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.render import reflection_map as reflections
-from sailenv_ros.snapshot import SceneContents
+from sailenv_ros.render.lightmap_compositing import Term
+from sailenv_ros.render.reflection_points import ReflectionPoints
+from sailenv_ros.snapshot import WorldSnapshot
 
-__all__ = ["Look", "RoomReflections"]
+__all__ = ["Look", "RoomReflections", "Sum"]
 
 Look: TypeAlias = Callable[[Light | None, list[Camera]], list[NDArray[np.float32]]]
 """``look(light, cameras)`` returns (H, W, 3) for each camera: linear radiance under one light
 alone; None: under the sky, with what glows."""
+
+Sum: TypeAlias = Callable[
+    [Sequence[Term], NDArray[np.float32], NDArray[np.uint8]], NDArray[np.float16]
+]
+"""As `lightmap_compositing.sum_texels`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -35,9 +41,9 @@ class _Share:
     Attributes
     ----------
     texels : (T, 1, 3) float16
-        All layers of `reflection_map.prefilter`.
-    around : (3, 4) float64
-        What `reflection_map.light_from_around` says of each colour.
+        All layers of `reflection_map.prefilter`, of one point after the other.
+    around : (K, 3, 4) float64
+        What `reflection_map.light_from_around` says of each point and colour.
     """
 
     texels: NDArray[np.float16]
@@ -45,41 +51,45 @@ class _Share:
 
 
 class RoomReflections:
-    """The reflection map of the room that is shown.
+    """The reflection maps of the room that is shown.
 
     Parameters
     ----------
-    threads : int
-        How many threads work. The map does not depend on it.
+    blur : Blur
+        See `reflection_map.prefilter`.
+    add : Sum
 
     Attributes
     ----------
-    layers : (L, E, E, 4) float16
-        See `reflection_map.prefilter`.
-    room : dict of str to array
-        Fields of LIGHT: ``reflection_from``, ``room_low``, ``room_high``, ``room_light``.
+    points : ReflectionPoints
+        From where the room is looked at.
+    layers : (K, L, E, E, 4) float16
+        Of each point; see `reflection_map.prefilter`.
+    around : (K, 4) float64
+        What `reflection_map.light_from_around` says of each point.
     """
 
-    def __init__(self, threads: int) -> None:
-        self._blur = partial(blur_directions, threads=threads)
-        self._sum = partial(sum_texels, threads=threads)
+    def __init__(self, blur: reflections.Blur, add: Sum) -> None:
+        self._blur = blur
+        self._sum = add
         self._shares: dict[Hashable, _Share] = {}
         self._of: tuple[object, bytes] | None = None
         self._alone_of: dict[Light, Light] = {}
         self._environment: Environment | None = None
         self._sky: Environment | None = None
         edge = reflections.EDGE + 2
-        self.layers = np.zeros((len(reflections.ROUGHNESSES), edge, edge, 4), np.float16)
-        self.room: dict[str, NDArray[np.float64]] = {}
+        self.points = ReflectionPoints()
+        self.layers = np.zeros((1, len(reflections.ROUGHNESSES), edge, edge, 4), np.float16)
+        self.around = np.zeros((1, 4))
 
     def update(
         self,
-        contents: SceneContents,
+        snapshot: WorldSnapshot,
         still: NDArray[np.bool_],
         main: Light | None,
         look: Look,
     ) -> None:
-        """Bring the map up to date, when lights have changed.
+        """Bring the maps up to date, when lights have changed.
 
         Parameters
         ----------
@@ -88,11 +98,12 @@ class RoomReflections:
         main : Light or None
             The light that casts the shadow map.
         """
+        contents = snapshot.contents
         assert contents.baked is not None
         of = (contents.baked, contents.instance_ids[still].tobytes())
         if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
             self._shares, self._of = {}, of
-        middle, (low, high) = reflections.view_point(contents.baked.probes)
+            self.points.choose(snapshot)
         if self._environment is not contents.environment:
             self._environment = contents.environment
             self._sky = replace(contents.environment, exposure=0.0)
@@ -110,26 +121,27 @@ class RoomReflections:
                 wanted.append(((alone, light is main), alone, power))
         self._alone_of = alone_of
         shares = {
-            key: self._shares.get(key) or self._share(middle, alone, look)
-            for key, alone, _ in wanted
+            key: self._shares.get(key) or self._share(alone, look) for key, alone, _ in wanted
         }
         self._shares = shares
         terms = [(shares[key].texels, power) for key, _, power in wanted]
         shown = np.full(terms[0][0].shape[:2], 255, np.uint8)
         texels = self._sum(terms, np.zeros(3, np.float32), shown)
-        self.layers = texels.reshape(self.layers.shape)
-        around = sum(power @ shares[key].around for key, _, power in wanted)
-        self.room = {
-            "reflection_from": middle,
-            "room_low": low,
-            "room_high": high,
-            "room_light": np.asarray(around, np.float64),
-        }
+        self.layers = texels.reshape(-1, *self.layers.shape[1:])
+        self.around = sum(
+            (np.einsum("c,kci->ki", power, shares[key].around) for key, _, power in wanted),
+            np.zeros((len(self.layers), 4)),
+        )
 
-    def _share(self, middle: NDArray[np.float64], alone: Light | None, look: Look) -> _Share:
-        cameras = reflections.cube_cameras(middle)
-        flat = reflections.flattened(cameras, look(alone, cameras), reflections.EDGE)
-        layers = reflections.prefilter(flat, blur=self._blur)[..., :3]
-        seen = layers[0, 1:-1, 1:-1].astype(np.float64)
-        each = [reflections.light_from_around(seen * colour) for colour in np.eye(3)]
-        return _Share(np.ascontiguousarray(layers).reshape(-1, 1, 3), np.stack(each))
+    def _share(self, alone: Light | None, look: Look) -> _Share:
+        every = [reflections.cube_cameras(point) for point in self.points.points]
+        pictures = iter(look(alone, [camera for cameras in every for camera in cameras]))
+        texels, around = [], []
+        for cameras in every:
+            seen = [next(pictures) for _ in cameras]
+            flat = reflections.flattened(cameras, seen, reflections.EDGE)
+            layers = reflections.prefilter(flat, blur=self._blur)[..., :3]
+            first = layers[0, 1:-1, 1:-1].astype(np.float64)
+            around.append([reflections.light_from_around(first * colour) for colour in np.eye(3)])
+            texels.append(layers.reshape(-1, 1, 3))
+        return _Share(np.ascontiguousarray(np.concatenate(texels)), np.array(around))
