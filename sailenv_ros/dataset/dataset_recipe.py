@@ -19,6 +19,7 @@ from sailenv_ros.recording.export.formats import FORMATS, format_class
 from sailenv_ros.recording.export.splits import SPLITS
 from sailenv_ros.scene.field_types import Choice, Number, Several, Switch, Text
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
+from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.rules import distinct, distinct_values
 
 __all__ = ["ClipRecipe", "Light", "DatasetRecipe", "SceneRecipe", "ShardRecipe", "SplitSizes"]
@@ -152,7 +153,7 @@ class DatasetRecipe(SceneModel):
     """A data set, as its author wrote it down."""
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        distinct("name", "cameras"),
+        distinct("name", "cameras", "randomise"),
         distinct_values("views"),
         distinct_values("formats"),
         _formats_fit,
@@ -170,6 +171,12 @@ class DatasetRecipe(SceneModel):
     seed: _Seed = Field(default=0, description="of everything that is random")
     scenes: tuple[SceneRecipe, ...] = Field(
         min_length=1, max_length=1000, description="what is seen"
+    )
+    randomise: tuple[RandomThing, ...] = Field(
+        default=(),
+        max_length=100,
+        description="what is drawn at random whenever a scene begins, as in a scene file; instead "
+        "of the scene's own",
     )
     light: Annotated[Light, Choice(get_args(Light))] = Field(
         default="baked",

@@ -257,6 +257,12 @@ class ShardMaker:
         try:
             if self._baked:
                 _bake_missing(core.world)
+            if self._recipe.randomise:
+                things = [
+                    one.model_dump(mode="json", exclude_defaults=True)
+                    for one in self._recipe.randomise
+                ]
+                core.randomise(int(random.integers(2**31)), index=0, things=things)
             yield core
         finally:
             core.close()
