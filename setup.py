@@ -68,6 +68,9 @@ IMPORT = ["mujoco>=3.3"]
 # The SAILenv client, which is timed at the gateway and tested there, declares no dependencies.
 BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
+# What some formats of data sets and remote places for them need, and the engine of many machines.
+DATASET = ["fsspec>=2024.2", "pyarrow>=15"]
+RAY = [*DATASET, "ray>=2.40"]
 DEV = [
     # The notebook among the examples is executed by a test.
     "ipykernel>=6.29",
@@ -83,6 +86,10 @@ DEV = [
     "jsonschema",
     "matplotlib>=3.8",
     "mcap-ros2-support",
+    # A server of S3's protocol on this machine, for the tests of data sets at remote places.
+    "flask>=3.0",
+    "flask-cors>=5.0",
+    "moto[s3]>=5",
     "mujoco>=3.3",
     "mypy",
     "onnxruntime>=1.17",
@@ -92,8 +99,10 @@ DEV = [
     "pytest>=8.0",
     "pytest-timeout",
     "pytest-xdist",
+    *RAY,
     "rosbags",
     "ruff",
+    "s3fs>=2024.2",
     # The SAILenv client, which the gateway's tests drive; it declares no dependencies.
     "sailenv==0.5b0",
     "types-jsonschema",
@@ -109,6 +118,7 @@ def data_files() -> list[tuple[str, list[str]]]:
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
         (f"{share}/config", sorted(path for kind in CONFIG for path in glob(f"config/*.{kind}"))),
+        (f"{share}/config/recipes", sorted(glob("config/recipes/*.yaml"))),
         (f"{share}/config/rooms", sorted(glob("config/rooms/*.yaml"))),
         (f"{share}/config/rooms/library", sorted(glob("config/rooms/library/*.yaml"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),
@@ -212,9 +222,11 @@ setup(
         "bake": BAKE,
         "import": IMPORT,
         "bench": BENCH,
+        "dataset": DATASET,
+        "ray": RAY,
         "eval": EVAL,
         # Everything but ROS, which may be there already, and the tools for developers.
-        "all": sorted({*ASSETS, *BAKE, *BENCH, *EVAL, *IMPORT}),
+        "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL, *IMPORT}),
         "dev": DEV,
     },
     entry_points={

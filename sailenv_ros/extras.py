@@ -15,6 +15,9 @@ __all__ = ["need"]
 
 _EXTRA_OF = {
     "OpenEXR": "assets",
+    "fsspec": "dataset",
+    "pyarrow": "dataset",
+    "ray": "ray",
     "coacd": "assets",
     "embreex": "bake",
     "matplotlib": "bench",

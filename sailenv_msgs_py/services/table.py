@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import sailenv_msgs.srv as srv
+from sailenv_msgs_py.contact_msgs import contact_from_msg, contact_to_msg
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.object_msgs import (
     keys_to_json,
@@ -35,6 +36,7 @@ from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
 from sailenv_ros.agents import AgentPose
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
@@ -173,6 +175,20 @@ def _write_scenario(given: Arguments) -> Arguments:
     return {"scenario": scenario if is_text else keys_to_json("scenario", scenario)}
 
 
+def _write_wrench(given: Arguments) -> Arguments:
+    point = given["point_m"]
+    return {
+        **given,
+        "has_point": point is not None,
+        "point": (0.0, 0.0, 0.0) if point is None else point,
+    }
+
+
+def _read_wrench(given: Arguments) -> Arguments:
+    has_point, point = given.pop("has_point"), given.pop("point")
+    return {**given, "point_m": point if has_point else None}
+
+
 def _write_background(given: Arguments) -> Arguments:
     return {"sky": given["kind"] == "sky", "keep_colour": given["colour"] is None, **given}
 
@@ -253,6 +269,10 @@ def _fill_frame(response: Any, frame: Frame, info: SceneInfo) -> None:
     response.sequence = frame.sequence
 
 
+def _fill_contacts(response: Any, contacts: tuple[Contact, ...], info: SceneInfo) -> None:
+    response.contacts = [contact_to_msg(contact) for contact in contacts]
+
+
 def _fill_masks(response: Any, masks: AmodalMasks, info: SceneInfo) -> None:
     response.height, response.width = masks.height, masks.width
     response.masks = amodal_mask_to_msgs(masks)
@@ -316,6 +336,19 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     ),
     Service(Operations.add_behaviour, srv.AddBehaviour),
     Service(Operations.remove_behaviours, srv.RemoveBehaviours),
+    Service(
+        Operations.apply_wrench,
+        srv.ApplyWrench,
+        write=_write_wrench,
+        read=_read_wrench,
+    ),
+    Service(
+        Operations.contacts,
+        srv.GetContacts,
+        name="get_contacts",
+        fill=_fill_contacts,
+        result=lambda response: tuple(map(contact_from_msg, response.contacts)),
+    ),
     Service(
         Operations.load_scenario,
         srv.LoadScenario,

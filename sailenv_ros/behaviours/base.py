@@ -96,6 +96,8 @@ class BodyState:
     frustum_planes : (N, 4) float64
         Planes (a, b, c, d) that it is kept in front of: a x + b y + c z + d > 0 [m], with a unit
         normal (a, b, c). None at all unless its parameters name a viewer.
+    centre_of_mass_m : (3,) float64
+        In the body frame, scale included.
     """
 
     pose: Pose
@@ -104,6 +106,7 @@ class BodyState:
     mass_kg: float
     inertia_kg_m2: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
     frustum_planes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
+    centre_of_mass_m: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

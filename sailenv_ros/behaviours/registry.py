@@ -22,6 +22,7 @@ from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
 from sailenv_ros.behaviours.uniform_movement import uniform_movement_random_bounce
 from sailenv_ros.behaviours.wander_plane import wander_plane
 from sailenv_ros.behaviours.waypoints import catmull_waypoints, linear_waypoints
+from sailenv_ros.behaviours.wrench import wrench
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.field_types import FIELD_ERROR
 
@@ -44,6 +45,7 @@ _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
             uniform_movement_random_bounce,
             linear_waypoints,
             catmull_waypoints,
+            wrench,
         )
     }
 )

@@ -30,6 +30,7 @@ from sailenv_ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.nodes.agent_leases import AgentLeases
 from sailenv_ros.nodes.announcements import Announcements
 from sailenv_ros.nodes.capture_server import CaptureServer
+from sailenv_ros.nodes.contact_topic import ContactTopic
 from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.free_space_topic import FreeSpaceTopic
@@ -93,6 +94,7 @@ class SimNode:
         self._announcements = Announcements(
             node, publish_clock=publish_clock, on_info=self._scene_changed
         )
+        self._contacts = ContactTopic(node)
         self._stop_maps = simulation.on_free_space(FreeSpaceTopic(node).publish)
         self._leases = AgentLeases(node, runner)
         self._services = SimulatorServices(
@@ -118,6 +120,7 @@ class SimNode:
         """Begin to publish and to serve."""
         self._reconcile()
         self._announcements.begin(self._simulation)
+        self._contacts.begin(self._simulation)
         self._executor.add_node(self._node)
         self._spinning.start()
 
@@ -127,6 +130,7 @@ class SimNode:
         self._capture_server.close()
         self._spinning.stop(0.5)
         self._announcements.end()
+        self._contacts.end()
         self._stop_maps()
         self._endpoints.close()
         return self._hosted.close_simulation(timeout_s)

@@ -15,6 +15,7 @@ from sailenv_ros.validation import is_integer, is_number, vector
 __all__ = [
     "behaviour",
     "flag",
+    "force",
     "number",
     "object_reference",
     "optional",
@@ -85,6 +86,11 @@ def scale(what: str, value: Any) -> tuple[float, float, float]:
 
 def radiance(what: str, value: ArrayLike) -> tuple[float, float, float]:
     """Check a linear colour."""
+    return vector(what, value, limit=1e6)
+
+
+def force(what: str, value: ArrayLike) -> tuple[float, float, float]:
+    """Check a force [N] or a torque [N m]."""
     return vector(what, value, limit=1e6)
 
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from sailenv_ros.behaviours import STEP_S
+from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
-from sailenv_ros.validation import checked_flag, vector
+from sailenv_ros.validation import checked_flag, checked_number, vector
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -25,6 +27,14 @@ def _behaviours(what: str, value: Any) -> tuple[Mapping[str, Any], ...]:
     if isinstance(value, str | Mapping) or not hasattr(value, "__iter__"):
         raise InvalidRequest(what, value, "a list of behaviours, as in a scene file")
     return tuple(check.behaviour("behaviour", item) for item in value)
+
+
+def _wrench_time(what: str, value: Any) -> float:
+    return checked_number(what, value, 0.0, 1e6, unit="s")
+
+
+def _contact_time(what: str, value: Any) -> float:
+    return checked_number(what, value, 0.0, 1.0, unit="s")
 
 
 def _scenario(what: str, value: Any) -> str | Mapping[str, Any]:
@@ -224,6 +234,75 @@ class ObjectOperations(Caller):
         if body.behaviours:
             body.detach()
             core.announce()
+
+    @operation(
+        obj=check.object_reference,
+        force_n=check.force,
+        torque_nm=check.force,
+        point_m=check.optional(vector),
+        duration_s=_wrench_time,
+    )
+    @staticmethod
+    def apply_wrench(
+        core: SimulationCore,
+        obj: int | str,
+        force_n: ArrayLike = (0.0, 0.0, 0.0),
+        torque_nm: ArrayLike = (0.0, 0.0, 0.0),
+        point_m: ArrayLike | None = None,
+        duration_s: float = 0.0,
+    ) -> None:
+        """Push and twist an object for some simulated time.
+
+        Parameters
+        ----------
+        obj : int or str
+            Not a static one.
+        force_n : (3,) array-like
+            World frame, each within 1e6 [N].
+        torque_nm : (3,) array-like
+            World frame, each within 1e6 [N m].
+        point_m : (3,) array-like or None
+            Where the force acts, in the object's own frame, its scale applied [m]; it moves with
+            the object. None is the centre of mass.
+        duration_s : float
+            0 to 1e6 [s]; 0 is one physics step.
+
+        Notes
+        -----
+        The next step wakes it if it sleeps; the force begins with the one after. As with
+        behaviours, nothing is driven faster than 10 m/s.
+        """
+        parameters = {
+            "force": force_n,
+            "torque": torque_nm,
+            "duration": duration_s or STEP_S,
+        }
+        if point_m is not None:
+            parameters["point"] = point_m
+        core.editor.apply_wrench(core.world.find(obj), parameters)
+
+    @operation(seconds=_contact_time)
+    @staticmethod
+    def contacts(core: SimulationCore, seconds: float = 0.0) -> tuple[Contact, ...]:
+        """Return what touched what in the last physics step, or in some time before now.
+
+        Parameters
+        ----------
+        seconds : float
+            0 to 1 [s]; 0 is the last step.
+
+        Returns
+        -------
+        contacts : tuple of Contact
+            One for each pair of objects, in the order of their ids; a mover that is driven has the
+            id 0.
+
+        Notes
+        -----
+        Steps are kept from the first call on, for 10 simulated seconds after each; the first call
+        knows only the last step.
+        """
+        return core.world.contacts(seconds)
 
     @operation(deadline_s=120.0, scenario=_scenario)
     @staticmethod

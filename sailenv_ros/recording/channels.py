@@ -24,6 +24,7 @@ from sailenv_msgs_py.scene_msgs import scene_info_to_msg
 from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.recording.cdr_padding import without_padding_garbage
 from sailenv_ros.recording.mcap.chunks import Buffer
 from sailenv_ros.recording.schemas import message_class, schema_text, type_hash
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
@@ -132,19 +133,24 @@ def frame_messages(
     for view in views:
         yield view, _image_parts(image_from_view(view, frame[view], header, copy=False))
     camera_info = camera_info_from_intrinsics(frame.camera.intrinsics, header)
-    yield "camera_info", (serialize_message(camera_info),)
+    yield "camera_info", (_serialized(camera_info),)
     pose = pose_stamped_to_msg(frame.camera.pose, header.stamp, WORLD_FRAME_ID)
-    yield "pose", (serialize_message(pose),)
+    yield "pose", (_serialized(pose),)
     if amodal:
         objects = objects_to_msg(frame, header, frame.amodal)
-        yield "objects/amodal", (serialize_message(objects),)
+        yield "objects/amodal", (_serialized(objects),)
     info = frame_info_to_msg(frame, header, views=views, depth_range_m=depth_range_m)
-    yield "frame_info", (serialize_message(info),)
+    yield "frame_info", (_serialized(info),)
 
 
 def scene_info_message(info: SceneInfo) -> Parts:
     """Return the message that tells of the scene."""
-    return (serialize_message(scene_info_to_msg(info)),)
+    return (_serialized(scene_info_to_msg(info)),)
+
+
+def _serialized(message: Any) -> bytes:
+    """Serialize a message to bytes that depend on nothing but the message."""
+    return without_padding_garbage(serialize_message(message), type(message))
 
 
 def message_of(type_name: str, data: Buffer) -> Any:

@@ -18,6 +18,7 @@ __all__ = [
     "Acceleration",
     "DegreesPerSecond",
     "Direction",
+    "Force",
     "Fraction",
     "LinearColour",
     "MetresPerSecond",
@@ -29,6 +30,7 @@ __all__ = [
     "Rule",
     "Scale",
     "SceneModel",
+    "Torque",
 ]
 
 BROKEN_RULE = "scene_rule"
@@ -84,6 +86,8 @@ _Unitless = Annotated[float, Number(least=-1e6, most=1e6)]
 _Factor = Annotated[float, Number(least=1e-3, most=1e3)]
 _Speed = Annotated[float, Number(least=-1e3, most=1e3, unit="m/s")]
 _Acceleration = Annotated[float, Number(least=-1e3, most=1e3, unit="m/s2")]
+_Newtons = Annotated[float, Number(least=-1e6, most=1e6, unit="N")]
+_NewtonMetres = Annotated[float, Number(least=-1e6, most=1e6, unit="N m")]
 _Turn = Annotated[float, Number(least=-1e5, most=1e5, unit="deg/s")]
 
 Position: TypeAlias = Annotated[
@@ -108,6 +112,13 @@ Acceleration: TypeAlias = Annotated[
 ]
 MetresPerSecond: TypeAlias = Annotated[
     tuple[_Speed, _Speed, _Speed], Several(3, "three numbers [x, y, z] in [m/s]")
+]
+Force: TypeAlias = Annotated[
+    tuple[_Newtons, _Newtons, _Newtons], Several(3, "three numbers [x, y, z] in [N]")
+]
+Torque: TypeAlias = Annotated[
+    tuple[_NewtonMetres, _NewtonMetres, _NewtonMetres],
+    Several(3, "three numbers [x, y, z] in [N m]"),
 ]
 DegreesPerSecond: TypeAlias = Annotated[
     tuple[_Turn, _Turn, _Turn], Several(3, "three numbers [x, y, z] in [deg/s]")

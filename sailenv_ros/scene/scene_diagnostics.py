@@ -94,12 +94,19 @@ def model_diagnostics(
     if error is not None:
         models = {loc: part for loc, part, _ in found}
         for details in error.errors(include_url=False):
-            if details["type"] != BROKEN_RULE:
+            if details["type"] != BROKEN_RULE and not _counts_the_right_alone(details):
                 yield _translated(details, data, models)
     for loc, part, entry in found:
         for rule in part.rules:
             for place, sentence in rule(entry):
                 yield Diagnostic((*loc, *place), sentence)
+
+
+def _counts_the_right_alone(details: ErrorDetails) -> bool:
+    """Say if a list is called too short only because entries of it are wrong."""
+    if details["type"] != "too_short" or not isinstance(details["input"], list | tuple):
+        return False
+    return len(details["input"]) >= int(details["ctx"]["min_length"])
 
 
 def _unknown_names(

@@ -118,6 +118,20 @@ class SceneEditor:
         body.attach(running)
         self._core.announce()
 
+    def apply_wrench(self, instance_id: int, parameters: Mapping[str, Any]) -> None:
+        """Let a force and a torque act upon an object from now on, by the keys of `wrench`."""
+        body = self._core.world.body(instance_id)
+        body.push(
+            start_behaviour(
+                "wrench",
+                parameters,
+                seed=self._core.seed,
+                object_name=body.placement.name,
+                place=0,
+                start_s=self._now_s,
+            )
+        )
+
     def add_model(self, asset: Asset, *, rename: bool) -> str:
         """Add an imported model to the catalogue; return the name that it is spawned by.
 

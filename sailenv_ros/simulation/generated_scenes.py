@@ -17,7 +17,7 @@ from sailenv_ros.generation import __file__ as generation_file
 from sailenv_ros.system.files import make_folder, storage_errors, write_file
 from sailenv_ros.system.resources import resource_path
 
-__all__ = ["GeneratedScenes"]
+__all__ = ["GeneratedScenes", "generation_state"]
 
 FOLDER = "generated"
 MAX_FILES = 1000
@@ -49,7 +49,7 @@ class GeneratedScenes:
             If it cannot be written.
         """
         kind, seed = parsed_name(name, self._generator.rules)
-        folder = cache_folder() / FOLDER / _state()
+        folder = cache_folder() / FOLDER / generation_state()
         path = folder / f"generated_{kind}_{seed}.yaml"
         if not path.is_file():
             made = self._generator.generate(kind, seed)
@@ -72,7 +72,7 @@ def _forget_oldest(folder: Path, kept: Path) -> None:
             file.unlink(missing_ok=True)
 
 
-def _state() -> str:
+def generation_state() -> str:
     """Return what changes with the rules and with the furniture."""
     digest = blake2b(digest_size=8)
     rules = resource_path("config", "rooms")

@@ -20,9 +20,16 @@ _log = logging.getLogger(__name__)
 
 
 class LightCache:
-    """Finds the light that is baked already; keeps the last, so that a reset loads nothing."""
+    """Finds the light that is baked already; keeps the last, so that a reset loads nothing.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    wanted : bool
+        False hangs none.
+    """
+
+    def __init__(self, *, wanted: bool = True) -> None:
+        self._wanted = wanted
         self._last: BakedLight | None = None
         self._is_draft = False
 
@@ -43,6 +50,8 @@ class LightCache:
         scene : str
             The name or file by which a user asks for it.
         """
+        if not self._wanted:
+            return
         name = fingerprint(world.snapshot())
         if self._last is None or self._last.fingerprint != name or self._is_draft:
             before, self._last, self._is_draft = self._last, load_baked(name), False

@@ -84,15 +84,23 @@ class SceneLibrary:
     allow_modules : bool
         True lets scene files have behaviours of Python modules (``module:name``), whose code runs
         when the scene is built.
+    baked_light : bool
+        False leaves worlds without baked light, whether there is any or not.
     """
 
-    def __init__(self, scene_paths: Sequence[Path] = (), *, allow_modules: bool = False) -> None:
+    def __init__(
+        self,
+        scene_paths: Sequence[Path] = (),
+        *,
+        allow_modules: bool = False,
+        baked_light: bool = True,
+    ) -> None:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
-        self._light_cache = LightCache()
+        self._light_cache = LightCache(wanted=baked_light)
         self._generated = GeneratedScenes(self._assets)
         self._uploads = 0
         self._uploaded: set[str] = set()

@@ -22,7 +22,8 @@ from sailenv_ros.agents import AgentSpec, check_frame_rate
 from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.catalogue.thumbnails import Thumbnails
 from sailenv_ros.catalogue.upload_queue import UploadQueue
-from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
+from sailenv_ros.contacts import Contact
+from sailenv_ros.errors import DeadlineExceeded, InvalidState, SailenvError, SimulationClosed
 from sailenv_ros.notebook import scene_html
 from sailenv_ros.operations import Operation, Operations
 from sailenv_ros.render.backend import BackendName
@@ -295,6 +296,18 @@ class Simulation(Operations):
         """Have a quick function called with each map that `free_space` makes."""
         self._map_listeners.append(listener)
         return lambda: _discard(self._map_listeners, listener)
+
+    def contacts_of_steps(self, seconds: float) -> tuple[Contact, ...]:
+        """Return what touched what in the last time [s]; for listeners of `on_step` alone.
+
+        Raises
+        ------
+        InvalidState
+            If it is called from another thread than theirs, which has the operation `contacts`.
+        """
+        if self._core is None or threading.current_thread() is not self._thread:
+            raise InvalidState("this is for listeners of on_step; others call contacts(seconds)")
+        return self._core.world.contacts(seconds)
 
     def refresh(self) -> Future[None]:
         """Begin to take up furniture and baked light that were built since the start."""

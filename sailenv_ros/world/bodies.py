@@ -6,6 +6,7 @@ in which the model's vertices stand.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias
@@ -13,7 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.behaviours import BodyState, RunningBehaviour
+from sailenv_ros.behaviours import STEP_S, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, InvalidState, PhysicsError
 from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.labels import Instance
@@ -32,6 +33,8 @@ FrustumPlanes: TypeAlias = Callable[[str, float], NDArray[np.float64]]
 """``frustum_planes(agent, distance_m)`` returns planes of an agent's view frustum."""
 
 MAX_BEHAVIOURS = 16
+
+MAX_WRENCHES = 64
 
 TOUCH_M = 0.02
 """What is nearer may rest on a body."""
@@ -68,6 +71,7 @@ class Body:
         self.behaviours_unchanged = True
         self._behaviours = placement.behaviours
         self.is_fast = False
+        self._wrenches: tuple[RunningBehaviour, ...] = ()
         self._client = client
         self._centre = tuple(
             c * s for c, s in zip(placement.asset.centre_of_mass_m, placement.scale, strict=True)
@@ -212,12 +216,45 @@ class Body:
         new.arranged = self.arranged and placement.scale == self.placement.scale
         new.entry_pose = self.entry_pose
         new.behaviours_unchanged = self.behaviours_unchanged
+        new._wrenches = () if placement.static else self._wrenches
         return new
 
     @property
     def behaviours(self) -> tuple[RunningBehaviour, ...]:
         """What moves it, in the order in which they are asked."""
         return self._behaviours
+
+    def push(self, wrench: RunningBehaviour) -> None:
+        """Let a force act upon it from the step after the next until it ends.
+
+        A scene that is saved knows nothing of it.
+
+        Raises
+        ------
+        InvalidRequest
+            If it is static.
+        InvalidState
+            If `MAX_WRENCHES` act already.
+        """
+        name = self.placement.name
+        if self.placement.static:
+            raise InvalidRequest("object", name, "one that is not static: only those can be pushed")
+        self.forces()  # forgets those that have ended
+        if len(self._wrenches) >= MAX_WRENCHES:
+            raise InvalidState(
+                f"{MAX_WRENCHES} wrenches act upon object {name!r}, which is the most; "
+                "wait until one has ended"
+            )
+        # The engine takes one step to wake what sleeps, and applies no force in it.
+        self.wake()
+        wrench.start_s += STEP_S
+        self._wrenches = (*self._wrenches, wrench)
+
+    def forces(self) -> tuple[RunningBehaviour, ...]:
+        """Return all that acts upon it, its behaviours first; forgets wrenches that have ended."""
+        if self._wrenches:
+            self._wrenches = tuple(w for w in self._wrenches if w.idle_until_s != math.inf)
+        return (*self._behaviours, *self._wrenches)
 
     def attach(self, running: RunningBehaviour) -> None:
         """Let one more behaviour move it.
@@ -268,7 +305,7 @@ class Body:
     @property
     def acts(self) -> bool:
         """True if something is done to it before steps."""
-        return self.floats or bool(self._behaviours)
+        return self.floats or bool(self._behaviours or self._wrenches)
 
     @property
     def thrown(self) -> bool:
@@ -334,6 +371,7 @@ class Body:
             mass_kg=self.mass_kg,
             inertia_kg_m2=self.inertia_kg_m2,
             frustum_planes=planes,
+            centre_of_mass_m=np.asarray(self._centre),
         )
 
     def _centre_in_world(self, pose: Pose) -> list[float]:

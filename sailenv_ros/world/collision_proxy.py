@@ -51,6 +51,11 @@ class CollisionProxy:
         )
         self._meet(_NOTHING)
 
+    @property
+    def bullet_id(self) -> int:
+        """PyBullet's number of the ball."""
+        return int(self._id)
+
     def before_step(self, time_ns: int) -> None:
         """Push the body for the step that begins at a simulated time [ns]."""
         command = self._mover.command_at(time_ns)

@@ -54,7 +54,8 @@ class StepActions:
         self._client = client
         self._frustum_planes = frustum_planes
         acting = [body for body in bodies if body.acts]
-        self._driven = [body for body in acting if body.behaviours]
+        driven = ((body, body.forces()) for body in acting)
+        self._driven = [(body, forces) for body, forces in driven if forces]
         self._floating = [body for body in acting if body.floats]
         self._lifts = [tuple(-body.mass_kg * g for g in client.gravity) for body in self._floating]
         self._is_wall: dict[int, bool] = {}
@@ -71,9 +72,9 @@ class StepActions:
         """Ask the behaviours; return the bodies that may be pressed into walls."""
         careful = []
         places: list[dict[BehaviourKind | None, Asked]] = []
-        for body in self._driven:
+        for body, forces in self._driven:
             acted = False
-            for place, running in enumerate(body.behaviours):
+            for place, running in enumerate(forces):
                 if running.is_idle(time_s):
                     continue
                 acted = True

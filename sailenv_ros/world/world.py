@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
@@ -28,6 +29,7 @@ from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable, LabelledPiece
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.collision_proxy import CollisionProxy
+from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
@@ -91,6 +93,7 @@ class World:
         self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
         self._proxies: dict[str, CollisionProxy] = {}
+        self._contact_log = ContactLog(self._client)
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
@@ -129,6 +132,7 @@ class World:
             for proxy in self._proxies.values():
                 proxy.after_step(self.sim_time_ns)
             self._step += 1
+            self._contact_log.after_step(self._step)
         if count:
             self._snapshot = self._states = None
 
@@ -259,6 +263,16 @@ class World:
         drawn = self._drawn(piece)
         model = drawn.model if piece.part else piece.body.placement.asset.model
         return piece.body.state(drawn.instance, self.sim_time_ns, model)
+
+    def contacts(self, seconds: float = 0.0) -> tuple[Contact, ...]:
+        """Return what touched what in the last step, and in so much simulated time before [s].
+
+        The first question hears of the last step alone: each step is kept only after it.
+        """
+        ids = {body.bullet_id: id_ for id_, body in self._bodies.items()}
+        movers = {proxy.bullet_id: name for name, proxy in self._proxies.items()}
+        count = max(1, round(seconds * STEPS_PER_SECOND))
+        return self._contact_log.contacts(self._step, count, ids, movers)
 
     # -- what is changed -------------------------------------------------------------------
 

@@ -109,3 +109,10 @@ def test_the_training_loop_learns() -> None:
 def test_the_dataset_gives_every_frame() -> None:
     """Twelve frames, with PyTorch's workers or without."""
     assert "frames: 12" in run("10_pytorch_dataset")
+
+
+def test_a_data_set_is_made_and_read() -> None:
+    """All frames of the training split come out, by PyTorch or without it."""
+    out = run("14_dataset")
+    assert "16 frames, SHA-256 " in out
+    assert "frames: 12" in out

@@ -17,8 +17,18 @@ from geometry_msgs.msg import Twist, Vector3
 from rclpy.serialization import serialize_message
 from rosbags.typesys import Stores, get_typestore
 
-from sailenv_msgs.msg import Behaviour, SceneInfo
-from sailenv_msgs.srv import AddBehaviour, GetPose, RemoveBehaviours, SetMoverController, Step
+from sailenv_msgs.msg import Behaviour, Contacts, SceneInfo
+from sailenv_msgs.srv import (
+    AddBehaviour,
+    ApplyWrench,
+    GetContacts,
+    GetObject,
+    GetPose,
+    RemoveBehaviours,
+    SetMoverController,
+    SpawnObject,
+    Step,
+)
 from sailenv_ros import Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
@@ -219,3 +229,32 @@ def test_without_tf2_msgs_nothing_is_published(monkeypatch: pytest.MonkeyPatch) 
     tree.publish("left", Pose(), Time())
     assert not tree.wanted
     assert node.sent == {}
+
+
+def test_a_push_and_what_it_runs_into_are_told(probe: Probe, scene: Topic) -> None:
+    """Two cubes side by side: one is pushed into the other; service and topic tell of it."""
+    heard = probe.listen(Contacts, "contacts")
+    ids = []
+    for number in range(2):
+        spawn = SpawnObject.Request(asset="cube", mass_kg=2.0, name=f"pushed {number}")
+        spawn.pose.position.x, spawn.pose.position.z = 40.0 + 1.2 * number, 50.0
+        ids.append(probe.done(SpawnObject, "spawn_object", spawn).id)
+    push = ApplyWrench.Request(id=ids[0], force_n=Vector3(x=480.0), duration_s=0.01)
+    probe.done(GetContacts, "get_contacts", GetContacts.Request())
+    probe.done(ApplyWrench, "apply_wrench", push)
+    probe.done(Step, "step", Step.Request(steps=48))
+    asked = GetContacts.Request(seconds=0.2)
+    contacts = probe.done(GetContacts, "get_contacts", asked).contacts
+    (found,) = [c for c in contacts if {c.first, c.second} == set(ids)]
+    assert found.normal.x < -0.9  # towards the first
+    speed = probe.done(GetObject, "get_object", GetObject.Request(id=ids[1])).twist.linear.x
+    assert speed > 0.1
+    assert found.impulse_n_s == pytest.approx(2.0 * speed, rel=0.05)
+    until(
+        lambda: any({c.first, c.second} == set(ids) for m in heard.messages for c in m.contacts),
+        "the contact on its topic",
+    )
+    refused = ApplyWrench.Request(id=ids[0], force_n=Vector3(x=float("nan")))
+    assert "force_n" in probe.call(ApplyWrench, "apply_wrench", refused).message
+    refused = ApplyWrench.Request(id=scene.last.instances[0].id, force_n=Vector3(x=1.0))
+    assert "static" in probe.call(ApplyWrench, "apply_wrench", refused).message

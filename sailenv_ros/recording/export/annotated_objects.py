@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame
 from sailenv_ros.labels import BACKGROUND, UNLABELLED_CATEGORY
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.object_truth.object_table import ObjectTable
 from sailenv_ros.recording.export.dataset_format import Sample
 
-__all__ = ["NO_CATEGORY", "AnnotatedObjects", "annotated_objects", "categories_of"]
+__all__ = [
+    "NO_CATEGORY",
+    "AnnotatedObjects",
+    "annotated_objects",
+    "categories_of",
+    "merged_categories",
+]
 
 NO_CATEGORY = (BACKGROUND, UNLABELLED_CATEGORY)
 
@@ -65,3 +72,23 @@ def categories_of(sample: Sample, format_name: str) -> dict[str, str]:
     """Return the names of all categories of the scene by their ids, as JSON holds them."""
     known = sample.scene_info(format_name).categories.values()
     return {str(one.id): one.name for one in known if one.id not in NO_CATEGORY}
+
+
+def merged_categories(tables: Iterable[Mapping[str, str]]) -> dict[int, str]:
+    """Join the `categories_of` many frames; return all names by their ids, in order.
+
+    Raises
+    ------
+    RecordingError
+        If two scenes have another category of the same id.
+    """
+    names: dict[int, str] = {}
+    for table in tables:
+        for text, name in table.items():
+            known = names.setdefault(int(text), name)
+            if known != name:
+                raise RecordingError(
+                    f"category {text} is {known!r} in one scene and {name!r} in another; give the "
+                    "scenes' own categories different ids"
+                )
+    return dict(sorted(names.items()))

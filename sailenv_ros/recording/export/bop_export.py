@@ -37,9 +37,9 @@ UNSPLIT = "train"
 class BopExport(DatasetFormat):
     """`train/000001/{rgb,depth,mask,mask_visib}`, its `scene_*.json`, `models`, `camera.json`.
 
-    A scene of BOP is an epoch of the simulation. Objects are those of the catalogue; the room and
-    what was uploaded are left out, as there is no model of them, but they hide what lies behind.
-    An object at another scale is another object.
+    A scene of BOP is an epoch of the simulation, or a clip of a data set. Objects are those of the
+    catalogue; the room and what was uploaded are left out, as there is no model of them, but they
+    hide what lies behind. An object at another scale is another object.
     """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
@@ -53,7 +53,8 @@ class BopExport(DatasetFormat):
                 "BOP needs poses and amodal masks, which were not recorded; record with --amodal"
             )
         left_out = Counter(found.left_out)
-        scene = self._scene(sample.split, frame.epoch)
+        number = frame.epoch if sample.sequence_number is None else sample.sequence_number
+        scene = self._scene(sample.split, number)
         name = f"{sample.stem}.png"
         write_png(scene / "rgb" / name, frame["rgb"])
         write_png(scene / "depth" / name, _depth_steps(frame["depth"]))
@@ -90,7 +91,7 @@ class BopExport(DatasetFormat):
         }
         return Made(
             record={
-                "epoch": frame.epoch,
+                "scene": number,
                 "camera": camera,
                 "size": [lens.width, lens.height],
                 "truths": truths,
@@ -105,10 +106,10 @@ class BopExport(DatasetFormat):
         numbers = self._write_models(records)
         scenes: dict[tuple[str, int], list[Record]] = {}
         for record in records:
-            scenes.setdefault((record.split, record.value["epoch"]), []).append(record)
+            scenes.setdefault((record.split, record.value["scene"]), []).append(record)
         targets: dict[str, list[dict[str, int]]] = {}
-        for (split, epoch), own in scenes.items():
-            folder = self._scene(split, epoch)
+        for (split, scene), own in scenes.items():
+            folder = self._scene(split, scene)
             cameras, truths, infos = {}, {}, {}
             for record in own:
                 image, value = str(record.number), record.value
@@ -130,7 +131,7 @@ class BopExport(DatasetFormat):
                         "im_id": record.number,
                         "inst_count": count,
                         "obj_id": obj_id,
-                        "scene_id": epoch,
+                        "scene_id": scene,
                     }
                     for obj_id, count in sorted(counts.items())
                 )
@@ -169,8 +170,8 @@ class BopExport(DatasetFormat):
         write_json(self.folder / "models" / "names.json", names)
         return numbers
 
-    def _scene(self, split: str, epoch: int) -> Any:
-        return self.folder / (split or UNSPLIT) / f"{epoch:06d}"
+    def _scene(self, split: str, number: int) -> Any:
+        return self.folder / (split or UNSPLIT) / f"{number:06d}"
 
     @cached_property
     def _library(self) -> AssetLibrary:

@@ -8,7 +8,7 @@ and area, and `occlusion` (the share of the object that is hidden) are added.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,7 +17,11 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.category_names import NAMING_SCHEMES, names_in
 from sailenv_ros.object_truth.object_table import ObjectTable
 from sailenv_ros.object_truth.run_lengths import crop_runs
-from sailenv_ros.recording.export.annotated_objects import annotated_objects, categories_of
+from sailenv_ros.recording.export.annotated_objects import (
+    annotated_objects,
+    categories_of,
+    merged_categories,
+)
 from sailenv_ros.recording.export.coco_rle import run_lengths_text
 from sailenv_ros.recording.export.data_files import write_json, write_png
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
@@ -75,10 +79,7 @@ class CocoExport(DatasetFormat):
     def finish(self, records: Sequence[Record]) -> None:
         """Write the annotations of each split; ids of annotations count on over all of them."""
         count = 0
-        categories: dict[int, str] = {}
-        for record in records:
-            known: Mapping[str, str] = record.value["categories"]
-            categories.update({int(id_): name for id_, name in known.items()})
+        categories = merged_categories(record.value["categories"] for record in records)
         others = {scheme: names_in(scheme) for scheme in NAMING_SCHEMES}
         listed = [
             {
@@ -87,7 +88,7 @@ class CocoExport(DatasetFormat):
                 "supercategory": "",
                 **{scheme: names.get(name, "") for scheme, names in others.items()},
             }
-            for id_, name in sorted(categories.items())
+            for id_, name in categories.items()
         ]
         for split in sorted({record.split for record in records}):
             own = [record.value for record in records if record.split == split]

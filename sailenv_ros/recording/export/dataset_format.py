@@ -33,6 +33,10 @@ class Sample:
         ``train``, ``val`` or ``test``; empty if the data set is not split.
     previous, following : Frame or None
         The frames before and after it, for formats that need them; None at the ends.
+    sequence : str
+        Name of what it is a part of, where a data set has several sequences; else empty.
+    sequence_number : int or None
+        Of that, from 1; None for frames of one recording, whose epochs are counted.
     """
 
     number: int
@@ -40,6 +44,8 @@ class Sample:
     split: str = ""
     previous: Frame | None = None
     following: Frame | None = None
+    sequence: str = ""
+    sequence_number: int | None = None
 
     @property
     def stem(self) -> str:
@@ -108,6 +114,12 @@ class DatasetFormat(ABC):
         False if it must be given all frames again after a break.
     needs_neighbours : bool
         True if its samples shall have the frames before and after theirs.
+    has_sequences : bool
+        True if it is a sequence of which several fit into one folder, by `Sample.sequence`.
+    is_shard : bool
+        True if its files hold many frames each, of one split: large data sets have several.
+    part : int
+        Of a format that `is_shard`: number of the part that this writes.
     flow : {'forward', 'backward', 'both'}
         Which flow it writes, if it writes one and there is a choice.
     """
@@ -117,7 +129,10 @@ class DatasetFormat(ABC):
     is_sequence: ClassVar[bool] = False
     resumable: ClassVar[bool] = True
     needs_neighbours: ClassVar[bool] = False
+    has_sequences: ClassVar[bool] = False
+    is_shard: ClassVar[bool] = False
     flow: FlowDirection = "forward"
+    part: int = 0
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -134,3 +149,6 @@ class DatasetFormat(ABC):
         records : sequence of Record
             One for each frame, in the order of their numbers.
         """
+
+    def close(self) -> None:  # noqa: B027 - often nothing is open
+        """Free what is open when writing is broken off; what is not complete goes."""

@@ -211,6 +211,8 @@ class DatasetWriter:
         """Leave the data set unfinished, to go on with another time."""
         if self._summary is None:
             self._journal.flush()
+            for made in self._formats.values():
+                made.close()
 
     def __enter__(self) -> DatasetWriter:
         return self

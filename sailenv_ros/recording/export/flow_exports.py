@@ -101,12 +101,13 @@ class SintelExport(DatasetFormat):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
     is_sequence: ClassVar[bool] = True
+    has_sequences: ClassVar[bool] = True
     needs_neighbours: ClassVar[bool] = True
 
     def add(self, sample: Sample) -> Made:
         """Write a frame's files."""
         frame = sample.frame
-        scene = f"{frame.scene}_{frame.epoch}"
+        scene = sample.sequence or f"{frame.scene}_{frame.epoch}"
         # Numbers go on from epoch to epoch; readers sort the files of each scene by name.
         stem = f"frame_{sample.number + 1:04d}"
         write_png(self.folder / "clean" / scene / f"{stem}.png", frame["rgb"])

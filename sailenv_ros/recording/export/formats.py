@@ -25,7 +25,11 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "mot": "mot_export.MotExport",
         "yolo": "yolo_export.YoloExport",
         "yolo_segments": "yolo_export.YoloSegmentsExport",
+        "lve": "lve_export.LveExport",
         "voc": "voc_export.VocExport",
+        "webdataset": "webdataset_export.WebDatasetExport",
+        "parquet": "parquet_export.ParquetExport",
+        "mcap": "mcap_export.McapExport",
     }
 )
 """Module in this folder and class of each format, by its name."""

@@ -12,7 +12,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sailenv_ros.recording.export.annotated_objects import annotated_objects, categories_of
+from sailenv_ros.recording.export.annotated_objects import (
+    annotated_objects,
+    categories_of,
+    merged_categories,
+)
 from sailenv_ros.recording.export.data_files import write_bytes, write_png
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 
@@ -63,10 +67,8 @@ class MotExport(DatasetFormat):
         lines = [line for record in records for line in record.value["lines"]]
         text = "".join(f"{line}\n" for line in lines)
         write_bytes(self.folder / "gt" / "gt.txt", text.encode())
-        names: dict[int, str] = {}
-        for record in records:
-            names.update({int(id_): name for id_, name in record.value["categories"].items()})
-        listed = "".join(f"{id_},{name}\n" for id_, name in sorted(names.items()))
+        names = merged_categories(record.value["categories"] for record in records)
+        listed = "".join(f"{id_},{name}\n" for id_, name in names.items())
         write_bytes(self.folder / "gt" / "classes.txt", listed.encode())
         nothing = {"size": [0, 0], "scene": "", "stamp_ns": 0}
         first: Mapping[str, Any] = records[0].value if records else nothing

@@ -19,6 +19,7 @@ from sailenv_ros.recording.export.annotated_objects import (
     AnnotatedObjects,
     annotated_objects,
     categories_of,
+    merged_categories,
 )
 from sailenv_ros.recording.export.data_files import write_bytes, write_png
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
@@ -50,10 +51,8 @@ class YoloExport(DatasetFormat):
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write the labels, for which all categories must be known, and `data.yaml`."""
-        names: dict[int, str] = {}
-        for record in records:
-            names.update({int(id_): name for id_, name in record.value["categories"].items()})
-        classes = {id_: number for number, id_ in enumerate(sorted(names))}
+        names = merged_categories(record.value["categories"] for record in records)
+        classes = {id_: number for number, id_ in enumerate(names)}
         splits = []
         for record in records:
             split = record.split or UNSPLIT

@@ -53,6 +53,7 @@ ALL: dict[str, dict[str, Any]] = {
     "uniform_movement_random_bounce": {},
     "linear_waypoints": {"waypoints": CORNERS},
     "catmull_waypoints": {"waypoints": CORNERS},
+    "wrench": {"force": [1, 2, 3], "duration": 1.0},
 }
 
 

@@ -20,6 +20,7 @@ import sailenv_msgs.msg as msgs
 from sailenv_msgs.srv import GetObject
 from sailenv_msgs_py.agent_msgs import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.changes import changes_from_msg, changes_to_msg
+from sailenv_msgs_py.contact_msgs import contact_from_msg, contact_to_msg, contacts_to_msg
 from sailenv_msgs_py.frame_info import (
     camera_of_frame_info,
     frame_info_to_msg,
@@ -45,6 +46,7 @@ from sailenv_msgs_py.scene_msgs import (
 from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import RENDERED_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose
@@ -76,6 +78,18 @@ CATEGORIES = st.builds(
     name=NAMES,
     colour=st.tuples(*[st.integers(0, 255)] * 3),
 )
+CONTACTS = st.builds(
+    Contact,
+    first=st.integers(0, 2**16 - 1),
+    second=st.integers(0, 2**16 - 1),
+    mover=TEXTS,
+    position_m=TRIPLES,
+    normal=TRIPLES,
+    impulse_n_s=st.floats(0, 1e6),
+    depth_m=st.floats(-1, 1),
+    sim_time_ns=st.integers(0, MAX_STAMP_NS),
+)
+
 KEYPOINTS = st.builds(Keypoint, name=TEXTS, position_m=TRIPLES)
 INSTANCES = st.builds(
     Instance,
@@ -426,6 +440,11 @@ def test_agents(spec: AgentSpec, pose: Pose | None) -> None:
     assert agent_spec_from_msg(msg, pose=pose) == dataclasses.replace(spec, pose=pose)
 
 
+@given(CONTACTS)
+def test_contacts(contact: Contact) -> None:
+    assert contact_from_msg(contact_to_msg(contact)) == contact
+
+
 @given(BEHAVIOURS)
 def test_behaviours(behaviour: Mapping[str, Any]) -> None:
     msg = behaviour_to_msg(behaviour)
@@ -535,6 +554,16 @@ def test_every_field_of_every_message_is_drawn_above() -> None:
         max_examples=80, database=None, derandomize=True, deadline=None, phases=[Phase.generate]
     )
     quick(given(BEHAVIOURS.map(behaviour_to_msg))(note))()
+    quick(
+        given(
+            st.builds(
+                contacts_to_msg,
+                st.lists(CONTACTS, max_size=3),
+                sim_time_ns=st.integers(0, MAX_STAMP_NS),
+                revision=st.integers(0, 2**32 - 1),
+            )
+        )(note)
+    )()
     quick(given(scene_infos().map(scene_info_to_msg))(note))()
     quick(given(frames().map(frame_info_of))(note))()
     quick(given(observed_frames().map(objects_of))(note))()

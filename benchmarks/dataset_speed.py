@@ -1,0 +1,70 @@
+"""How fast data sets are made: frames a minute with all views, by 1 and 2 workers, and by Ray.
+
+Run ``python -m benchmarks.dataset_speed [--frames 400] [--folder DIR] [--ray]``. The recipe is
+single pictures of room_01 to room_03 at 640 x 480 with every view that is rendered, written as
+WebDataset; ``--formats`` names others. Each way makes a data set of its own; their hashes must be
+equal.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import tempfile
+import time
+from pathlib import Path
+
+import yaml
+
+from sailenv_ros.dataset import engine_of, load_job, make_dataset
+from sailenv_ros.frame import RENDERED_VIEWS
+
+CLIPS_OF_SHARD = 50
+
+
+def main() -> None:
+    """Print a row of a table for each way."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--frames", type=int, default=400)
+    parser.add_argument("--folder", type=Path, default=None, help="where to write (default: tmp)")
+    parser.add_argument("--formats", nargs="+", default=["webdataset"])
+    parser.add_argument("--views", nargs="+", default=list(RENDERED_VIEWS))
+    parser.add_argument("--ray", action="store_true", help="a local Ray cluster too")
+    args = parser.parse_args()
+    folder = Path(tempfile.mkdtemp(prefix="dataset_", dir=args.folder))
+    recipe = {
+        "version": 1,
+        "scenes": [{"scene": "room_01"}, {"scene": "room_02"}, {"scene": "room_03"}],
+        "clips": {"train": args.frames},
+        "clip": {"per_scene": CLIPS_OF_SHARD, "gap": 0.1},
+        "cameras": [{"type": "rule", "rule": "free_view"}],
+        "views": args.views,
+        "formats": args.formats,
+        "shard": {"clips": CLIPS_OF_SHARD},
+    }
+    path = folder / "speed.yaml"
+    path.write_text(yaml.safe_dump(recipe))
+    job = load_job(path)
+    ways = {"1 worker": (1, None), "2 workers": (2, None)}
+    if args.ray:
+        ways["Ray, 2 processors"] = (1, "local")
+    hashes = set()
+    try:
+        # Whatever is kept for the next time, such as baked light, is there after this.
+        make_dataset(job, folder / "first", engine_of(2, None))
+        print("| way | frames a minute | MB/s |\n|---|---:|---:|")
+        for name, (workers, ray) in ways.items():
+            began = time.monotonic()
+            made = make_dataset(job, folder / name, engine_of(workers, ray))
+            seconds = time.monotonic() - began
+            hashes.add(made.sha256)
+            rate, speed = 60.0 * made.frames / seconds, made.bytes / seconds * 1e-6
+            print(f"| {name} | {rate:.0f} | {speed:.0f} |", flush=True)
+            shutil.rmtree(folder / name)
+        print(f"hashes: {'equal' if len(hashes) == 1 else 'DIFFERENT'}")
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,170 @@
+"""`sailenv dataset`: make data sets by recipe, check them, look at them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from sailenv_ros.dataset import Progress
+
+__all__ = ["add_parser", "run"]
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add the command to those of `sailenv`."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "dataset", help="make data sets by recipe, check them, look at them"
+    )
+    parser.set_defaults(run=run)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    make = actions.add_parser("make", help="make a data set, or go on with one")
+    make.add_argument("recipe", type=Path, metavar="RECIPE", help="a YAML file")
+    make.add_argument(
+        "-o", "--output", metavar="DIR", help="a folder, or a URL that fsspec knows (s3://…)"
+    )
+    make.add_argument(
+        "--workers", type=_positive, default=1, metavar="N", help="processes here; default: 1"
+    )
+    make.add_argument(
+        "--ray", metavar="ADDRESS", help="have a Ray cluster make it: auto, local, ray://host:10001"
+    )
+    make.add_argument(
+        "--dry-run",
+        action="store_true",
+        help="check the recipe, make a few frames, say what all would cost",
+    )
+    verify = actions.add_parser(
+        "verify", help="compare files with their hashes, and shards with ones made anew"
+    )
+    verify.add_argument("dataset", metavar="DIR")
+    verify.add_argument(
+        "--shards", type=int, default=1, metavar="N", help="made anew; default: 1, 0: none"
+    )
+    verify.add_argument("--seed", type=int, default=0, help="of the choice among shards")
+    show = actions.add_parser("show", help="write a contact sheet of a data set's frames")
+    show.add_argument("dataset", type=Path, metavar="DIR")
+    show.add_argument("-o", "--output", type=Path, default=Path("dataset.png"), metavar="PNG")
+    show.add_argument("--split", default="", help="only that one")
+    show.add_argument("--frames", type=_positive, default=12, help="how many; default: 12")
+    actions.add_parser("schema", help="print the JSON Schema of recipes, for editors")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Carry out the action; 0 if all is well."""
+    return {"make": _make, "verify": _verify, "show": _show, "schema": _schema}[args.action](args)
+
+
+def _make(args: argparse.Namespace) -> int:
+    from sailenv_ros.dataset import engine_of, load_job, make_dataset
+
+    job = load_job(args.recipe)
+    if args.dry_run:
+        return _dry_run(job, args.workers)
+    if args.output is None:
+        print("sailenv dataset make: -o DIR is missing; it says where to", file=sys.stderr)
+        return 2
+    with _progress_bar() as tell:
+        made = make_dataset(job, args.output, engine_of(args.workers, args.ray), on_progress=tell)
+    print(
+        f"{args.output}: {made.frames} frames in {made.shards} shards, "
+        f"{made.bytes / 1e6:.1f} MB, SHA-256 {made.sha256}"
+    )
+    for name, counts in made.written.items():
+        left_out = made.left_out.get(name, {})
+        more = f"; left out: {_counts(left_out)}" if left_out else ""
+        print(f"  {name}: {_counts(counts)}{more}")
+    if made.skipped:
+        print(f"  clips that could not be made: {_counts(made.skipped)}")
+    return 0
+
+
+def _dry_run(job: Any, workers: int) -> int:
+    from sailenv_ros.dataset.estimating import estimate
+
+    cost = estimate(job)
+    print(
+        f"{cost.frames} frames: {cost.clips} clips in {cost.shards} shards; a scene is begun "
+        f"{cost.scenes_begun} times"
+    )
+    print(
+        f"about {cost.bytes / 1e6:.0f} MB and {cost.worker_s / 60.0 / workers:.1f} minutes with "
+        f"{workers} worker{'s' if workers > 1 else ''} on this machine, by {cost.sampled} frames "
+        "that were made; light that is not baked yet comes on top"
+    )
+    return 0
+
+
+def _verify(args: argparse.Namespace) -> int:
+    from sailenv_ros.dataset import verify_dataset
+
+    differences = verify_dataset(args.dataset, sample=args.shards, seed=args.seed)
+    for difference in differences:
+        print(f"{difference.path} {difference.why}")
+    if not differences:
+        print(f"{args.dataset}: all files are as they were written")
+    return 1 if differences else 0
+
+
+def _show(args: argparse.Namespace) -> int:
+    from sailenv_ros.dataset.showing import save_sheet
+
+    count = save_sheet(args.dataset, args.output, split=args.split, frames=args.frames)
+    print(f"{args.output}: {count} frames")
+    return 0
+
+
+def _schema(args: argparse.Namespace) -> int:
+    from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+
+    print(json.dumps(DatasetRecipe.model_json_schema(), indent=2))
+    return 0
+
+
+@contextmanager
+def _progress_bar() -> Iterator[Callable[[Progress], None]]:
+    """Yield what shows progress: a bar in a terminal, a line now and then elsewhere."""
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[told]}"),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    told_tenths = -1
+    with Bar(*columns, console=console, disable=not console.is_terminal) as bar:
+        task = bar.add_task("frames", total=None, told="")
+
+        def tell(progress: Progress) -> None:
+            nonlocal told_tenths
+            line = (
+                f"{progress.frames} of {progress.of_frames}, {progress.shards} of "
+                f"{progress.of_shards} shards, {progress.rate_hz * 60.0:.0f} a minute"
+            )
+            bar.update(task, total=progress.of_frames, completed=progress.frames, told=line)
+            tenths = 10 * progress.frames // max(1, progress.of_frames)
+            if not console.is_terminal and tenths > told_tenths:
+                told_tenths = tenths
+                print(line, file=sys.stderr, flush=True)
+
+        yield tell
+
+
+def _positive(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"must be 1 or more, got {text}")
+    return number
+
+
+def _counts(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{count} {what}" for what, count in counts.items()) or "nothing"

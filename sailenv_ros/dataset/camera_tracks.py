@@ -1,0 +1,222 @@
+"""Where a camera is in each frame of a clip: camera of a recipe + scene as it stands → poses.
+
+Every kind of camera is one function, in `TRACKS`. A pose is that of the camera's body (x forward,
+y left, z up) in the world.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.dataset.recipe_cameras import (
+    FixedCamera,
+    OrbitCamera,
+    Range,
+    RuleCamera,
+    WalkCamera,
+)
+from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.operations import WorldOperations
+from sailenv_ros.space.free_space import FreeSpace
+
+__all__ = ["NoPlace", "Track", "track_of", "turning"]
+
+ATTEMPTS = 200
+"""Places that are tried before a camera has none."""
+
+BODY_HEAD_M = 0.1
+"""Room above a camera's eye [m]."""
+
+LOOK_AHEAD_M = 0.6
+"""A walker faces the place where it is so much later [m]."""
+
+Track: TypeAlias = Sequence[Pose]
+"""A pose for each frame of a clip."""
+
+Times: TypeAlias = NDArray[np.float64]
+"""(T,) since the clip's first frame [s]."""
+
+Vector3: TypeAlias = NDArray[np.float64]
+
+
+class NoPlace(Exception):
+    """A camera finds no place in this scene; says why."""
+
+
+def track_of(
+    camera: Any, scene: WorldOperations, times_s: Times, random: np.random.Generator
+) -> Track:
+    """Return where a camera of a recipe is at each time.
+
+    Parameters
+    ----------
+    camera : FixedCamera, WalkCamera or OrbitCamera
+    scene : WorldOperations
+        Is asked for free space, for rays and for its objects, as they are now.
+    times_s : (T,) float64
+        Since the first frame [s].
+    random : Generator
+
+    Raises
+    ------
+    NoPlace
+        If there is none by the recipe's rules.
+    """
+    return TRACKS[type(camera)](camera, scene, times_s, random)
+
+
+def turning(start: Pose, camera: RuleCamera, times_s: Times, random: np.random.Generator) -> Track:
+    """Return the poses of a camera that turns about the vertical where it stands."""
+    roll, pitch, yaw = start.rpy_deg
+    turn = _within(camera.turn, random)
+    if turn == 0.0:
+        return [start] * len(times_s)
+    return [
+        Pose.from_rpy_deg(start.position_m, (roll, pitch, yaw + turn * time)) for time in times_s
+    ]
+
+
+def _fixed(
+    camera: FixedCamera, scene: WorldOperations, times_s: Times, random: np.random.Generator
+) -> Track:
+    return [camera.pose_at(camera.position)] * len(times_s)
+
+
+def _walk(
+    camera: WalkCamera, scene: WorldOperations, times_s: Times, random: np.random.Generator
+) -> Track:
+    space = _space(camera, scene)
+    height = _within(camera.eye_height, random)
+    pitch, speed = _within(camera.pitch, random), _within(camera.speed, random)
+    needed_m = speed * float(times_s[-1])
+    corners = [np.asarray(_random_eye(camera, space, random))]
+    length = 0.0
+    while length <= needed_m:
+        goal = _random_eye(camera, space, random)
+        way = space.path(corners[-1], goal)
+        length += float(np.linalg.norm(np.diff(way[:, :2], axis=0), axis=1).sum())
+        corners += list(way[1:])
+        if len(corners) > ATTEMPTS * 100:
+            raise NoPlace("no way of that length")
+    path = np.array(corners)
+    path[:, 2] = space.body.floor_m + height
+    return _along(path, speed * times_s, pitch)
+
+
+def _orbit(
+    camera: OrbitCamera, scene: WorldOperations, times_s: Times, random: np.random.Generator
+) -> Track:
+    for _ in range(ATTEMPTS):
+        target = None
+        if camera.point is not None:
+            middle = np.asarray(camera.point)
+        else:
+            target = _target(camera.object, scene, random)
+            middle = target.middle
+        away, turn = _within(camera.distance, random), _within(camera.turn, random)
+        elevation = math.radians(_within(camera.elevation, random))
+        azimuth = float(random.uniform(-math.pi, math.pi))
+        angles = azimuth + np.radians(turn) * times_s
+        flat, up = math.cos(elevation) * away, np.full_like(angles, math.sin(elevation) * away)
+        ways = np.stack([flat * np.cos(angles), flat * np.sin(angles), up], axis=1)
+        if _in_sight(scene, middle, middle + ways, target):
+            return [look_at(eye, middle) for eye in middle + ways]
+    raise NoPlace(f"no free sight of {camera.object or camera.point}")
+
+
+TRACKS: Mapping[type, Callable[..., Track]] = MappingProxyType(
+    {
+        FixedCamera: _fixed,
+        WalkCamera: _walk,
+        OrbitCamera: _orbit,
+    }
+)
+
+
+# -- places ------------------------------------------------------------------------------------
+
+
+def _within(ends: Range, random: np.random.Generator) -> float:
+    return float(random.uniform(*ends)) if ends[0] < ends[1] else ends[0]
+
+
+def _space(camera: WalkCamera, scene: WorldOperations) -> FreeSpace:
+    try:
+        return scene.free_space(camera.eye_height[1] + BODY_HEAD_M, camera.clearance)
+    except InvalidState as problem:
+        raise NoPlace(str(problem)) from None
+
+
+def _random_eye(camera: WalkCamera, space: FreeSpace, random: np.random.Generator) -> Vector3:
+    try:
+        pose = space.random_pose(seed=int(random.integers(2**63)))
+    except InvalidState as problem:
+        raise NoPlace(str(problem)) from None
+    x, y, floor_m = pose.position_m
+    return np.array([x, y, floor_m + _within(camera.eye_height, random)])
+
+
+def _along(path: NDArray[np.float64], distances_m: Times, pitch_deg: float) -> Track:
+    """Return poses at distances along a path, each facing where the way goes a little later."""
+    steps = np.diff(path, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    kept = np.append(True, lengths > 0.0)
+    path, at = path[kept], np.append(0.0, np.cumsum(lengths[lengths > 0.0]))
+
+    def places(distances: Times) -> NDArray[np.float64]:
+        return np.stack([np.interp(distances, at, path[:, axis]) for axis in range(3)], axis=1)
+
+    eyes, ahead = places(distances_m), places(np.minimum(distances_m + LOOK_AHEAD_M, at[-1]))
+    behind = places(np.maximum(np.minimum(distances_m, at[-1] - LOOK_AHEAD_M), 0.0))
+    ways = ahead - behind
+    yaws = np.degrees(np.arctan2(ways[:, 1], ways[:, 0]))
+    return [
+        Pose.from_rpy_deg(eye, (0.0, pitch_deg, yaw)) for eye, yaw in zip(eyes, yaws, strict=True)
+    ]
+
+
+# -- objects -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Target:
+    """An object to be seen: its middle in the world [m], and the ids of it and its parts."""
+
+    middle: Vector3
+    ids: tuple[int, ...]
+
+
+def _target(name: str | None, scene: WorldOperations, random: np.random.Generator) -> _Target:
+    """Return the object of that name, or one of that category."""
+    instances = scene.info.instances
+    named = [one for one in instances if one.name == name]
+    chosen = named or [one for one in instances if one.category == name]
+    if not chosen:
+        raise NoPlace(f"no object and no category {name!r} in the scene")
+    one = chosen[int(random.integers(len(chosen)))]
+    try:
+        body = scene.get_object(one.id)
+    except InvalidRequest:  # a part of a model, which is where its object is
+        body = scene.get_object(one.parent)
+    x, y, z = 0.5 * (np.asarray(one.low_m) + np.asarray(one.high_m))
+    middle = (body.pose.matrix() @ (x, y, z, 1.0))[:3]
+    ids = (one.id, *(other.id for other in instances if other.parent == one.id))
+    return _Target(middle, ids)
+
+
+def _in_sight(
+    scene: WorldOperations, middle: Vector3, eyes: NDArray[np.float64], target: _Target | None
+) -> bool:
+    """Say whether from all these places a point is seen, or the object around it."""
+    hits = scene.cast_rays(eyes, middle - eyes)
+    if target is None:
+        return bool((hits.distances_m >= np.linalg.norm(middle - eyes, axis=1)).all())
+    return bool(np.isin(hits.instance_ids, target.ids).all())

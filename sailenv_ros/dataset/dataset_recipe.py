@@ -1,0 +1,196 @@
+"""What a recipe of a data set may hold: `DatasetRecipe`, validated and immutable.
+
+A recipe says which scenes are seen by which cameras how often, and what is written of it. Units in
+a file are metres, seconds and degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
+
+from pydantic import Field
+
+from sailenv_ros.agents import MAX_RATE_HZ
+from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered
+from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
+from sailenv_ros.generation.rule_files import room_kinds
+from sailenv_ros.recording.export.formats import FORMATS, format_class
+from sailenv_ros.recording.export.splits import SPLITS
+from sailenv_ros.scene.field_types import Choice, Number, Several, Switch, Text
+from sailenv_ros.scene.fields import Name, Rule, SceneModel
+from sailenv_ros.scene.rules import distinct, distinct_values
+
+__all__ = ["ClipRecipe", "Light", "DatasetRecipe", "SceneRecipe", "ShardRecipe", "SplitSizes"]
+
+Light: TypeAlias = Literal["baked", "plain"]
+FlowChoice: TypeAlias = Literal["forward", "backward", "both"]
+
+MAX_CLIPS = 10_000_000
+MAX_CLIP_FRAMES = 100_000
+
+_Seed: TypeAlias = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
+_Clips: TypeAlias = Annotated[int, Number(least=0, most=MAX_CLIPS, whole=True)]
+
+
+def _one_source(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    given = [key for key in ("scene", "generate") if entry.get(key) is not None]
+    if not given:
+        yield (), "must say which scenes: give scene or generate"
+    elif len(given) > 1:
+        yield ("generate",), "cannot stand beside scene; give one of them"
+    elif "seeds" in entry and "generate" not in given:
+        yield ("seeds",), "is known beside generate alone"
+
+
+class SceneRecipe(SceneModel):
+    """Scenes of a data set: one by name or file, or many that are generated."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        distinct_values("splits"),
+        ordered("seeds"),
+        _one_source,
+    )
+
+    scene: str | None = Field(
+        default=None, description="a scene's name, or a file beside the recipe"
+    )
+    generate: Annotated[str, Choice(room_kinds())] | None = Field(
+        default=None, description="a kind of room to be generated, one scene of each seed"
+    )
+    seeds: Annotated[
+        tuple[_Seed, _Seed],
+        Several(2, "two numbers [first, last], or one for both", one_for_all=True),
+    ] = Field(default=(0, 0), description="first and last seed of generated scenes")
+    splits: tuple[Annotated[str, Choice(SPLITS)], ...] = Field(
+        default=(), description="splits that see these scenes; all if left out"
+    )
+
+
+class SplitSizes(SceneModel):
+    """How many clips each split has."""
+
+    train: _Clips = Field(default=0, description="clips for training")
+    val: _Clips = Field(default=0, description="clips for validation")
+    test: _Clips = Field(default=0, description="clips for testing")
+
+    @property
+    def by_name(self) -> dict[str, int]:
+        """Clips of each split that has any, in the order of `SPLITS`."""
+        return {name: getattr(self, name) for name in SPLITS if getattr(self, name)}
+
+
+class ClipRecipe(SceneModel):
+    """What is seen without a cut: frames of all cameras at a rate, from one moment on."""
+
+    frames: Annotated[int, Number(least=1, most=MAX_CLIP_FRAMES, whole=True)] = Field(
+        default=1, description="frames of each camera; 1: single pictures"
+    )
+    rate: Annotated[float, Number(above=0.0, most=MAX_RATE_HZ, unit="Hz")] = Field(
+        default=30.0, description="frames per simulated second [Hz]"
+    )
+    settle: Annotated[float, Number(least=0.0, most=60.0, unit="s")] = Field(
+        default=0.0, description="simulated time before the first frame [s]"
+    )
+    gap: Annotated[float, Number(least=0.0, most=600.0, unit="s")] = Field(
+        default=0.0, description="simulated time between two clips of a scene [s]"
+    )
+    per_scene: Annotated[int, Number(least=1, most=10_000, whole=True)] = Field(
+        default=10,
+        description="clips that are taken one after another before the scene begins anew, with "
+        "other random numbers; time goes on between them",
+    )
+
+
+class ShardRecipe(SceneModel):
+    """How the work is cut."""
+
+    clips: Annotated[int, Number(least=1, most=100_000, whole=True)] = Field(
+        default=50, description="clips of a shard, which one worker makes in one go"
+    )
+
+
+def _formats_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Say which formats lack views."""
+    views = entry.get("views", FIVE_VIEWS)
+    formats = entry.get("formats", ())
+    if not isinstance(views, list | tuple) or not isinstance(formats, list | tuple):
+        return
+    for index, name in enumerate(formats):
+        if not isinstance(name, str) or name not in FORMATS:
+            continue
+        needed = format_class(name)
+        lacking = [view for view in needed.views if view not in views]
+        if lacking:
+            yield ("formats", index), f"{name} needs the views {', '.join(lacking)}, too"
+        elif needed.any_of and not set(needed.any_of) & set(map(str, views)):
+            yield ("formats", index), f"{name} needs one of the views {', '.join(needed.any_of)}"
+
+
+def _splits_have_scenes(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Say which splits no scene is for."""
+    clips, scenes = entry.get("clips"), entry.get("scenes")
+    if not isinstance(scenes, list | tuple) or not scenes:
+        return
+    sizes = clips if isinstance(clips, Mapping) else {"train": clips}
+    for split in SPLITS:
+        size = sizes.get(split, 0)
+        if not isinstance(size, int) or size <= 0:
+            continue
+        named = [one.get("splits") or SPLITS for one in scenes if isinstance(one, Mapping)]
+        if named and not any(split in one for one in named):
+            yield ("scenes",), f"there is none for the split {split}; name it in splits of one"
+
+
+def _clips_above_zero(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    clips = entry.get("clips")
+    if isinstance(clips, Mapping) and all(clips.get(split) in (None, 0) for split in SPLITS):
+        yield ("clips",), "must have at least one clip in one split"
+
+
+class DatasetRecipe(SceneModel):
+    """A data set, as its author wrote it down."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        distinct("name", "cameras"),
+        distinct_values("views"),
+        distinct_values("formats"),
+        _formats_fit,
+        _splits_have_scenes,
+        _clips_above_zero,
+    )
+
+    version: Annotated[int, Number(least=1, most=1, whole=True)] = Field(
+        description="of this format: 1"
+    )
+    name: Name = Field(description="of the data set; the file's name if left out")
+    description: Annotated[str, Text(r"(?s).{0,4000}", "at most 4000 characters")] = Field(
+        default="", description="what it is for, told on its card"
+    )
+    seed: _Seed = Field(default=0, description="of everything that is random")
+    scenes: tuple[SceneRecipe, ...] = Field(
+        min_length=1, max_length=1000, description="what is seen"
+    )
+    light: Annotated[Light, Choice(get_args(Light))] = Field(
+        default="baked",
+        description="baked: with bounced light, which is baked first where that was not done yet; "
+        "plain: without",
+    )
+    clips: SplitSizes = Field(description="how many clips each split has")
+    clip: ClipRecipe = Field(default_factory=ClipRecipe, description="what a clip is")
+    cameras: tuple[AnyCamera, ...] = Field(
+        min_length=1, max_length=16, description="what sees each clip"
+    )
+    views: tuple[Annotated[str, Choice(RENDERED_VIEWS)], ...] = Field(
+        default=FIVE_VIEWS, min_length=1, description="what frames hold"
+    )
+    amodal: Annotated[bool, Switch()] = Field(
+        default=False, description="true: amodal masks, too, for formats that tell them"
+    )
+    formats: tuple[Annotated[str, Choice(tuple(FORMATS))], ...] = Field(
+        min_length=1, description="what is written, each into a folder of its own"
+    )
+    flow: Annotated[FlowChoice, Choice(get_args(FlowChoice))] = Field(
+        default="forward", description="of kitti and sintel: which flow is written"
+    )
+    shard: ShardRecipe = Field(default_factory=ShardRecipe, description="how the work is cut")

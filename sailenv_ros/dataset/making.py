@@ -1,0 +1,229 @@
+"""A recipe's job → a data set: what is missing is made, then what belongs to the whole."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sailenv_ros.dataset.card import write_card
+from sailenv_ros.dataset.engines import Engine
+from sailenv_ros.dataset.job import Job
+from sailenv_ros.dataset.manifest import (
+    MANIFEST,
+    FileHash,
+    ShardSummary,
+    dataset_hash,
+    done_shards,
+    summaries_of_files,
+)
+from sailenv_ros.dataset.merging import finish_formats
+from sailenv_ros.dataset.shard_plan import ShardPlan
+from sailenv_ros.dataset.stores import FolderStore, Store, open_store
+from sailenv_ros.errors import RecordingError
+
+__all__ = ["JOB_FILE", "RECIPE_FILE", "MadeDataset", "Progress", "job_of", "make_dataset"]
+
+JOB_FILE = "job.json"
+"""What decides on every byte; written first."""
+
+RECIPE_FILE = "recipe.yaml"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far a data set is.
+
+    Attributes
+    ----------
+    frames, of_frames : int
+        Frames that are there, counting those of unfinished shards, and all.
+    shards, of_shards : int
+        Shards that are whole, and all.
+    rate_hz : float
+        Frames a second since this began; 0 at first.
+    """
+
+    frames: int
+    of_frames: int
+    shards: int
+    of_shards: int
+    rate_hz: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MadeDataset:
+    """A data set that is whole.
+
+    Attributes
+    ----------
+    frames, shards : int
+    bytes : int
+        Of all its files [B].
+    sha256 : str
+        Of all names and contents.
+    written, left_out : mapping of str to mapping of str to int
+        Of each format.
+    skipped : mapping of str to int
+        Clips that could not be made, by the reason.
+    """
+
+    frames: int
+    shards: int
+    bytes: int
+    sha256: str
+    written: Mapping[str, Mapping[str, int]]
+    left_out: Mapping[str, Mapping[str, int]]
+    skipped: Mapping[str, int] = field(default_factory=dict)
+
+
+def make_dataset(
+    job: Job,
+    where: str | Path,
+    engine: Engine,
+    *,
+    on_progress: Callable[[Progress], None] = lambda progress: None,
+) -> MadeDataset:
+    """Make a data set, or go on with one.
+
+    Parameters
+    ----------
+    job : Job
+    where : str or Path
+        A folder, or a URL that `fsspec` knows.
+    engine : Engine
+    on_progress : callable
+        Called now and then.
+
+    Raises
+    ------
+    RecordingError
+        If another data set was begun there, or a file cannot be written.
+    SailenvError
+        If a scene cannot be built.
+    """
+    store = open_store(where)
+    _begin(job, store)
+    plan = ShardPlan(job.recipe)
+    done = done_shards(store)
+    began = time.monotonic()
+    before = sum(summary.frames for summary in done.values())
+
+    def tell(frames: int) -> None:
+        elapsed = time.monotonic() - began
+        on_progress(
+            Progress(
+                frames=min(before + frames, plan.frames),
+                of_frames=plan.frames,
+                shards=len(done),
+                of_shards=plan.shards,
+                rate_hz=frames / elapsed if elapsed > 0.0 else 0.0,
+            )
+        )
+
+    missing = [number for number in range(plan.shards) if number not in done]
+    tell(0)
+    if missing:
+        for summary in engine.run(job, str(where), missing, tell):
+            done[summary.shard] = summary
+    return _finish(job, store, dict(sorted(done.items())))
+
+
+def job_of(store: Store) -> Job:
+    """Return the job of a data set, whole or not.
+
+    Raises
+    ------
+    RecordingError
+        If there is none.
+    """
+    data = store.read(JOB_FILE)
+    if data is None:
+        raise RecordingError(f"{store.shown} holds no data set: it has no {JOB_FILE}")
+    return Job.from_json(data, f"{store.shown}/{JOB_FILE}")
+
+
+def _begin(job: Job, store: Store) -> None:
+    """Write down what is made, or compare it with what was begun."""
+    if store.read(JOB_FILE) is None:
+        if isinstance(store, FolderStore) and any(store.folder.iterdir()):
+            raise RecordingError(f"{store.shown} is not empty; nothing is overwritten")
+        store.write(RECIPE_FILE, job.recipe_text.encode())
+        store.write(JOB_FILE, job.to_json())
+        return
+    other, head = job_of(store).head, job.head
+    differing = [key for key in head if other.get(key) != head[key]]
+    if differing:
+        raise RecordingError(
+            f"{store.shown} was begun otherwise ({', '.join(differing)} differ); choose another "
+            "place"
+        )
+
+
+def _finish(job: Job, store: Store, shards: Mapping[int, ShardSummary]) -> MadeDataset:
+    known = store.read(MANIFEST)
+    if known is not None:
+        return _made(json.loads(known))
+    with store.staging() as folder:
+        finish_formats(job.recipe, store, shards, folder)
+        write_card(job, store, shards, folder)
+        files = summaries_of_files(folder)
+        store.publish(folder, list(files))
+    if isinstance(store, FolderStore):
+        store.remove_staging()
+    manifest = _manifest(job, shards, files)
+    store.write(MANIFEST, (json.dumps(manifest, indent=1) + "\n").encode())
+    return _made(manifest)
+
+
+def _manifest(
+    job: Job, shards: Mapping[int, ShardSummary], files: Mapping[str, FileHash]
+) -> dict[str, Any]:
+    everything = [*files.items(), *(pair for one in shards.values() for pair in one.files.items())]
+    made = [one.made for one in shards.values()]
+    return {
+        "name": job.recipe.name,
+        "sha256": dataset_hash(everything),
+        "frames": sum(one.frames for one in shards.values()),
+        "bytes": sum(one.bytes for _, one in everything),
+        "shards": [
+            {"shard": one.shard, "sha256": dataset_hash(one.files.items()), "frames": one.frames}
+            for one in shards.values()
+        ],
+        "files": {name: {"bytes": one.bytes, "sha256": one.sha256} for name, one in files.items()},
+        "written": _sums(one.written for one in shards.values()),
+        "left_out": _sums(one.left_out for one in shards.values()),
+        "skipped": _sum(one.skipped for one in shards.values()),
+        "job": job.fingerprint,
+        "machines": sorted({str(one.get("machine", "")) for one in made}),
+        "seconds": round(sum(float(one.get("seconds", 0.0)) for one in made), 3),
+    }
+
+
+def _made(manifest: Mapping[str, Any]) -> MadeDataset:
+    return MadeDataset(
+        frames=manifest["frames"],
+        shards=len(manifest["shards"]),
+        bytes=manifest["bytes"],
+        sha256=manifest["sha256"],
+        written=manifest["written"],
+        left_out=manifest["left_out"],
+        skipped=manifest["skipped"],
+    )
+
+
+def _sum(parts: Any) -> dict[str, int]:
+    total: dict[str, int] = {}
+    for part in parts:
+        for name, count in part.items():
+            total[name] = total.get(name, 0) + count
+    return dict(sorted(total.items()))
+
+
+def _sums(parts: Any) -> dict[str, dict[str, int]]:
+    listed = list(parts)
+    names = dict.fromkeys(name for part in listed for name in part)
+    return {name: _sum(part.get(name, {}) for part in listed) for name in names}

@@ -1,0 +1,128 @@
+"""What a data set holds, by number of bytes and SHA-256: summaries of shards, and of the whole."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sailenv_ros.dataset.stores import Store
+from sailenv_ros.errors import RecordingError
+
+__all__ = [
+    "MANIFEST",
+    "SHARDS_FOLDER",
+    "FileHash",
+    "ShardSummary",
+    "dataset_hash",
+    "done_shards",
+    "file_hash",
+    "summaries_of_files",
+]
+
+MANIFEST = "manifest.json"
+SHARDS_FOLDER = "shards"
+
+
+@dataclass(frozen=True, slots=True)
+class FileHash:
+    """A file's size [B] and SHA-256 in hexadecimal digits."""
+
+    bytes: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShardSummary:
+    """What one shard became.
+
+    Attributes
+    ----------
+    shard : int
+        Its number.
+    split : str
+    first_clip, clips, frames : int
+        Its clips; frames that were written.
+    files : mapping of str to FileHash
+        By their paths in the data set.
+    written, left_out : mapping of str to mapping of str to int
+        Of each format: how many of what, and how many not by the reason.
+    skipped : mapping of str to int
+        Clips that could not be made, by the reason.
+    made : mapping
+        On which machine and how fast; not a part of the content.
+    """
+
+    shard: int
+    split: str
+    first_clip: int
+    clips: int
+    frames: int
+    files: Mapping[str, FileHash]
+    written: Mapping[str, Mapping[str, int]]
+    left_out: Mapping[str, Mapping[str, int]]
+    skipped: Mapping[str, int]
+    made: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def path(self) -> str:
+        """Where it is kept in the data set."""
+        return f"{SHARDS_FOLDER}/{self.shard:05d}.json"
+
+    def to_json(self) -> bytes:
+        """Return the text of its file."""
+        return (json.dumps(asdict(self), indent=1) + "\n").encode()
+
+    @classmethod
+    def from_json(cls, data: bytes, path: str) -> ShardSummary:
+        """Read what `to_json` wrote.
+
+        Raises
+        ------
+        RecordingError
+            If it is something else.
+        """
+        try:
+            value = json.loads(data)
+            files = {name: FileHash(**one) for name, one in value.pop("files").items()}
+            return cls(files=files, **value)
+        except (ValueError, TypeError, KeyError, AttributeError) as problem:
+            raise RecordingError(f"{path} is no summary of a shard: {problem}") from None
+
+
+def summaries_of_files(folder: Path) -> dict[str, FileHash]:
+    """Return the summaries of all files below a folder, by their relative paths, sorted."""
+    found = {}
+    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        name = path.relative_to(folder).as_posix()
+        found[name] = FileHash(path.stat().st_size, file_hash(path))
+    return found
+
+
+def file_hash(path: Path) -> str:
+    """Return the SHA-256 of a file in hexadecimal digits."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def done_shards(store: Store) -> dict[int, ShardSummary]:
+    """Return the summaries of the shards that are whole, by their numbers."""
+    found = {}
+    for name in store.names(SHARDS_FOLDER):
+        path = f"{SHARDS_FOLDER}/{name}"
+        data = store.read(path)
+        if data is not None:
+            summary = ShardSummary.from_json(data, path)
+            found[summary.shard] = summary
+    return dict(sorted(found.items()))
+
+
+def dataset_hash(files: Iterable[tuple[str, FileHash]]) -> str:
+    """Return one SHA-256 of all files, their names and contents, in any order."""
+    digest = hashlib.sha256()
+    for name, one in sorted(files, key=lambda pair: pair[0]):
+        digest.update(f"{one.sha256}  {name}\n".encode())
+    return digest.hexdigest()

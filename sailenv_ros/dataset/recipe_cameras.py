@@ -1,0 +1,187 @@
+"""Cameras of a recipe: where they stand, where they look, how they go."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+
+from pydantic import Field
+
+from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.errors import InvalidEntry
+from sailenv_ros.scene.field_types import Choice, Number, Several, Text
+from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
+from sailenv_ros.scene.placing import Aimed
+from sailenv_ros.scene.rules import at_most_one, few_samples
+from sailenv_ros.scene.spec_picture import PictureSpec
+from sailenv_ros.validation import is_finite_number
+from sailenv_ros.viewpoints.rule_table import camera_rules, checked_rule
+
+__all__ = [
+    "AgentCamera",
+    "AnyCamera",
+    "CameraModel",
+    "FixedCamera",
+    "OrbitCamera",
+    "Range",
+    "RuleCamera",
+    "WalkCamera",
+    "ordered",
+]
+
+Range: TypeAlias = tuple[float, float]
+
+_Size: TypeAlias = Annotated[
+    int, Number(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
+]
+_Metres: TypeAlias = Annotated[float, Number(least=0.0, most=1e3, unit="m")]
+_Degrees: TypeAlias = Annotated[float, Number(least=-90.0, most=90.0, unit="deg")]
+_Turn: TypeAlias = Annotated[float, Number(least=-720.0, most=720.0, unit="deg/s")]
+_Speed: TypeAlias = Annotated[float, Number(least=0.0, most=20.0, unit="m/s")]
+_ENDS = Several(2, "two numbers [lowest, highest], or one for both", one_for_all=True)
+_LENS = CameraIntrinsics()
+
+
+def ordered(*keys: str) -> Rule:
+    """Make the rule that ranges begin with their lower end."""
+
+    def rule(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        for key in keys:
+            ends = entry.get(key)
+            if not isinstance(ends, list | tuple) or len(ends) != len(("lowest", "highest")):
+                continue
+            if all(map(is_finite_number, ends)) and ends[0] > ends[1]:
+                yield (key,), f"must begin with the lower end, got {list(ends)}"
+
+    return rule
+
+
+class CameraModel(SceneModel):
+    """What all cameras of a data set have; they see each clip at once."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        few_samples(MAX_SIZE_PX, {"width": _LENS.width, "height": _LENS.height}),
+    )
+
+    name: Annotated[
+        str,
+        Text(
+            r"[a-z][a-z0-9_]{0,62}",
+            "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
+        ),
+    ] = Field(default="camera", description="unique among the cameras of the recipe")
+    width: _Size = Field(default=640, description="of its pictures [px]")
+    height: _Size = Field(default=480, description="of its pictures [px]")
+    vertical_fov: Annotated[float, Number(least=1.0, most=170.0, unit="deg")] = Field(
+        default=_LENS.vertical_fov_deg, description="full vertical angle of view [deg]"
+    )
+    picture: PictureSpec = Field(
+        default_factory=PictureSpec, description="exposure, tone curve, noise of its pictures"
+    )
+
+    @property
+    def intrinsics(self) -> CameraIntrinsics:
+        """Of its pictures."""
+        return CameraIntrinsics(
+            width=self.width, height=self.height, vertical_fov_deg=self.vertical_fov
+        )
+
+
+class AgentCamera(CameraModel):
+    """Moves as an agent of the scene does, by its mover."""
+
+    type: Literal["agent"] = Field(description="as an agent of the scene moves")
+    agent: Name | None = Field(default=None, description="which; the scene's first if left out")
+
+
+class FixedCamera(CameraModel, Aimed):
+    """Stands where the recipe says."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (*CameraModel.rules, *Aimed.rules)
+
+    type: Literal["fixed"] = Field(description="at one place")
+    position: Position = Field(description="where it stands [m]")
+
+
+def _settings_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Say which settings the rule does not have, or not so."""
+    rule, settings = entry.get("rule"), entry.get("settings", {})
+    if rule not in camera_rules() or not isinstance(settings, Mapping):
+        return
+    try:
+        checked_rule(str(rule), settings)
+    except InvalidEntry as problem:
+        for name, why in problem.diagnostics:
+            yield ("settings", *name.split(".")), why
+
+
+class RuleCamera(CameraModel):
+    """Stands where a rule for cameras puts it, another place in each clip."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (*CameraModel.rules, ordered("turn"), _settings_fit)
+
+    type: Literal["rule"] = Field(description="where a rule puts it, such as free_view")
+    rule: Annotated[str, Choice(tuple(camera_rules()))] = Field(
+        description="free_view: anywhere in free space; object_view: an object fills a share of "
+        "the picture; coverage: all objects are seen"
+    )
+    settings: dict[str, Any] = Field(
+        default_factory=dict, description="of the rule, those that differ from its own"
+    )
+    turn: Annotated[tuple[_Turn, _Turn], _ENDS] = Field(
+        default=(0.0, 0.0), description="range of its turning about the vertical [deg/s]"
+    )
+
+
+class WalkCamera(CameraModel):
+    """Walks through free space on shortest paths from one random place to the next."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *CameraModel.rules,
+        ordered("eye_height", "pitch", "speed"),
+    )
+
+    type: Literal["walk"] = Field(description="along paths through free space")
+    eye_height: Annotated[tuple[_Metres, _Metres], _ENDS] = Field(
+        default=(0.8, 1.8), description="range of its height above the floor [m]"
+    )
+    pitch: Annotated[tuple[_Degrees, _Degrees], _ENDS] = Field(
+        default=(-10.0, 35.0), description="range of its angle below the horizon [deg]"
+    )
+    clearance: _Metres = Field(
+        default=0.25, description="nothing stands nearer to it, at any height [m]"
+    )
+    speed: Annotated[tuple[_Speed, _Speed], _ENDS] = Field(
+        default=(0.4, 1.0), description="range of speeds [m/s]"
+    )
+
+
+class OrbitCamera(CameraModel):
+    """Looks at an object, or at a point, from around it."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *CameraModel.rules,
+        at_most_one("object", "point"),
+        ordered("distance", "elevation", "turn"),
+    )
+
+    type: Literal["orbit"] = Field(description="around an object or a point")
+    object: Name | None = Field(
+        default=None, description="an object's name or a category; one of these each time"
+    )
+    point: Position | None = Field(default=None, description="instead of an object [m]")
+    distance: Annotated[tuple[_Metres, _Metres], _ENDS] = Field(
+        default=(0.8, 2.5), description="range of distances from its middle [m]"
+    )
+    elevation: Annotated[tuple[_Degrees, _Degrees], _ENDS] = Field(
+        default=(10.0, 50.0), description="range of angles above the horizon [deg]"
+    )
+    turn: Annotated[tuple[_Turn, _Turn], _ENDS] = Field(
+        default=(0.0, 0.0), description="range of its way around [deg/s]"
+    )
+
+
+AnyCamera: TypeAlias = Annotated[
+    AgentCamera | FixedCamera | RuleCamera | WalkCamera | OrbitCamera,
+    Field(discriminator="type"),
+]

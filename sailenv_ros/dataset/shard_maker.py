@@ -1,0 +1,293 @@
+"""Shards → files: builds the scenes, puts the cameras, takes the frames. One process each.
+
+What comes out depends on the job and on the shard's number alone.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.backends.selection import make_backend
+from sailenv_ros.bake.fingerprint import fingerprint
+from sailenv_ros.bake.light_files import load_baked, store_baked
+from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.dataset.camera_tracks import NoPlace, Track, track_of, turning
+from sailenv_ros.dataset.job import Job
+from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
+from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
+from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
+from sailenv_ros.dataset.shard_writer import ShardWriter
+from sailenv_ros.dataset.stores import Store
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.frame import Frame
+from sailenv_ros.generation.names import PREFIX
+from sailenv_ros.geometry import Pose
+from sailenv_ros.recording.lockstep import STEPS_PER_S, due_steps
+from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.space.free_space import named_generator
+from sailenv_ros.viewpoints import sample_cameras
+from sailenv_ros.world.world import World
+
+__all__ = ["ShardMaker"]
+
+
+class ShardMaker:
+    """Makes shards of one job, one after another; a context manager.
+
+    Parameters
+    ----------
+    job : Job
+    store : Store
+    on_frame : callable
+        Called after each frame.
+    """
+
+    def __init__(self, job: Job, store: Store, on_frame: Callable[[], None] = lambda: None) -> None:
+        self._job = job
+        self._recipe = job.recipe
+        self._plan = ShardPlan(job.recipe)
+        self._store = store
+        self._on_frame = on_frame
+        self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
+        self._folder = TemporaryDirectory(prefix="sailenv-scenes-")
+        self._baked = self._recipe.light == "baked"
+        self._library = SceneLibrary(baked_light=self._baked)
+        self._paths = {
+            name: self._written(f"{number}/{Path(name).name}", text)
+            for number, (name, text) in enumerate(job.scene_texts.items())
+        }
+
+    def close(self) -> None:
+        """Remove what was kept for the shards."""
+        self._folder.cleanup()
+
+    def __enter__(self) -> ShardMaker:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    def make(self, number: int) -> ShardSummary:
+        """Make a shard and put it into the data set; its summary is written last.
+
+        Raises
+        ------
+        SailenvError
+            If a scene cannot be built or a file not be written.
+        """
+        with self._store.staging() as folder:
+            summary = self.make_into(number, folder)
+            self._store.publish(folder, list(summary.files))
+        self._store.write(summary.path, summary.to_json())
+        return summary
+
+    def make_into(self, number: int, folder: Path) -> ShardSummary:
+        """Make a shard in an empty folder."""
+        began = time.monotonic()
+        shard = self._plan.shard(number)
+        writer = ShardWriter(folder, self._recipe, shard)
+        skipped: Counter[str] = Counter()
+        frames = 0
+        try:
+            for group in clip_groups(shard, self._recipe.clip.per_scene):
+                frames += self._take(group, writer, skipped)
+            writer.finish()
+        except BaseException:
+            writer.close()
+            raise
+        return ShardSummary(
+            shard=number,
+            split=shard.split,
+            first_clip=shard.clips[0].number,
+            clips=len(shard.clips),
+            frames=frames,
+            files=summaries_of_files(folder),
+            written={name: dict(one) for name, one in writer.written.items()},
+            left_out={name: dict(one) for name, one in writer.left_out.items()},
+            skipped=dict(skipped),
+            made={
+                "machine": platform.machine(),
+                "processors": os.cpu_count(),
+                "seconds": round(time.monotonic() - began, 3),
+            },
+        )
+
+    # -- one scene ---------------------------------------------------------------------------
+
+    def _take(self, group: tuple[Clip, ...], writer: ShardWriter, skipped: Counter[str]) -> int:
+        """Take all clips of a group from its scene; return how many frames they have."""
+        recipe = self._recipe
+        frames = 0
+        with self._scene(group[0]) as core:
+            if recipe.clip.settle:
+                core.step(round(recipe.clip.settle * STEPS_PER_S))
+            chosen = {
+                one.name: self._chosen(one, group, core)
+                for one in recipe.cameras
+                if isinstance(one, RuleCamera)
+            }
+            for clip in group:
+                if clip is not group[0]:
+                    core.step(round(recipe.clip.gap * STEPS_PER_S) or 1)
+                try:
+                    tracks = {
+                        one.name: self._track(one, clip, core, chosen.get(one.name, []))
+                        for one in recipe.cameras
+                    }
+                except NoPlace as problem:
+                    skipped[f"{clip.scene}: {problem}"] += 1
+                    continue
+                writer.begin_clip(clip)
+                frames += self._take_clip(tracks, core, writer)
+                writer.end_clip()
+        return frames
+
+    def _take_clip(
+        self, tracks: dict[str, Track | None], core: SimulationCore, writer: ShardWriter
+    ) -> int:
+        recipe = self._recipe
+        for camera in recipe.cameras:
+            core.register_agent(self._agent(camera, core))
+        due = due_steps(recipe.clip.rate, recipe.clip.frames)
+        frames = 0
+        for number, step in enumerate(due):
+            if number:
+                core.step(step - due[number - 1])
+            for camera in recipe.cameras:
+                track = tracks[camera.name]
+                if track is not None:
+                    core.set_pose(track[number], teleport=number == 0, agent=_agent_name(camera))
+                frame = core.capture(recipe.views, agent=_agent_name(camera))
+                writer.add(camera.name, self._kept(frame, camera))
+                frames += 1
+                self._on_frame()
+        for camera in recipe.cameras:
+            core.delete_agent(_agent_name(camera))
+        return frames
+
+    def _kept(self, frame: Frame, camera: AnyCamera) -> Frame:
+        """Return a frame as the formats get it: without what depends on machine and moment."""
+        assert frame.info is not None
+        if frame.info is not self._info[0]:
+            told = replace(frame.info, renderer="native renderer", scenes=(frame.info.scene,))
+            self._info = frame.info, told
+        changes: dict[str, Any] = {
+            "agent": camera.name,
+            "timings_s": {},
+            "info": self._info[1],
+        }
+        if not self._recipe.amodal:
+            changes["draw_alone"] = None
+        return replace(frame, **changes)
+
+    def _chosen(
+        self, camera: RuleCamera, group: tuple[Clip, ...], core: SimulationCore
+    ) -> list[Pose]:
+        """Return the places that a rule finds for the clips of a group, perhaps fewer."""
+        random = named_generator(self._recipe.seed, "rule", camera.name, str(group[0].number))
+        found = sample_cameras(
+            core.view_scene(camera.intrinsics),
+            camera.rule,
+            len(group),
+            seed=int(random.integers(2**63)),
+            settings=camera.settings,
+        )
+        return [one.pose for one in found]
+
+    def _track(
+        self, camera: AnyCamera, clip: Clip, core: SimulationCore, chosen: list[Pose]
+    ) -> Track | None:
+        """Return a camera's poses in a clip; None if an agent's mover has it."""
+        if isinstance(camera, AgentCamera):
+            return None
+        steps = due_steps(self._recipe.clip.rate, self._recipe.clip.frames)
+        times_s = np.array(steps) / STEPS_PER_S
+        random = named_generator(self._recipe.seed, "camera", camera.name, str(clip.number))
+        if not isinstance(camera, RuleCamera):
+            return track_of(camera, core, times_s, random)
+        if not chosen:
+            raise NoPlace(f"no more places for the camera {camera.name} by {camera.rule}")
+        return turning(chosen.pop(0), camera, times_s, random)
+
+    def _agent(self, camera: AnyCamera, core: SimulationCore) -> AgentSpec:
+        spec = AgentSpec(
+            name=_agent_name(camera),
+            intrinsics=camera.intrinsics,
+            rate_hz=0.0,
+            views=self._recipe.views,
+            following=False,
+            picture=camera.picture.to_settings(),
+        )
+        if not isinstance(camera, AgentCamera):
+            return spec
+        brought = {one.name: one for one in core.library.agents_of(core.world.scene)}
+        name = camera.agent or next(iter(brought), "")
+        if name not in brought:
+            raise UnknownName(f"agent of the scene {core.world.scene}", name, brought)
+        own = brought[name]
+        return replace(spec, following=own.following, mover=own.mover, pose=own.pose)
+
+    @contextmanager
+    def _scene(self, first: Clip) -> Iterator[SimulationCore]:
+        """Yield a scene that has just begun."""
+        random = named_generator(self._recipe.seed, "scene", str(first.number))
+        core = SimulationCore(
+            self._library,
+            self._path(first.scene),
+            make_backend("native", None),
+            mode="lockstep",
+            real_time_factor=1.0,
+            seed=int(random.integers(2**31)),
+            paused=False,
+        )
+        try:
+            if self._baked:
+                _bake_missing(core.world)
+            yield core
+        finally:
+            core.close()
+
+    def _path(self, scene: SceneSource) -> Path:
+        """Return the file of a scene; a generated one is made now."""
+        if scene.seed is None:
+            return self._paths.get(scene.name) or self._library.path(scene.name)
+        return self._library.path(f"{PREFIX}{scene.name}:{scene.seed}")
+
+    def _written(self, name: str, text: str) -> Path:
+        path = Path(self._folder.name) / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+
+def _agent_name(camera: AnyCamera) -> str:
+    """Return the name of a camera's agent, which no agent of a scene has."""
+    return f"dataset_{camera.name}"[:63]
+
+
+def _bake_missing(world: World) -> None:
+    """Give a world of a room its baked light, which is baked if it is not there."""
+    if world.contents.baked is not None or world.described is None:
+        return
+    if world.described.room is None:
+        return
+    snapshot = world.snapshot()
+    baked = load_baked(fingerprint(snapshot))
+    if baked is None:
+        baked = bake(snapshot)
+        store_baked(baked)
+    world.set_baked(baked)

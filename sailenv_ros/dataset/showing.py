@@ -1,0 +1,64 @@
+"""Data set → a sheet of some of its frames, all views beside each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from sailenv_ros.assets.categories import load_categories
+from sailenv_ros.dataset.dataset_reader import open_dataset
+from sailenv_ros.errors import RecordingError
+from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+
+__all__ = ["save_sheet"]
+
+TILE_WIDTH = 320
+SHOWN_VIEWS = ("rgb", "depth", "instance", "category", "flow", "normal")
+
+
+def save_sheet(folder: str | Path, path: str | Path, *, split: str = "", frames: int = 12) -> int:
+    """Write a contact sheet: a row for each of some frames from all over the data set.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Of the data set.
+    path : str or Path
+        A PNG or JPEG file.
+    split : str
+        Only that one; empty for all.
+    frames : int
+        At most so many.
+
+    Returns
+    -------
+    count : int
+        Frames that are shown.
+
+    Raises
+    ------
+    RecordingError
+        If the data set cannot be read, or has no frames.
+    """
+    pictures = {}
+    with open_dataset(folder, split) as dataset:
+        if not len(dataset):
+            raise RecordingError(f"{folder} has no frames")
+        numbers = np.unique(np.linspace(0, len(dataset) - 1, frames).astype(int))
+        first = dataset[0].frame
+        views = [view for view in SHOWN_VIEWS if view in first.views]
+        table = CategoryTable([*load_categories().values()])
+        if dataset.recipe.clip.frames == 1 and "flow" in views:
+            views.remove("flow")  # single pictures have none
+        for number in numbers.tolist():
+            one = dataset[number]
+            for view in views:
+                label = f"{one.number} {one.split} {one.frame.scene}" if view == "rgb" else view
+                picture = view_picture(view, one.frame[view], table=table)
+                # A label is a key: the same view stands in each row.
+                pictures[label + " " * (1 + number)] = picture
+    save_contact_sheet(path, pictures, columns=len(views), tile_width=TILE_WIDTH)
+    return len(numbers)

@@ -1,0 +1,96 @@
+"""Data set → whether its files are those that were written, and that the recipe makes."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from sailenv_ros.dataset.making import job_of
+from sailenv_ros.dataset.manifest import done_shards, file_hash
+from sailenv_ros.dataset.shard_maker import ShardMaker
+from sailenv_ros.dataset.stores import FolderStore, Store, open_store
+
+__all__ = ["Difference", "verify_dataset"]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A file that is not what it should be: its path, and why in words."""
+
+    path: str
+    why: str
+
+
+def verify_dataset(
+    where: str | Path,
+    *,
+    sample: int = 1,
+    seed: int = 0,
+    on_shard: Callable[[int, int], None] = lambda done, of: None,
+) -> list[Difference]:
+    """Compare all files with their hashes, and make some shards anew and compare those.
+
+    Parameters
+    ----------
+    where : str or Path
+    sample : int
+        How many shards are made anew.
+    seed : int
+        Of the choice among them.
+    on_shard : callable
+        Told how many shards were looked at, of how many.
+
+    Returns
+    -------
+    differences : list of Difference
+        None if all is well.
+
+    Raises
+    ------
+    RecordingError
+        If there is no data set, or this machine would make another one.
+    """
+    store = open_store(where)
+    job = job_of(store)
+    if sample:
+        job.check_machine()
+    done = done_shards(store)
+    chosen: Sequence[int] = []
+    if done and sample:
+        numbers = np.array(list(done))
+        random = np.random.default_rng(seed)
+        chosen = sorted(random.choice(numbers, min(sample, len(numbers)), replace=False).tolist())
+    found: list[Difference] = []
+    steps = len(done) + len(chosen)
+    for index, summary in enumerate(done.values(), 1):
+        for path, known in summary.files.items():
+            digest = _hash(store, path)
+            if digest is None:
+                found.append(Difference(path, "is not there"))
+            elif digest != known.sha256:
+                found.append(Difference(path, "has another content than was written"))
+        on_shard(index, steps)
+    with ShardMaker(job, store) as maker:
+        for index, number in enumerate(chosen, 1):
+            with TemporaryDirectory(prefix="sailenv-verify-") as folder:
+                again = maker.make_into(number, Path(folder))
+            known_files = done[number].files
+            for path in sorted({*known_files, *again.files}):
+                one, other = known_files.get(path), again.files.get(path)
+                if one is None or other is None or one.sha256 != other.sha256:
+                    found.append(Difference(path, "is another one when it is made anew"))
+            on_shard(len(done) + index, steps)
+    return found
+
+
+def _hash(store: Store, path: str) -> str | None:
+    if isinstance(store, FolderStore):
+        file = store.folder / path
+        return file_hash(file) if file.is_file() else None
+    data = store.read(path)
+    return None if data is None else hashlib.sha256(data).hexdigest()

@@ -1,0 +1,124 @@
+"""What touched what in the last steps: the engine's points of contact, summed for each pair.
+
+The engine after each step in, `Contact`s out. It is listened to only for a while after somebody
+has asked: reading the points of every step would cost more than the step where much is piled up.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sailenv_ros.contacts import Contact
+from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
+
+__all__ = ["MAX_WINDOW_S", "ContactLog"]
+
+MAX_WINDOW_S = 1.0
+"""Longest time back that can be asked for [s]."""
+
+LISTENS_S = 10.0
+"""Simulated time after a question for which each step is kept [s]."""
+
+Point = tuple[int, int, tuple[float, ...], tuple[float, ...], float, float]
+
+
+@dataclass(slots=True)
+class _Touch:
+    """A pair: its impulse so far, and where it was strongest."""
+
+    impulse_n_s: float
+    strongest_n_s: float
+    step: int
+    point: Point
+
+
+class ContactLog:
+    """Points of contact of the last steps.
+
+    Parameters
+    ----------
+    client : BulletClient
+    """
+
+    def __init__(self, client: BulletClient) -> None:
+        self._client = client
+        self._until_step = -1
+        self._steps: deque[tuple[int, list[Point]]] = deque(
+            maxlen=round(MAX_WINDOW_S * STEPS_PER_SECOND)
+        )
+
+    def after_step(self, step: int) -> None:
+        """Keep the points of the step that has just been done, its number counted from 1."""
+        if step <= self._until_step:
+            self._steps.append((step, self._points()))
+
+    def contacts(
+        self, step: int, count: int, ids: Mapping[int, int], movers: Mapping[int, str]
+    ) -> tuple[Contact, ...]:
+        """Return the pairs that touched in the last steps, in the order of their ids.
+
+        Parameters
+        ----------
+        step : int
+            How many steps there were.
+        count : int
+            How many of them are looked at, as far as they were kept; the last one always is.
+        ids : mapping of int to int
+            Instance ids by the engine's numbers of bodies.
+        movers : mapping of int to str
+            Names of movers by the engine's numbers of their bodies.
+        """
+        if not self._steps or self._steps[-1][0] != step:
+            self._steps.clear()
+            self._steps.append((step, self._points()))
+        self._until_step = step + round(LISTENS_S * STEPS_PER_SECOND)
+        touches: dict[tuple[int, int], _Touch] = {}
+        for at, points in self._steps:
+            if at > step - count:
+                for point in points:
+                    _add(touches, at, point)
+        found = [
+            _contact(touch, ids, movers)
+            for touch in touches.values()
+            if all(body in ids or body in movers for body in touch.point[:2])
+        ]
+        return tuple(sorted(found, key=lambda c: (c.first, c.second, c.mover)))
+
+    def _points(self) -> list[Point]:
+        return [
+            (p[1], p[2], p[5], p[7], p[8], p[9] / STEPS_PER_SECOND)
+            for p in self._client.getContactPoints()
+            if p[9] > 0.0 or p[8] <= 0.0
+        ]
+
+
+def _add(touches: dict[tuple[int, int], _Touch], step: int, point: Point) -> None:
+    impulse = point[5]
+    touch = touches.get(point[:2])
+    if touch is None:
+        touches[point[:2]] = _Touch(impulse, impulse, step, point)
+        return
+    touch.impulse_n_s += impulse
+    if impulse > touch.strongest_n_s:
+        touch.strongest_n_s, touch.step, touch.point = impulse, step, point
+
+
+def _contact(touch: _Touch, ids: Mapping[int, int], movers: Mapping[int, str]) -> Contact:
+    a, b, position, normal, distance_m, _ = touch.point
+    sign, first, second = 1.0, ids.get(a, 0), ids.get(b, 0)
+    if first > second:
+        sign, first, second = -1.0, second, first
+    x, y, z = position
+    nx, ny, nz = normal
+    return Contact(
+        first=first,
+        second=second,
+        mover=movers.get(a, movers.get(b, "")),
+        position_m=(x, y, z),
+        normal=(sign * nx, sign * ny, sign * nz),
+        impulse_n_s=touch.impulse_n_s,
+        depth_m=-distance_m,
+        sim_time_ns=sim_time_ns(touch.step),
+    )

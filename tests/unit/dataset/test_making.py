@@ -1,0 +1,237 @@
+"""Data sets are whole, the same on any number of workers, and go on after a break."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tarfile
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from pycocotools.coco import COCO
+from rosbags.highlevel import AnyReader
+
+from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset, verify_dataset
+from sailenv_ros.dataset.engines import HereEngine
+from sailenv_ros.dataset.manifest import summaries_of_files
+from sailenv_ros.errors import RecordingError, UnknownName
+from sailenv_ros.motion import motion
+from tests.support.waiting import until
+from tests.unit.dataset.conftest import written_recipe
+
+FRAMES = 7 * 3 * 2
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """Hashes of all files but those that tell of the machine."""
+    return {
+        name: one.sha256
+        for name, one in summaries_of_files(folder).items()
+        if name != "manifest.json" and not name.startswith("shards/")
+    }
+
+
+def test_workers_change_nothing(small: Path, tmp_path: Path) -> None:
+    """Two processes make the bytes that one makes."""
+    made = make_dataset(load_job(small.parent / "small.yaml"), tmp_path / "two", engine_of(2, None))
+    assert contents(tmp_path / "two") == contents(small)
+    assert made.sha256 == json.loads((small / "manifest.json").read_text())["sha256"]
+    assert (made.frames, made.shards) == (FRAMES, 4)
+
+
+def test_formats_hold_every_frame(small: Path) -> None:
+    """Readers that are not ours find as many frames and objects as were written."""
+    made = json.loads((small / "manifest.json").read_text())
+    annotations = images = 0
+    for split in ("train", "val"):
+        coco = COCO(str(small / "coco" / split / "annotations.json"))
+        images += len(coco.getImgIds())
+        annotations += len(coco.getAnnIds())
+        for one in coco.loadImgs(coco.getImgIds()):
+            picture = cv2.imread(str(small / "coco" / split / "images" / one["file_name"]))
+            assert picture.shape[:2] == (one["height"], one["width"])
+    assert (images, annotations) == (FRAMES, made["written"]["coco"]["annotations"])
+    names: list[str] = []
+    for path in sorted((small / "webdataset").iterdir()):
+        with tarfile.open(path) as tar:
+            names += tar.getnames()
+    assert len(names) == FRAMES * 6
+    assert len({name.partition(".")[0] for name in names}) == FRAMES
+    bags = sorted((small / "mcap").rglob("bag"))
+    assert len(bags) == 14
+    with AnyReader([bags[0]]) as reader:
+        assert sum(1 for connection in reader.connections if "/rgb" in connection.topic) == 1
+        assert reader.message_count > 3 * 6
+    flows = sorted((small / "sintel").rglob("flow/*/*.flo"))
+    assert len(flows) == 7 * 2 * 2
+    assert len(sorted((small / "sintel").rglob("flow_backward/*/*.flo"))) == 7 * 2 * 2
+    assert np.isfinite(cv2.readOpticalFlow(str(flows[0]))).any()
+
+
+def test_frames_are_read_as_they_were(small: Path) -> None:
+    """From tar files every value, the camera and the objects; splits are as the recipe says."""
+    with open_dataset(small) as dataset, open_dataset(small, "val") as val:
+        assert (len(dataset), len(val)) == (FRAMES, 12)
+        one, later = dataset[1], dataset[2]
+        assert (one.number, one.time, one.camera, one.split) == (1, 1, "around", "train")
+        with tarfile.open(small / "webdataset" / "train-00000.tar") as tar:
+            member = tar.extractfile("00000001.depth.npy")
+            assert member is not None
+            stored = np.load(io.BytesIO(member.read()))
+        np.testing.assert_array_equal(one.frame["depth"], stored)
+        lens = one.frame.camera.intrinsics
+        assert one.frame["rgb"].shape == (lens.height, lens.width, 3) == (48, 64, 3)
+        ids = {entry["id"] for entry in one.objects}
+        assert ids <= set(np.unique(one.frame["instance"]).tolist())
+        # The camera goes round at the recipe's rate: 20 to 40 degrees a second.
+        here, there = (np.array(f.frame.camera.pose.position_m) for f in (one, later))
+        angles = [np.degrees(np.arctan2(p[1], p[0])) for p in (here, there)]
+        assert 20.0 / 30.0 <= abs((angles[1] - angles[0] + 180.0) % 360.0 - 180.0) <= 40.0 / 30.0
+        assert later.frame.stamp_ns - one.frame.stamp_ns in (33_333_333, 33_333_334)
+        still = dataset[3]
+        assert still.camera == "still"
+        np.testing.assert_allclose(still.frame.camera.pose.position_m, (5.0, 0.0, 2.0))
+        with pytest.raises(UnknownName):
+            open_dataset(small, "test")
+
+
+def test_bags_give_frames_with_everything(tmp_path: Path) -> None:
+    """Where only bags are written, frames come from them, with states for motion."""
+    path = written_recipe(tmp_path, formats=["mcap"], clips={"train": 1})
+    make_dataset(load_job(path), tmp_path / "made", engine_of(1, None))
+    with open_dataset(tmp_path / "made") as dataset:
+        first, second = dataset[0].frame, dataset[1].frame
+        assert first.agent == "around"
+        moved = motion(second, first)
+        np.testing.assert_allclose(
+            moved.flow[moved.valid], second["flow"][moved.valid] * -second.dt_s, atol=1e-3
+        )
+
+
+def test_what_was_broken_off_goes_on(small: Path, tmp_path: Path) -> None:
+    """Shards that are whole stay; those that are not are made; nothing is left of the break."""
+    broken = tmp_path / "broken"
+    shutil.copytree(small, broken)
+    (broken / "manifest.json").unlink()
+    (broken / "shards" / "00001.json").unlink()
+    (broken / "webdataset" / "train-00001.tar").write_bytes(b"half")
+    before = (broken / "shards" / "00000.json").stat().st_mtime_ns
+    told = []
+    job = load_job(small.parent / "small.yaml")
+    make_dataset(job, broken, engine_of(1, None), on_progress=told.append)
+    assert contents(broken) == contents(small)
+    assert (broken / "shards" / "00000.json").stat().st_mtime_ns == before
+    assert (told[0].shards, told[-1].frames) == (3, FRAMES)
+
+
+def test_a_killed_run_loses_unfinished_shards_alone(small: Path, tmp_path: Path) -> None:
+    """kill -9 in the middle; the same command ends with the same bytes."""
+    folder = tmp_path / "killed"
+    command = [
+        sys.executable, "-m", "sailenv_ros.cli.main", "dataset", "make",
+        str(small.parent / "small.yaml"), "-o", str(folder), "--workers", "2",
+    ]  # fmt: skip
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    running = subprocess.Popen(
+        command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    try:
+        until(lambda: list(folder.glob("shards/*.json")), "the first shard", 120.0)
+    finally:
+        running.send_signal(signal.SIGKILL)
+        running.wait(10.0)
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert "42 frames in 4 shards" in done.stdout
+    assert contents(folder) == contents(small)
+
+
+class DyingEngine(HereEngine):
+    """Stops after two shards, as Ctrl-C does."""
+
+    def run(self, job, where, shards, on_frames):  # type: ignore[no-untyped-def]
+        for count, summary in enumerate(super().run(job, where, shards, on_frames)):
+            yield summary
+            if count == 1:
+                raise KeyboardInterrupt
+
+
+def test_an_unfinished_data_set_can_be_read(small: Path, tmp_path: Path) -> None:
+    """The frames of whole shards are there, and no others."""
+    job = load_job(small.parent / "small.yaml")
+    with pytest.raises(KeyboardInterrupt):
+        make_dataset(job, tmp_path / "part", DyingEngine())
+    with open_dataset(tmp_path / "part") as dataset:
+        assert len(dataset) == 4 * 3 * 2
+        assert dataset[-1].frame["rgb"].any()
+
+
+def test_another_recipe_does_not_go_on(small: Path, tmp_path: Path) -> None:
+    """A folder is of one recipe; one with other files is left alone."""
+    other = load_job(written_recipe(tmp_path, seed=6))
+    before = contents(small)
+    with pytest.raises(RecordingError, match=r"begun otherwise \(recipe differ\)"):
+        make_dataset(other, small, engine_of(1, None))
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine.txt").write_text("mine")
+    with pytest.raises(RecordingError, match="not empty"):
+        make_dataset(other, tmp_path / "full", engine_of(1, None))
+    assert contents(small) == before
+    assert sorted(path.name for path in (tmp_path / "full").iterdir()) == ["mine.txt"]
+
+
+def test_verifying_finds_what_was_changed(small: Path, tmp_path: Path) -> None:
+    """A changed byte, a missing file, and a shard that the recipe does not make."""
+    assert verify_dataset(small, sample=1) == []
+    broken = tmp_path / "broken"
+    shutil.copytree(small, broken)
+    tar = broken / "webdataset" / "train-00000.tar"
+    data = bytearray(tar.read_bytes())
+    data[3000] ^= 1
+    tar.write_bytes(data)
+    (broken / "coco" / "train" / "images" / "000003.png").unlink()
+    found = {one.path: one.why for one in verify_dataset(broken, sample=0)}
+    assert found == {
+        "webdataset/train-00000.tar": "has another content than was written",
+        "coco/train/images/000003.png": "is not there",
+    }
+    summary = broken / "shards" / "00003.json"
+    told = json.loads(summary.read_text())
+    path = next(name for name in told["files"] if name.startswith("webdataset"))
+    told["files"][path]["sha256"] = "0" * 64
+    summary.write_text(json.dumps(told))
+    found = {one.path: one.why for one in verify_dataset(broken, sample=4)}
+    assert found[path] == "is another one when it is made anew"
+
+
+def test_cameras_without_a_place_are_counted(tmp_path: Path) -> None:
+    """A clip whose camera finds nothing to look at is left out, and the card says so."""
+    cameras = [{"type": "orbit", "object": "no such thing", "width": 32, "height": 24}]
+    path = written_recipe(tmp_path, cameras=cameras, formats=["webdataset"], clips={"train": 3})
+    made = make_dataset(load_job(path), tmp_path / "made", engine_of(1, None))
+    reason = "optical: no object and no category 'no such thing' in the scene"
+    assert (made.frames, dict(made.skipped)) == (0, {reason: 3})
+    assert f"{reason}: 3" in (tmp_path / "made" / "README.md").read_text()
+
+
+def test_the_card_tells_what_is_there(small: Path) -> None:
+    """Counts on the card are those of the annotations."""
+    card = (small / "README.md").read_text()
+    assert "42 frames (30 train, 12 val) in 4 shards" in card
+    cubes = [
+        one
+        for split in ("train", "val")
+        for one in json.loads((small / "coco" / split / "annotations.json").read_text())[
+            "annotations"
+        ]
+        if one["instance_name"].endswith("cube")
+    ]
+    row = next(line for line in card.splitlines() if line.startswith("| cube |"))
+    assert int(row.split("|")[2]) == len(cubes)
+    assert cv2.imread(str(small / "pictures.jpg")) is not None

@@ -1,0 +1,78 @@
+"""Recipes are checked as scenes are: all errors at once, each with its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from sailenv_ros.dataset import RecipeError, load_job, load_recipe
+from tests.unit.dataset.conftest import written_recipe
+
+BAD = """\
+version: 1
+seeds: 3
+scenes:
+  - scene: no_such_room
+  - generate: kitchen
+    seeds: [9, 2]
+  - {}
+clips: {train: 0, val: 0}
+cameras:
+  - type: rule
+    rule: free_view
+    settings: {height: 3}
+  - type: orbit
+    distance: [3, 1]
+    width: 100000
+  - type: tripod
+views: [rgb]
+formats: [coco, sintel, cocoa]
+"""
+
+
+def test_all_errors_are_told_with_their_places(tmp_path: Path) -> None:
+    """Each line names file, line, column, field, and what is accepted."""
+    path = tmp_path / "bad.yaml"
+    path.write_text(BAD)
+    with pytest.raises(RecipeError) as caught:
+        load_recipe(path)
+    told = [(one.line, one.field) for one in caught.value.diagnostics]
+    assert told == [
+        (2, "seeds"),
+        (6, "scenes[1].seeds"),
+        (7, "scenes[2]"),
+        (8, "clips"),
+        (12, "cameras[0].settings.height"),
+        (14, "cameras[1].distance"),
+        (15, "cameras[1].width"),
+        (16, "cameras[2].type"),
+        (18, "formats[0]"),
+        (18, "formats[1]"),
+        (18, "formats[2]"),
+    ]
+    text = str(caught.value)
+    assert f"{path}:14:" in text
+    assert "did you mean 'seed'?" in text
+    assert "sintel needs the views depth, instance, too" in text
+    assert "did you mean 'coco'?" in text
+
+
+def test_a_scene_that_is_not_there_is_told(tmp_path: Path) -> None:
+    """By the entry that names it."""
+    path = written_recipe(tmp_path, scenes=[{"scene": "optikal"}, {"scene": "mine.yaml"}])
+    (tmp_path / "mine.yaml").write_text("version: 1\nobjects: 3\n")
+    with pytest.raises(RecipeError) as caught:
+        load_job(path)
+    first, second = caught.value.diagnostics
+    assert first.field == "scenes[0].scene"
+    assert "did you mean 'optical'?" in first.message
+    assert second.path.endswith("mine.yaml")
+    assert second.field == "objects"
+
+
+def test_splits_need_scenes(tmp_path: Path) -> None:
+    """A split that no scene is for is told before anything is made."""
+    path = written_recipe(tmp_path, scenes=[{"scene": "optical", "splits": ["train"]}])
+    with pytest.raises(RecipeError, match="there is none for the split val"):
+        load_recipe(path)
