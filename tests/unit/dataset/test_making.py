@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tarfile
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -235,3 +236,27 @@ def test_the_card_tells_what_is_there(small: Path) -> None:
     row = next(line for line in card.splitlines() if line.startswith("| cube |"))
     assert int(row.split("|")[2]) == len(cubes)
     assert cv2.imread(str(small / "pictures.jpg")) is not None
+
+
+def test_what_is_drawn_at_random_differs_from_scene_to_scene(tmp_path: Path) -> None:
+    """The same cube has another colour whenever its scene begins, and the same in both runs."""
+    changes: dict[str, Any] = {
+        "cameras": [{"type": "fixed", "position": [4, 0, 2], "look_at": [0, 0, 1.2]}],
+        "clips": {"train": 4},
+        "clip": {"frames": 1, "per_scene": 1},
+        "formats": ["webdataset"],
+        "randomise": [
+            {
+                "name": "paint", "type": "material", "of": "red cube",
+                "colour": {"uniform": [[0, 0, 0], [1, 1, 1]]},
+            }
+        ],
+    }  # fmt: skip
+    job = load_job(written_recipe(tmp_path, **changes))
+    for name in ("one", "two"):
+        make_dataset(job, tmp_path / name, engine_of(1, None))
+    assert contents(tmp_path / "one") == contents(tmp_path / "two")
+    with open_dataset(tmp_path / "one") as dataset:
+        cube = next(one["id"] for one in dataset[0].objects if one["name"] == "red cube")
+        colours = [one.frame["rgb"][one.frame["instance"] == cube].mean(axis=0) for one in dataset]
+    assert np.abs(np.diff(colours, axis=0)).max(axis=1).min() > 5.0
