@@ -91,7 +91,10 @@ class AgentCamera(CameraModel):
     """Moves as an agent of the scene does, by its mover."""
 
     type: Literal["agent"] = Field(description="as an agent of the scene moves")
-    agent: Name | None = Field(default=None, description="which; the scene's first if left out")
+    agent: Name | None = Field(
+        default=None,
+        description="which; if left out the scene's first, or its first mover where it has none",
+    )
 
 
 class FixedCamera(CameraModel, Aimed):

@@ -235,9 +235,11 @@ class ShardMaker:
         if not isinstance(camera, AgentCamera):
             return spec
         brought = {one.name: one for one in core.library.agents_of(core.world.scene)}
-        name = camera.agent or next(iter(brought), "")
+        if camera.agent is None and not brought:
+            return replace(spec, following=True)  # where the scene's first mover goes
+        name = camera.agent or next(iter(brought))
         if name not in brought:
-            raise UnknownName(f"agent of the scene {core.world.scene}", name, brought)
+            raise UnknownName("agent", name, brought)
         own = brought[name]
         return replace(spec, following=own.following, mover=own.mover, pose=own.pose)
 

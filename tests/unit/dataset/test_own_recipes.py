@@ -52,11 +52,11 @@ def pose(folder: Path) -> None:
     """Projected models of BOP's poses lie in the boxes that the truth gives for them."""
     root = folder / "bop"
     models = {
-        int(path.stem[4:]): trimesh.load_mesh(path, process=False).vertices
+        int(path.stem[4:]): np.asarray(trimesh.load_mesh(path, process=False).vertices)
         for path in (root / "models").glob("obj_*.ply")
     }
     scenes = sorted((root / "train").iterdir())
-    poses = 0
+    gaps: list[float] = []
     for scene in scenes:
         cameras = json.loads((scene / "scene_camera.json").read_text())
         infos = json.loads((scene / "scene_gt_info.json").read_text())
@@ -74,10 +74,12 @@ def pose(folder: Path) -> None:
                 # A canvas of three pictures holds the whole of it.
                 if left > -96 and top > -72 and left + width < 192 and top + height < 144:
                     low, high = pixels.min(axis=0), pixels.max(axis=0)
-                    np.testing.assert_allclose(low, (left, top), atol=1.5)
-                    np.testing.assert_allclose(high, (left + width, top + height), atol=1.5)
-                    poses += 1
-    assert poses > 3
+                    # Pixels have whole sides, and a tip may be thinner than one.
+                    gaps += [left - low[0], top - low[1]]
+                    gaps += [high[0] - left - width, high[1] - top - height]
+    assert len(gaps) > 4 * 3
+    assert min(gaps) > -1.0
+    assert np.median(np.abs(gaps)) < 1.0
 
 
 def flow(folder: Path) -> None:
@@ -115,6 +117,7 @@ def test_every_recipe_has_a_check() -> None:
     assert {path.stem for path in RECIPES} == set(CHECKS)
 
 
+@pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")  # of pycocotools
 @pytest.mark.parametrize("path", RECIPES, ids=lambda path: path.stem)
 def test_a_recipe_is_made_and_read(path: Path, tmp_path: Path) -> None:
     """As it is it has no fault; its smallest form is what its format's loader takes."""
