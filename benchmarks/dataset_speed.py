@@ -45,7 +45,7 @@ def main() -> None:
     path = folder / "speed.yaml"
     path.write_text(yaml.safe_dump(recipe))
     job = load_job(path)
-    ways = {"1 worker": (1, None), "2 workers": (2, None)}
+    ways: dict[str, tuple[int, str | None]] = {"1 worker": (1, None), "2 workers": (2, None)}
     if args.ray:
         ways["Ray, 2 processors"] = (1, "local")
     hashes = set()

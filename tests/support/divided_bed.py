@@ -13,7 +13,7 @@ LEFT, RIGHT = "left pillow", "right pillow"
 def shifted_box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> Mesh:
     box = box_mesh(size)
     return Mesh(
-        positions=box.positions + np.float32(centre),
+        positions=box.positions + np.array(centre, np.float32),
         normals=box.normals,
         uvs=box.uvs,
         triangles=box.triangles,

@@ -11,7 +11,7 @@ constexpr float FAR_M = 1e9f;  // depth that stands for no surface: its square i
 constexpr int64_t TILE = 16;   // edge of the tiles that are left out where all around is baked
 constexpr int64_t TAPS = 12;
 constexpr int64_t MOST_STEP = 4;  // from one sample to the next of the second average
-constexpr int64_t PAD = 16;  // samples beyond both ends of a row that count as on no surface
+constexpr int64_t PAD = 16;       // samples beyond both ends of a row that count as on no surface
 constexpr int64_t INSTANCES = 65536;
 
 struct Settings {
@@ -214,8 +214,8 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
         for (int64_t u = 0; u < s.columns; u += 8) {
             const f8 own = load(inverse_row + u);
             const i8 mean = tiles[u / TILE]
-                                ? mean_of_four(inverse_row + u - step, shares + PAD + u - step, step,
-                                               own, set.same_surface)
+                                ? mean_of_four(inverse_row + u - step, shares + PAD + u - step,
+                                               step, own, set.same_surface)
                                 : splat(255);
             store(mean_row + u, as_float(mean));
         }
@@ -234,9 +234,10 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
             const float* of_means = means + i * stride + PAD + u;
             const f8 own = load(of_inverse);
             const int64_t next = step * stride;
-            store_bytes(target,
-                        mean_of_four(of_inverse - next, of_means - next, next, own, set.same_surface),
-                        count);
+            store_bytes(
+                target,
+                mean_of_four(of_inverse - next, of_means - next, next, own, set.same_surface),
+                count);
         }
     }
 }
@@ -278,11 +279,10 @@ SAILENV_KERNEL(ambient_visibility)
     });
     uint8_t* means = raw.get() + rows * columns;
     const auto average = [&](const uint8_t* from, int64_t apart, uint8_t* to) {
-        sailenv::parallel_for(
-            threads, rows, TILE, [&](int64_t first, int64_t last, int64_t slot) {
-                float* scratch = bands.get() + slot * band;
-                average_rows(samples, set, from, apart, first, last, scratch, to);
-            });
+        sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t slot) {
+            float* scratch = bands.get() + slot * band;
+            average_rows(samples, set, from, apart, first, last, scratch, to);
+        });
     };
     average(raw.get(), 1, means);
     average(means, step, visibility);

@@ -119,8 +119,9 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
              mz = 2.0f * facing * nz - vz;
     Colour8 seen;
     if (light.baked && light.reflecting) {
-        seen = mirrored_room(light, splat(light.reflection_table[part.id]), s.eye[0] + rx * depth, s.eye[1] + ry * depth,
-                             s.eye[2] + rz * depth, mx, my, mz, splat(part.roughness));
+        seen = mirrored_room(light, splat(light.reflection_table[part.id]), s.eye[0] + rx * depth,
+                             s.eye[1] + ry * depth, s.eye[2] + rz * depth, mx, my, mz,
+                             splat(part.roughness));
     } else {
         const Colour8 sky = analytic_sky(light, mz);
         seen = {light.ambient[0] + light.sky_share * sky.r,

@@ -204,7 +204,8 @@ LANES_INLINE int32_t stands_out(int32_t own, int32_t before, int32_t after) {
     return unlike <= least ? least : 0;
 }
 
-// Tells if a pixel's surface lies off that between its neighbours: over a plane 1 / depth is linear.
+// Tells if a pixel's surface lies off that between its neighbours: over a plane 1 / depth is
+// linear.
 LANES_INLINE bool bends(const float* surface, int64_t next) {
     const float own = 1.0f / surface[0];
     const float both = 1.0f / surface[-2 * next] + 1.0f / surface[2 * next];
@@ -305,8 +306,8 @@ void smooth_row(const Edges& e, int64_t v, uint8_t* three) {
 
 }  // namespace
 
-// `visibility` may be null, and then `inverse` too; without it `surface` may be. `least_contrast` 0 leaves edges
-// as they are. `rgb` is (height, width, 3).
+// `visibility` may be null, and then `inverse` too; without it `surface` may be. `least_contrast` 0
+// leaves edges as they are. `rgb` is (height, width, 3).
 SAILENV_KERNEL(make_picture)
 (int64_t threads, int64_t height, int64_t width, const uint16_t* radiance, const uint8_t* table,
  const uint8_t* visibility, const float* inverse, const float* surface, double same_surface,
