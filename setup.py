@@ -70,7 +70,7 @@ BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
 # What some formats of data sets and remote places for them need, and the engine of many machines.
 DATASET = ["fsspec>=2024.2", "pyarrow>=15"]
-RAY = [*DATASET, "ray>=2.40"]
+RAY = ["fsspec>=2024.2", "pyarrow>=15", "ray>=2.40"]
 DEV = [
     # The notebook among the examples is executed by a test.
     "ipykernel>=6.29",
@@ -89,17 +89,19 @@ DEV = [
     # A server of S3's protocol on this machine, for the tests of data sets at remote places.
     "flask>=3.0",
     "flask-cors>=5.0",
+    "fsspec>=2024.2",
     "moto[s3]>=5",
     "mujoco>=3.3",
     "mypy",
     "onnxruntime>=1.17",
     # Drives Debian's Chromium, for the tests of the web viewer.
     "playwright>=1.40",
+    "pyarrow>=15",
     "pycocotools",
     "pytest>=8.0",
     "pytest-timeout",
     "pytest-xdist",
-    *RAY,
+    "ray>=2.40",
     "rosbags",
     "ruff",
     "s3fs>=2024.2",

@@ -15,7 +15,8 @@ __all__ = ["add_parser", "run"]
 
 _FORMATS = (
     *("png", "coco", "kitti", "sintel", "flo", "movi", "tapvid", "mp4"),
-    *("bop", "mot", "yolo", "yolo_segments", "voc", "webdataset", "parquet", "mcap", "lve"),
+    *("bop", "mot", "yolo", "yolo_segments", "voc", "webdataset", "parquet"),
+    *("lerobot", "mcap", "lve"),
 )
 
 

@@ -112,7 +112,7 @@ class ShardRecipe(SceneModel):
 
 
 def _formats_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Say which formats lack views."""
+    """Say which formats lack views, or have too many cameras."""
     views = entry.get("views", FIVE_VIEWS)
     formats = entry.get("formats", ())
     if not isinstance(views, list | tuple) or not isinstance(formats, list | tuple):
@@ -126,6 +126,9 @@ def _formats_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ..
             yield ("formats", index), f"{name} needs the views {', '.join(lacking)}, too"
         elif needed.any_of and not set(needed.any_of) & set(map(str, views)):
             yield ("formats", index), f"{name} needs one of the views {', '.join(needed.any_of)}"
+        cameras = entry.get("cameras")
+        if needed.of_one_camera and isinstance(cameras, list | tuple) and len(cameras) > 1:
+            yield ("formats", index), f"{name} takes one camera, got {len(cameras)}"
 
 
 def _splits_have_scenes(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:

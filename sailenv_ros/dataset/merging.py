@@ -8,13 +8,21 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
-from sailenv_ros.dataset.shard_writer import RECORDS_FOLDER
 from sailenv_ros.dataset.stores import Store
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.recording.export.dataset_format import Record
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record
 from sailenv_ros.recording.export.formats import format_class
 
-__all__ = ["finish_formats", "frame_records"]
+__all__ = ["RECORDS_FOLDER", "merges", "finish_formats", "frame_records"]
+
+
+RECORDS_FOLDER = "records"
+"""Folder of the data set with a file of each shard: a line of JSON for each frame."""
+
+
+def merges(kind: type[DatasetFormat]) -> bool:
+    """Say whether a format writes something once all shards are known."""
+    return not kind.is_sequence and (not kind.is_shard or kind.needs_records)
 
 
 def frame_records(store: Store, shards: Iterable[int]) -> Iterator[dict[str, Any]]:
@@ -41,7 +49,7 @@ def finish_formats(
 ) -> None:
     """Write into a folder what the formats of a recipe write at their end."""
     kinds = {name: format_class(name) for name in recipe.formats}
-    kinds = {name: kind for name, kind in kinds.items() if not (kind.is_sequence or kind.is_shard)}
+    kinds = {name: kind for name, kind in kinds.items() if merges(kind)}
     records: dict[str, list[Record]] = {name: [] for name in kinds}
     for line in frame_records(store, shards) if kinds else ():
         for name in kinds:

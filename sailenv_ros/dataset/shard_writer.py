@@ -16,6 +16,7 @@ import cv2
 import numpy as np
 
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.merging import RECORDS_FOLDER, merges
 from sailenv_ros.dataset.shard_plan import Clip, Shard
 from sailenv_ros.frame import Frame
 from sailenv_ros.recording.export.annotated_objects import NO_CATEGORY
@@ -24,9 +25,6 @@ from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Rec
 from sailenv_ros.recording.export.formats import format_class
 
 __all__ = ["PICTURES_FOLDER", "RECORDS_FOLDER", "ShardWriter"]
-
-RECORDS_FOLDER = "records"
-"""Folder of the data set with a file of each shard: a line of JSON for each frame."""
 
 PICTURES_FOLDER = "pictures"
 """Folder with a small picture of each shard's first frames, for the data set's card."""
@@ -156,7 +154,7 @@ class ShardWriter:
             if not own:
                 record = Record(number=sequence.count, split="", value=result.record)
                 sequence.records[name].append(record)
-            elif result.record is not None and not type(made).is_shard:
+            elif result.record is not None and merges(type(made)):
                 kept[name] = result.record
         self._lines[sample.number] = json.dumps(
             {

@@ -16,7 +16,7 @@ from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 __all__ = ["save_sheet"]
 
 TILE_WIDTH = 320
-SHOWN_VIEWS = ("rgb", "depth", "instance", "category", "flow", "normal")
+SHOWN_VIEWS = ("rgb", "depth", "instance", "category", "flow", "normals")
 
 
 def save_sheet(folder: str | Path, path: str | Path, *, split: str = "", frames: int = 12) -> int:

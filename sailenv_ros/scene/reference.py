@@ -26,6 +26,7 @@ _TITLES = {
     "CurtainSpec": "Curtains",
     "DirectionalLightSpec": "A directional light",
     "DoorSpec": "A door",
+    "DoorwaySpec": "A doorway",
     "FloorAreaSpec": "A floor area",
     "EnvironmentSpec": "The environment",
     "MaterialSpec": "A material",

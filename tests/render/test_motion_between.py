@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from numpy.typing import NDArray
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
@@ -20,7 +21,7 @@ from sailenv_ros.motion import motion
 from sailenv_ros.simulation import Simulation
 
 GAPS = (1, 8, 32)
-VIEWS = ("depth", "instance", "object_coords")
+VIEWS = ("depth", "instance", "object_coords", "normals")
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +54,15 @@ def test_motion_is_the_arithmetic_s_over_any_gap_in_both_directions(
         both_ways(seen[0][0], seen[gap][0])
 
 
+def cosines(frame: Frame) -> NDArray[np.float64]:
+    """Return the cosine between each pixel's ray and the surface's normal, (H, W)."""
+    lens = frame.camera.intrinsics
+    v, u = np.mgrid[: lens.height, : lens.width]
+    rays = np.stack([u, v, np.ones_like(u)], axis=-1) @ np.linalg.inv(lens.K).T
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    return np.asarray((rays * frame["normals"]).sum(axis=-1), np.float64)
+
+
 def compare(one: Frame, other: Frame, truth: MotionField, now: Instant, then: Instant) -> None:
     moved = motion(one, other)
     assert moved.duration_s == pytest.approx((other.stamp_ns - one.stamp_ns) * 1e-9)
@@ -62,8 +72,10 @@ def compare(one: Frame, other: Frame, truth: MotionField, now: Instant, then: In
     np.testing.assert_allclose(moved.flow[sure], -truth.displacement_px[sure], atol=0.01)
     surface = same & (truth.instance > 0)
     error = np.abs(moved.scene_flow[surface] + truth.moved_m[surface]).max(axis=-1)
-    assert np.quantile(error, 0.999) < 1e-5
     # Of a surface seen nearly edge-on a rounding of the depth is a longer way along it.
+    facing = np.abs(cosines(one)[surface]) > 0.1
+    assert facing.mean() > 0.95
+    assert error[facing].max() < 1e-5
     assert error.max() < 5e-5
     still = np.isin(one["instance"], unmoved(now, then, one))
     assert not moved.scene_flow[still].any()

@@ -118,6 +118,10 @@ class DatasetFormat(ABC):
         True if it is a sequence of which several fit into one folder, by `Sample.sequence`.
     is_shard : bool
         True if its files hold many frames each, of one split: large data sets have several.
+    needs_records : bool
+        True if a format that `is_shard` has something to write once all shards are known.
+    of_one_camera : bool
+        True if it cannot hold what several cameras see at once.
     part : int
         Of a format that `is_shard`: number of the part that this writes.
     flow : {'forward', 'backward', 'both'}
@@ -131,6 +135,8 @@ class DatasetFormat(ABC):
     needs_neighbours: ClassVar[bool] = False
     has_sequences: ClassVar[bool] = False
     is_shard: ClassVar[bool] = False
+    needs_records: ClassVar[bool] = False
+    of_one_camera: ClassVar[bool] = False
     flow: FlowDirection = "forward"
     part: int = 0
 

@@ -29,6 +29,7 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "voc": "voc_export.VocExport",
         "webdataset": "webdataset_export.WebDatasetExport",
         "parquet": "parquet_export.ParquetExport",
+        "lerobot": "lerobot_export.LeRobotExport",
         "mcap": "mcap_export.McapExport",
     }
 )
