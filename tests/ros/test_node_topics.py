@@ -104,6 +104,12 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
         f"{NAMESPACE}/agent/frame_info": "sailenv_msgs/msg/FrameInfo",
         f"{NAMESPACE}/agent/pose": "geometry_msgs/msg/PoseStamped",
         f"{NAMESPACE}/scene_info": "sailenv_msgs/msg/SceneInfo",
+        f"{NAMESPACE}/contacts": "sailenv_msgs/msg/Contacts",
+        **(
+            {f"{NAMESPACE}/free_space": "nav_msgs/msg/OccupancyGrid"}
+            if find_spec("nav_msgs")
+            else {}
+        ),
         "/clock": "rosgraph_msgs/msg/Clock",
     }
 

@@ -1,0 +1,179 @@
+"""Whether variety helps: a small net learns from generated rooms, or from three fixed ones.
+
+    python -m benchmarks.variety make DIR         # three data sets, with sailenv_ros
+    judges/bin/python benchmarks/variety.py train DIR      # with PyTorch, without sailenv_ros
+
+Both nets are the same, begin with the same numbers and see as many frames in as many steps; both
+are tested on rooms that neither has seen. Frames are 160 x 120, light is plain (not baked).
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tarfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+CLASSES = ("chair", "bed", "couch", "window", "door")
+KINDS = ("living_room", "bedroom")
+FRAMES, TEST_FRAMES = 2000, 400
+ROOMS, TEST_ROOMS = 100, 20
+STEPS, BATCH = 1500, 16
+
+
+def make(folder: Path) -> None:
+    """Make the three data sets, each into a folder of its own."""
+    import yaml
+
+    from sailenv_ros.dataset import engine_of, load_job, make_dataset
+
+    def generated(first: int, count: int) -> list[dict[str, Any]]:
+        half = count // len(KINDS)
+        return [{"generate": kind, "seeds": [first, first + half - 1]} for kind in KINDS]
+
+    rooms = [{"scene": f"room_0{number}"} for number in (1, 2, 3)]
+    for name, scenes, frames in (
+        ("test", generated(10_000, TEST_ROOMS), TEST_FRAMES),
+        ("fixed", rooms, FRAMES),
+        ("generated", generated(0, ROOMS), FRAMES),
+    ):
+        recipe = {
+            "version": 1,
+            "scenes": scenes,
+            "light": "plain",
+            "clips": {"train": frames},
+            "clip": {"per_scene": 20, "gap": 0.1},
+            "cameras": [{"type": "rule", "rule": "free_view", "width": 160, "height": 120}],
+            "views": ["rgb", "category", "instance"],
+            "formats": ["webdataset"],
+            "shard": {"clips": 100},
+        }
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / f"{name}.yaml"
+        path.write_text(yaml.safe_dump(recipe))
+        began = time.monotonic()
+        made = make_dataset(load_job(path), folder / name, engine_of(2, None))
+        print(f"{name}: {made.frames} frames in {time.monotonic() - began:.0f} s", flush=True)
+
+
+def load(folder: Path) -> tuple[Any, Any]:
+    """Return pictures (N, 3, H, W) uint8 and labels (N, H, W): 0, or 1 + the class."""
+    import cv2
+
+    pictures, labels = [], []
+    for path in sorted((folder / "webdataset").glob("*.tar")):
+        with tarfile.open(path) as tar:
+            members: dict[str, dict[str, bytes]] = {}
+            for member in tar:
+                name, _, ending = member.name.partition(".")
+                file = tar.extractfile(member)
+                assert file is not None
+                members.setdefault(name, {})[ending] = file.read()
+        for parts in members.values():
+            told = json.loads(parts["json"])
+            picture, category = (
+                np.asarray(cv2.imdecode(np.frombuffer(parts[name], np.uint8), flag))
+                for name, flag in (("rgb.png", 1), ("category.png", -1))
+            )
+            label = np.zeros(category.shape, np.int64)
+            for entry in told["objects"]:
+                if entry["category"] in CLASSES:
+                    number = 1 + CLASSES.index(entry["category"])
+                    label[category == entry["category_id"]] = number
+            pictures.append(picture[..., ::-1].transpose(2, 0, 1))
+            labels.append(label)
+    return np.stack(pictures), np.stack(labels)
+
+
+def train(folder: Path) -> None:
+    """Train on either set and print what each net reaches on the rooms of the test."""
+    test = load(folder / "test")
+    print(f"| trained on | mean IoU | {' | '.join(CLASSES)} |")
+    print("|---|" + "---:|" * (1 + len(CLASSES)))
+    for name in ("fixed", "generated"):
+        began = time.monotonic()
+        scores = _tested(_trained(load(folder / name)), test)
+        row = " | ".join(f"{score:.3f}" for score in (np.nanmean(scores), *scores))
+        print(f"| {name} | {row} |", flush=True)
+        print(f"trained in {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+
+
+def _trained(data: tuple[Any, Any]) -> Any:
+    import torch
+    from torch import nn
+
+    torch.manual_seed(0)
+    random = np.random.default_rng(0)
+
+    def block(inside: int, outside: int) -> Any:
+        return nn.Sequential(
+            nn.Conv2d(inside, outside, 3, padding=1), nn.BatchNorm2d(outside), nn.ReLU(),
+            nn.Conv2d(outside, outside, 3, padding=1), nn.BatchNorm2d(outside), nn.ReLU(),
+        )  # fmt: skip
+
+    class Net(nn.Module):
+        """An encoder and a decoder with shortcuts."""
+
+        def __init__(self) -> None:
+            super().__init__()
+            widths = (16, 32, 64, 96)
+            self.down = nn.ModuleList(
+                block(a, b) for a, b in zip((3, *widths), widths, strict=False)
+            )
+            self.up = nn.ModuleList(block(a + b, b) for a, b in ((96, 64), (64, 32), (32, 16)))
+            self.head = nn.Conv2d(16, 1 + len(CLASSES), 1)
+
+        def forward(self, x: Any) -> Any:
+            kept = []
+            for number, layer in enumerate(self.down):
+                x = layer(x if number == 0 else nn.functional.max_pool2d(x, 2))
+                kept.append(x)
+            for layer, short in zip(self.up, kept[-2::-1], strict=True):
+                x = nn.functional.interpolate(x, size=short.shape[2:], mode="nearest")
+                x = layer(torch.cat([x, short], 1))
+            return self.head(x)
+
+    net = Net()
+    optimiser = torch.optim.AdamW(net.parameters(), 2e-3, weight_decay=1e-4)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 4e-3, total_steps=STEPS)
+    pictures, labels = data
+    net.train()
+    for _ in range(STEPS):
+        rows = random.integers(len(pictures), size=BATCH)
+        x = torch.from_numpy(pictures[rows]).float() / 255.0
+        y = torch.from_numpy(labels[rows])
+        if random.random() < 0.5:
+            x, y = x.flip(3), y.flip(2)
+        x = x * (0.7 + 0.6 * torch.rand(BATCH, 3, 1, 1))
+        loss = nn.functional.cross_entropy(net(x), y)
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        schedule.step()
+    return net.eval()
+
+
+def _tested(net: Any, data: tuple[Any, Any]) -> list[float]:
+    """Return each class's intersection over union, over all pixels of the test."""
+    import torch
+
+    both, either = np.zeros(len(CLASSES)), np.zeros(len(CLASSES))
+    pictures, labels = data
+    with torch.no_grad():
+        for at in range(0, len(pictures), BATCH):
+            x = torch.from_numpy(pictures[at : at + BATCH]).float() / 255.0
+            found = net(x).argmax(1).numpy()
+            truth = labels[at : at + BATCH]
+            for number in range(len(CLASSES)):
+                one, other = found == number + 1, truth == number + 1
+                both[number] += (one & other).sum()
+                either[number] += (one | other).sum()
+    return [float(a / b) if b else float("nan") for a, b in zip(both, either, strict=True)]
+
+
+if __name__ == "__main__":
+    {"make": make, "train": train}[sys.argv[1]](Path(sys.argv[2]))
