@@ -13,7 +13,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from sailenv_ros.labels import MAX_CATEGORY_ID, Category
-from sailenv_ros.scene.field_types import Number, Text
+from sailenv_ros.scene.field_types import Number, Switch, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
 from sailenv_ros.scene.randomise.random_rules import random_targets_exist
 from sailenv_ros.scene.randomise.thing_table import RandomThing
@@ -118,6 +118,11 @@ class SceneSpec(SceneModel):
     description: str = Field(default="", max_length=10000, description="what the scene is for")
     gravity: Acceleration = Field(
         default=(0.0, 0.0, -9.81), description="acceleration of what falls [m/s2]"
+    )
+    settled: Annotated[bool, Switch()] = Field(
+        default=True,
+        description="true: what stands, or nearly stands, begins where it comes to rest; false: "
+        "everything begins exactly where it is said to, as in a saved scene",
     )
     environment: EnvironmentSpec = Field(
         default_factory=EnvironmentSpec, description="ambient light, sky, exposure"

@@ -70,6 +70,8 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
     data: Entry = spec.model_dump(mode="json", exclude_unset=True, exclude={"name", "randomise"})
     if world.gravity != spec.gravity:
         data["gravity"] = world.gravity
+    if any(not body.placement.static for body in world.bodies):
+        data["settled"] = False
     changed: dict[str, Any] = {
         "environment": environment_entry(world),
         "lights": _lights(world, spec),

@@ -83,6 +83,7 @@ def build_world(
         lights=[light.to_light() for light in spec.lights],
         environment=make_environment(spec.environment, skies or {}),
         gravity=spec.gravity,
+        settled=spec.settled,
         described=spec,
     )
 

@@ -34,8 +34,17 @@ STILL_RAD_S = 1.0
 """Cutlery trembles on its edges; the engine takes no more for motion either."""
 
 
-def begin_at_rest(client: BulletClient, bodies: Sequence[Body]) -> None:
-    """Try for a moment what moves; put back what has moved, and let the others sleep."""
+def begin_at_rest(client: BulletClient, bodies: Sequence[Body], *, settled: bool = True) -> None:
+    """Try for a moment what moves; put back what has moved, and let the others sleep.
+
+    Parameters
+    ----------
+    client : BulletClient
+    bodies : sequence of Body
+        All of the world.
+    settled : bool
+        True puts what has settled by a little where it has settled; False moves nothing.
+    """
     loose = [body for body in bodies if not body.placement.static]
     if not loose:
         return
@@ -49,24 +58,25 @@ def begin_at_rest(client: BulletClient, bodies: Sequence[Body]) -> None:
             actuation.push(client, body.bullet_id, lift)
         client.stepSimulation()
     asleep: list[Body] = []
-    settled: dict[int, tuple[list[float], list[float]]] = {}
+    sunk: dict[int, tuple[list[float], list[float]]] = {}
     for body, matrix in zip(loose, before, strict=True):
         if body.behaviours or body.thrown or not body.collides or not _is_slow(body):
             continue
         moved_m, turned_deg = _way(matrix, body.world_from_body())
-        if moved_m < SETTLES_M and turned_deg < SETTLES_DEG:
+        if moved_m <= STILL_M and turned_deg <= STILL_DEG:
             asleep.append(body)
-            if moved_m > STILL_M or turned_deg > STILL_DEG:
-                id_ = body.bullet_id
-                settled[id_] = client.getBasePositionAndOrientation(id_)
-    _restore(client, start, settled)
+        elif settled and moved_m < SETTLES_M and turned_deg < SETTLES_DEG:
+            asleep.append(body)
+            id_ = body.bullet_id
+            sunk[id_] = client.getBasePositionAndOrientation(id_)
+    _restore(client, start, sunk)
     states = client.constants
     sleep = states.ACTIVATION_STATE_SLEEP | states.ACTIVATION_STATE_DISABLE_WAKEUP
     for body in asleep:
         client.changeDynamics(body.bullet_id, LINK_OF_BASE, activationState=sleep)
     # The engine looks at who sleeps in the course of a step, in which all move once more.
     client.stepSimulation()
-    _restore(client, start, settled)
+    _restore(client, start, sunk)
     client.removeState(start)
     wakes = states.ACTIVATION_STATE_ENABLE_WAKEUP
     for body in asleep:
@@ -74,11 +84,11 @@ def begin_at_rest(client: BulletClient, bodies: Sequence[Body]) -> None:
 
 
 def _restore(
-    client: BulletClient, state: int, settled: dict[int, tuple[list[float], list[float]]]
+    client: BulletClient, state: int, sunk: dict[int, tuple[list[float], list[float]]]
 ) -> None:
     """Put all back to the very bytes of the start, but for what has settled."""
     client.restoreState(state)
-    for body, (position, quat) in settled.items():
+    for body, (position, quat) in sunk.items():
         client.resetBasePositionAndOrientation(body, position, quat)
 
 

@@ -58,6 +58,8 @@ class World:
         At least one.
     described : SceneSpec or None
         What a scene file says of it all; None where there is none.
+    settled : bool
+        False leaves everything exactly where it is placed; see `resting.begin_at_rest`.
 
     Attributes
     ----------
@@ -80,6 +82,7 @@ class World:
         environment: Environment | None = None,
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
         described: SceneSpec | None = None,
+        settled: bool = True,
     ) -> None:
         self.scene = scene
         self.epoch = epoch
@@ -103,7 +106,7 @@ class World:
             self._configure()
             self._client.gravity = gravity
             self._bodies = BodyTable(self._client, placements)
-            begin_at_rest(self._client, self.bodies)
+            begin_at_rest(self._client, self.bodies, settled=settled)
         except BaseException:
             self.close()
             raise

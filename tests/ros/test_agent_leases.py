@@ -77,7 +77,7 @@ def test_killed_clients_leave_nothing_and_others_stay(watcher: Agent) -> None:
     watcher.register_agent(AgentSpec(name="of_nobody", rate_hz=0.0))
     try:
         client = Client("one", "two")
-        assert {"one", "two"} <= names(watcher)
+        until(lambda: {"one", "two"} <= names(watcher), "the client's agents to be announced")
         client.kill()
         until(lambda: not {"one", "two"} & names(watcher), "the killed one's agents to go", 10.0)
         assert names(watcher) == {"first", "watcher", "of_nobody"}
@@ -113,7 +113,7 @@ def test_a_client_of_elsewhere_goes_when_dds_hears_nothing_of_it(
     """One whose lock cannot be seen, as on another host, is gone after its lease of 6 s."""
     (tmp_path / "runtime").mkdir(mode=0o700)
     client = Client("far", environment={"XDG_RUNTIME_DIR": str(tmp_path / "runtime")})
-    assert "far" in names(watcher)
+    until(lambda: "far" in names(watcher), "the client's agent to be announced")
     client.kill()
     # 8 s on an idle machine; DDS looks at leases from time to time.
     until(lambda: "far" not in names(watcher), "the far one's agent to go", 40.0)

@@ -170,19 +170,8 @@ def assert_comes_back(core: SimulationCore) -> str:
     text = Path(core.save_scene("again", overwrite=True)).read_text(encoding="utf-8")
     begin(core, "again")
     assert told(core) == contents, text
-    settled = has_settled(places, poses(core))
-    assert_same_poses(
-        {name: pose for name, pose in places.items() if name not in settled},
-        {name: pose for name, pose in poses(core).items() if name not in settled},
-    )
+    assert_same_poses(places, poses(core))
     return text
-
-
-def has_settled(before: dict[str, Pose], after: dict[str, Pose]) -> set[str]:
-    """Return the objects that stand as their entry says, sunk by 2 mm at most."""
-    sunk_m = {name: math.dist(pose.position_m, after[name].position_m)
-              for name, pose in before.items() if name.startswith("object ")}  # fmt: skip
-    return {name for name, by_m in sunk_m.items() if 2e-6 < by_m <= 0.002}
 
 
 # -- what was not changed ----------------------------------------------------------------------
