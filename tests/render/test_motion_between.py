@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from numpy.typing import NDArray
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
