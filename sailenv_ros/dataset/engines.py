@@ -15,6 +15,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from multiprocessing import get_context
+from multiprocessing.util import Finalize
 from typing import Any, Protocol
 
 from sailenv_ros.dataset.job import Job
@@ -87,6 +88,7 @@ class ProcessEngine:
             running: dict[Future[ShardSummary], int] = {}
             try:
                 yield from self._run(pool, waiting, running, frames, on_frames)
+                pool.shutdown()
             except BrokenProcessPool:
                 # All that were running are tried again, by new workers.
                 for shard in sorted(running.values(), reverse=True):
@@ -144,6 +146,7 @@ def _begin_worker(job: Job, where: str, frames: Any, threads: int, parent: int) 
         end_with_parent(parent)
         # Ctrl-C goes to all of the terminal; the parent ends its workers.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, lambda *_: _leave())
     os.environ[THREADS_VARIABLE] = str(threads)
     keep_freed_memory()
 
@@ -152,6 +155,14 @@ def _begin_worker(job: Job, where: str, frames: Any, threads: int, parent: int) 
             frames.value += 1
 
     _maker = ShardMaker(job, open_store(where), count)
+    Finalize(None, _maker.close, exitpriority=1)
+
+
+def _leave() -> None:
+    """End at once, and leave no files: those in the data set's folder are its parent's matter."""
+    if _maker is not None:
+        _maker.close()
+    os._exit(1)
 
 
 def _make_shard(number: int) -> ShardSummary:
@@ -160,10 +171,12 @@ def _make_shard(number: int) -> ShardSummary:
 
 
 def _end(pool: ProcessPoolExecutor) -> None:
-    """End the workers at once; what they have not finished is not there."""
+    """End workers that still run at once; what they have not finished is not there."""
     processes = list((getattr(pool, "_processes", None) or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:
         process.terminate()
     for process in processes:
         process.join(5.0)
+        if process.exitcode is None:
+            process.kill()

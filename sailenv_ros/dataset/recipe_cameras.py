@@ -66,8 +66,8 @@ class CameraModel(SceneModel):
     name: Annotated[
         str,
         Text(
-            r"[a-z][a-z0-9_]{0,62}",
-            "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
+            r"[a-z][a-z0-9_]{0,50}",
+            "a lower-case letter, then lower-case letters, digits or underscores, at most 51",
         ),
     ] = Field(default="camera", description="unique among the cameras of the recipe")
     width: _Size = Field(default=640, description="of its pictures [px]")

@@ -89,7 +89,7 @@ class ShardMaker:
         SailenvError
             If a scene cannot be built or a file not be written.
         """
-        with self._store.staging() as folder:
+        with self._store.staging(Path(self._folder.name)) as folder:
             summary = self.make_into(number, folder)
             self._store.publish(folder, list(summary.files))
         self._store.write(summary.path, summary.to_json())
@@ -284,7 +284,7 @@ class ShardMaker:
 
 def _agent_name(camera: AnyCamera) -> str:
     """Return the name of a camera's agent, which no agent of a scene has."""
-    return f"dataset_{camera.name}"[:63]
+    return f"dataset_{camera.name}"
 
 
 def _bake_missing(world: World) -> None:

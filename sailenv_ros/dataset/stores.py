@@ -34,8 +34,11 @@ class Store(ABC):
         """Its name for people."""
 
     @abstractmethod
-    def staging(self) -> contextlib.AbstractContextManager[Path]:
-        """Yield an empty folder on this machine to write into; it goes in the end."""
+    def staging(self, scratch: Path | None = None) -> contextlib.AbstractContextManager[Path]:
+        """Yield an empty folder on this machine to write into; it goes in the end.
+
+        Where the place is on another machine it lies in `scratch`, or among temporary files.
+        """
 
     @abstractmethod
     def publish(self, folder: Path, paths: Sequence[str]) -> None:
@@ -92,7 +95,7 @@ class FolderStore(Store):
         return str(self.folder)
 
     @contextlib.contextmanager
-    def staging(self) -> Iterator[Path]:
+    def staging(self, scratch: Path | None = None) -> Iterator[Path]:
         """Yield an empty folder, which goes in the end."""
         place = self.folder / STAGING
         make_folder(place)
@@ -158,9 +161,9 @@ class RemoteStore(Store):
         return self._url
 
     @contextlib.contextmanager
-    def staging(self) -> Iterator[Path]:
+    def staging(self, scratch: Path | None = None) -> Iterator[Path]:
         """Yield an empty folder, which goes in the end."""
-        with tempfile.TemporaryDirectory(prefix="sailenv-dataset-") as made:
+        with tempfile.TemporaryDirectory(prefix="sailenv-dataset-", dir=scratch) as made:
             yield Path(made)
 
     def publish(self, folder: Path, paths: Sequence[str]) -> None:

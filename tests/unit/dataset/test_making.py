@@ -24,6 +24,7 @@ from sailenv_ros.dataset.engines import HereEngine
 from sailenv_ros.dataset.manifest import summaries_of_files
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.motion import motion
+from sailenv_ros.system.resources import resource_path
 from tests.support.waiting import until
 from tests.unit.dataset.conftest import written_recipe
 
@@ -151,6 +152,40 @@ def test_a_killed_run_loses_unfinished_shards_alone(small: Path, tmp_path: Path)
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert "42 frames in 4 shards" in done.stdout
     assert contents(folder) == contents(small)
+
+
+def test_ctrl_c_is_quick_and_leaves_nothing_among_temporary_files(
+    small: Path, tmp_path: Path
+) -> None:
+    """Workers end with their parent, and take their folders along."""
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    folder = tmp_path / "broken"
+    (tmp_path / "mine.yaml").write_text(resource_path("scenes", "optical.yaml").read_text())
+    recipe = written_recipe(tmp_path, scenes=[{"scene": "mine.yaml"}], shard={"clips": 1})
+    running = subprocess.Popen(
+        [
+            sys.executable, "-m", "sailenv_ros.cli.main", "dataset", "make", str(recipe),
+            "-o", str(folder), "--workers", "2",
+        ],
+        env={
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            "TMPDIR": str(scratch),
+        },
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    try:
+        until(lambda: list(folder.glob("shards/*.json")), "the first shard", 120.0)
+        assert any(path.name.startswith("sailenv-") for path in scratch.iterdir())
+        running.send_signal(signal.SIGINT)
+        assert running.wait(30.0) == 130
+    finally:
+        running.kill()
+        running.wait(10.0)
+    until(lambda: not list(scratch.glob("sailenv-*")), "the workers' folders to go", 20.0)
+    assert not (folder / "manifest.json").exists()
 
 
 class DyingEngine(HereEngine):
