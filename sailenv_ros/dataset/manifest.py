@@ -21,6 +21,7 @@ __all__ = [
     "done_shards",
     "file_hash",
     "summaries_of_files",
+    "whole_files",
 ]
 
 MANIFEST = "manifest.json"
@@ -118,6 +119,23 @@ def done_shards(store: Store) -> dict[int, ShardSummary]:
             summary = ShardSummary.from_json(data, path)
             found[summary.shard] = summary
     return dict(sorted(found.items()))
+
+
+def whole_files(store: Store) -> dict[str, FileHash]:
+    """Return the files that belong to the whole data set; none while it is not finished.
+
+    Raises
+    ------
+    RecordingError
+        If the manifest cannot be read.
+    """
+    data = store.read(MANIFEST)
+    if data is None:
+        return {}
+    try:
+        return {name: FileHash(**one) for name, one in json.loads(data)["files"].items()}
+    except (ValueError, TypeError, KeyError, AttributeError) as problem:
+        raise RecordingError(f"{MANIFEST} in {store.shown} cannot be read: {problem}") from None
 
 
 def dataset_hash(files: Iterable[tuple[str, FileHash]]) -> str:

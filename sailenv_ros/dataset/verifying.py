@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from sailenv_ros.dataset.making import job_of
-from sailenv_ros.dataset.manifest import done_shards, file_hash
+from sailenv_ros.dataset.manifest import FileHash, done_shards, file_hash, whole_files
 from sailenv_ros.dataset.shard_maker import ShardMaker
 from sailenv_ros.dataset.stores import FolderStore, Store, open_store
 
@@ -67,13 +67,9 @@ def verify_dataset(
         chosen = sorted(random.choice(numbers, min(sample, len(numbers)), replace=False).tolist())
     found: list[Difference] = []
     steps = len(done) + len(chosen)
+    found += _changed(store, whole_files(store))
     for index, summary in enumerate(done.values(), 1):
-        for path, known in summary.files.items():
-            digest = _hash(store, path)
-            if digest is None:
-                found.append(Difference(path, "is not there"))
-            elif digest != known.sha256:
-                found.append(Difference(path, "has another content than was written"))
+        found += _changed(store, summary.files)
         on_shard(index, steps)
     with ShardMaker(job, store) as maker:
         for index, number in enumerate(chosen, 1):
@@ -86,6 +82,16 @@ def verify_dataset(
                     found.append(Difference(path, "is another one when it is made anew"))
             on_shard(len(done) + index, steps)
     return found
+
+
+def _changed(store: Store, files: Mapping[str, FileHash]) -> Iterator[Difference]:
+    """Yield the files that are not as they were written."""
+    for path, known in files.items():
+        digest = _hash(store, path)
+        if digest is None:
+            yield Difference(path, "is not there")
+        elif digest != known.sha256:
+            yield Difference(path, "has another content than was written")
 
 
 def _hash(store: Store, path: str) -> str | None:

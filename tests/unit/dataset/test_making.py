@@ -232,10 +232,12 @@ def test_verifying_finds_what_was_changed(small: Path, tmp_path: Path) -> None:
     data[3000] ^= 1
     tar.write_bytes(data)
     (broken / "coco" / "train" / "images" / "000003.png").unlink()
+    (broken / "coco" / "val" / "annotations.json").write_text("{}")
     found = {one.path: one.why for one in verify_dataset(broken, sample=0)}
     assert found == {
         "webdataset/train-00000.tar": "has another content than was written",
         "coco/train/images/000003.png": "is not there",
+        "coco/val/annotations.json": "has another content than was written",
     }
     summary = broken / "shards" / "00003.json"
     told = json.loads(summary.read_text())
