@@ -40,6 +40,7 @@ def contents(folder: Path) -> dict[str, str]:
     }
 
 
+@pytest.mark.timeout(400)
 def test_workers_change_nothing(small: Path, tmp_path: Path) -> None:
     """Two processes make the bytes that one makes."""
     made = make_dataset(load_job(small.parent / "small.yaml"), tmp_path / "two", engine_of(2, None))
@@ -133,6 +134,7 @@ def test_what_was_broken_off_goes_on(small: Path, tmp_path: Path) -> None:
     assert (told[0].shards, told[-1].frames) == (3, FRAMES)
 
 
+@pytest.mark.timeout(400)
 def test_a_killed_run_loses_unfinished_shards_alone(small: Path, tmp_path: Path) -> None:
     """kill -9 in the middle; the same command ends with the same bytes."""
     folder = tmp_path / "killed"
@@ -154,6 +156,7 @@ def test_a_killed_run_loses_unfinished_shards_alone(small: Path, tmp_path: Path)
     assert contents(folder) == contents(small)
 
 
+@pytest.mark.timeout(400)
 def test_ctrl_c_is_quick_and_leaves_nothing_among_temporary_files(
     small: Path, tmp_path: Path
 ) -> None:

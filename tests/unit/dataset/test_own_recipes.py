@@ -117,6 +117,7 @@ def test_every_recipe_has_a_check() -> None:
     assert {path.stem for path in RECIPES} == set(CHECKS)
 
 
+@pytest.mark.timeout(400)
 @pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")  # of pycocotools
 @pytest.mark.parametrize("path", RECIPES, ids=lambda path: path.stem)
 def test_a_recipe_is_made_and_read(path: Path, tmp_path: Path) -> None:

@@ -37,6 +37,7 @@ def bucket(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     server.stop()
 
 
+@pytest.mark.timeout(300)
 def test_the_same_files_are_at_a_remote_place(small: Path, bucket: str) -> None:
     """Every byte but those that tell of the machine; a lost shard is made again."""
     job = load_job(small.parent / "small.yaml")
@@ -61,6 +62,7 @@ def test_unknown_places_are_refused() -> None:
         open_store("nowhere://x/y")
 
 
+@pytest.mark.timeout(600)
 def test_a_cluster_that_loses_a_node_makes_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
