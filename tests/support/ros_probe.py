@@ -28,6 +28,9 @@ LATCHED = QoSProfile(
 )
 BEST_EFFORT = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
+DISCOVERY_S = 0.2
+"""That a server may take to discover a client that has discovered it [s]."""
+
 
 class Topic:
     """What arrived on one topic, in order."""
@@ -73,10 +76,15 @@ class Probe:
 
     def begin(self, kind: Any, service: str, request: Any = None) -> Any:
         """Call a service; return rclpy's future of the answer."""
-        if service not in self._clients:
+        is_new = service not in self._clients
+        if is_new:
             self._clients[service] = self.node.create_client(kind, service)
         client = self._clients[service]
         until(client.service_is_ready, f"the service {service}")
+        if is_new:
+            # We know the server now; that it knows us nothing tells. Fast DDS drops an answer
+            # after 100 ms to a reader that is not known yet.
+            threading.Event().wait(DISCOVERY_S)
         return client.call_async(kind.Request() if request is None else request)
 
     def call(self, kind: Any, service: str, request: Any = None) -> Any:
