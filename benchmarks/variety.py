@@ -22,7 +22,7 @@ CLASSES = ("chair", "bed", "couch", "window", "door")
 KINDS = ("living_room", "bedroom")
 FRAMES, TEST_FRAMES = 2000, 400
 ROOMS, TEST_ROOMS = 100, 20
-STEPS, BATCH = 1500, 16
+STEPS, BATCH = 600, 16
 
 
 def make(folder: Path) -> None:
