@@ -15,7 +15,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from multiprocessing import get_context
-from multiprocessing.util import Finalize
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
 from sailenv_ros.dataset.job import Job
@@ -77,10 +78,18 @@ class ProcessEngine:
         self, job: Job, where: str, shards: Sequence[int], on_frames: OnFrames
     ) -> Iterator[ShardSummary]:
         """Yield the summary of each shard."""
-        waiting = deque(shards)
+        # Ours, so that it goes however the workers end.
+        with TemporaryDirectory(prefix="sailenv-dataset-") as scratch:
+            yield from self._run_pools(job, where, scratch, deque(shards), on_frames)
+
+    def _run_pools(
+        self, job: Job, where: str, scratch: str, waiting: deque[int], on_frames: OnFrames
+    ) -> Iterator[ShardSummary]:
+        """Begin workers, and others when one of them was killed."""
         context = get_context("spawn")
         frames = context.Value("q", 0)
-        arguments = (job, where, frames, max(1, (os.cpu_count() or 1) // self.workers), os.getpid())
+        threads = max(1, (os.cpu_count() or 1) // self.workers)
+        arguments = (job, where, scratch, frames, threads, os.getpid())
         while waiting:
             pool = ProcessPoolExecutor(
                 min(self.workers, len(waiting)), context, _begin_worker, arguments
@@ -139,14 +148,15 @@ def engine_of(workers: int, ray_address: str | None) -> Engine:
 _maker: ShardMaker | None = None
 
 
-def _begin_worker(job: Job, where: str, frames: Any, threads: int, parent: int) -> None:
+def _begin_worker(
+    job: Job, where: str, scratch: str, frames: Any, threads: int, parent: int
+) -> None:
     """Set a worker's process up."""
     global _maker
     if threading.current_thread() is threading.main_thread():
         end_with_parent(parent)
         # Ctrl-C goes to all of the terminal; the parent ends its workers.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        signal.signal(signal.SIGTERM, lambda *_: _leave())
     os.environ[THREADS_VARIABLE] = str(threads)
     keep_freed_memory()
 
@@ -154,15 +164,7 @@ def _begin_worker(job: Job, where: str, frames: Any, threads: int, parent: int) 
         with frames.get_lock():
             frames.value += 1
 
-    _maker = ShardMaker(job, open_store(where), count)
-    Finalize(None, _maker.close, exitpriority=1)
-
-
-def _leave() -> None:
-    """End at once, and leave no files: those in the data set's folder are its parent's matter."""
-    if _maker is not None:
-        _maker.close()
-    os._exit(1)
+    _maker = ShardMaker(job, open_store(where), count, scratch=Path(scratch))
 
 
 def _make_shard(number: int) -> ShardSummary:

@@ -54,16 +54,25 @@ class ShardMaker:
     store : Store
     on_frame : callable
         Called after each frame.
+    scratch : Path or None
+        Folder for temporary files; None takes the system's.
     """
 
-    def __init__(self, job: Job, store: Store, on_frame: Callable[[], None] = lambda: None) -> None:
+    def __init__(
+        self,
+        job: Job,
+        store: Store,
+        on_frame: Callable[[], None] = lambda: None,
+        *,
+        scratch: Path | None = None,
+    ) -> None:
         self._job = job
         self._recipe = job.recipe
         self._plan = ShardPlan(job.recipe)
         self._store = store
         self._on_frame = on_frame
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
-        self._folder = TemporaryDirectory(prefix="sailenv-scenes-")
+        self._folder = TemporaryDirectory(prefix="sailenv-scenes-", dir=scratch)
         self._baked = self._recipe.light == "baked"
         self._library = SceneLibrary(baked_light=self._baked)
         self._paths = {
