@@ -18,12 +18,14 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import QUAT_BODY_FROM_OPTICAL
 from sailenv_ros.instance_states import InstanceStates
+from sailenv_ros.lessons import LessonState
 
 __all__ = [
     "WORLD_FRAME_ID",
     "camera_of_frame_info",
     "frame_info_to_msg",
     "header_of_frame",
+    "lesson_of_frame_info",
     "optical_frame_id",
     "randomised_of_frame_info",
     "states_of_frame_info",
@@ -67,6 +69,7 @@ def frame_info_to_msg(
         render_s=float(frame.timings_s.get("render", 0.0)),
         has_states=frame.states is not None,
         randomised="" if frame.randomised is None else json.dumps(frame.randomised),
+        lesson="" if frame.lesson is None else frame.lesson.to_json(),
         **_states_fields(frame.states),
     )
 
@@ -101,6 +104,17 @@ def randomised_of_frame_info(msg: FrameInfo) -> dict[str, Any] | None:
     if not isinstance(record, dict):
         raise InvalidRequest("randomised", msg.randomised[:100], "a JSON object")
     return record
+
+
+def lesson_of_frame_info(msg: FrameInfo) -> LessonState | None:
+    """Read which lesson a frame is of; None if there were no lessons.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is no such text.
+    """
+    return LessonState.from_json(msg.lesson) if msg.lesson else None
 
 
 def states_of_frame_info(msg: FrameInfo) -> InstanceStates | None:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidState, UnknownName
 from sailenv_ros.instance_states import InstanceStates
+from sailenv_ros.lessons import LessonState
 from sailenv_ros.views import (
     ALWAYS_MADE,
     FIVE_VIEWS,
@@ -89,6 +90,8 @@ class Frame:
         recorded.
     randomised : mapping or None
         Record of what was drawn at random for it, which `randomise` takes; None if nothing was.
+    lesson : LessonState or None
+        Which lesson it is of; None if the scene has none.
     draw_alone : callable or None
         Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
     """
@@ -107,6 +110,7 @@ class Frame:
     info: SceneInfo | None = None
     states: InstanceStates | None = None
     randomised: Mapping[str, Any] | None = None
+    lesson: LessonState | None = None
     draw_alone: DrawAlone | None = None
 
     def __post_init__(self) -> None:

@@ -39,6 +39,7 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame
+from sailenv_ros.lessons import LessonState
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.operations import Operations
 from sailenv_ros.operations.argument_checks import pose_of
@@ -102,6 +103,18 @@ def _read_chance(given: Arguments) -> Arguments:
 
 def _fill_chance(response: Any, record: Any, info: SceneInfo) -> None:
     response.chosen = json.dumps(record)
+
+
+def _write_lessons(given: Arguments) -> Arguments:
+    return {"document": _as_text("lessons", given["lessons"])}
+
+
+def _fill_lesson(response: Any, state: LessonState | None, info: SceneInfo) -> None:
+    response.lesson = "" if state is None else state.to_json()
+
+
+def _lesson_of_response(response: Any) -> LessonState | None:
+    return LessonState.from_json(response.lesson) if response.lesson else None
 
 
 def _write_spawned(given: Arguments) -> Arguments:
@@ -309,6 +322,16 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
         fill=_fill_chance,
         result=lambda response: json.loads(response.chosen),
     ),
+    Service(
+        Operations.start_lessons,
+        srv.StartLessons,
+        write=_write_lessons,
+        read=lambda given: {"lessons": given["document"] or None},
+        fill=_fill_lesson,
+        result=_lesson_of_response,
+    ),
+    Service(Operations.stop_lessons, srv.StopLessons),
+    Service(Operations.get_lesson, srv.GetLesson, fill=_fill_lesson, result=_lesson_of_response),
     Service(Operations.step, srv.Step, names={"count": "steps"}),
     Service(Operations.pause, srv.Pause),
     Service(Operations.resume, srv.Resume),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sailenv_msgs_py.frame_info import (
     camera_of_frame_info,
+    lesson_of_frame_info,
     randomised_of_frame_info,
     states_of_frame_info,
 )
@@ -73,6 +74,7 @@ def frame_of_info(
         draw_alone=draw_alone,
         states=states_of_frame_info(info),
         randomised=randomised_of_frame_info(info),
+        lesson=lesson_of_frame_info(info),
     )
 
 

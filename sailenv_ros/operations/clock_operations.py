@@ -44,7 +44,7 @@ class ClockOperations(Caller):
             core.world.scene,
             chosen,
             as_registered=True,
-            more=core.more_objects,
+            more=core.additions,
             chance=core.randomiser.chance_of_reset(seeded=seed is not None),
         )
         return core.epoch

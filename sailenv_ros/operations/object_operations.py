@@ -138,7 +138,9 @@ class ObjectOperations(Caller):
     @staticmethod
     def despawn_object(core: SimulationCore, obj: int | str) -> None:
         """Remove an object from the scene; its id is not used again."""
-        core.world.despawn(core.world.find(obj))
+        number = core.world.find(obj)
+        core.editor.require_untaught(number)
+        core.world.despawn(number)
         core.announce()
 
     @operation(
@@ -315,8 +317,8 @@ class ObjectOperations(Caller):
         ----------
         scenario : mapping, str or Path
             `scene` (its name; left out: the present one), `objects` (as in a scene file) and
-            `timings`: as a mapping, as YAML or JSON text, or as the path of a file with it. A text
-            that is only a name is that of the scene.
+            `timings`, or `lessons` as in a scene file: as a mapping, as YAML or JSON text, or as
+            the path of a file with it. A text that is only a name is that of the scene.
         """
         return core.editor.load_scenario(_scenario("scenario", scenario))
 

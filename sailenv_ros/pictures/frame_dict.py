@@ -48,7 +48,8 @@ def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
         ``sizes`` (bytes of each view as received), ``deltaTime`` and ``dt`` [s],
         ``stamp_ns``, ``sequence``, ``scene``, ``render_s`` (wall time that rendering took),
         ``K`` (3, 3), the optical frame's ``world_from_camera`` (4, 4), and what
-        `sailenv_ros.motion` needs: ``camera``, ``states``, ``epoch``.
+        `sailenv_ros.motion` needs: ``camera``, ``states``, ``epoch``. ``lesson`` is the
+        `LessonState`, None if the scene has no lessons.
     """
     entries: dict[str, Any] = {}
     sizes: dict[str, int] = {}
@@ -77,6 +78,7 @@ def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
         camera=camera,
         states=frame.states,
         epoch=frame.epoch,
+        lesson=frame.lesson,
     )
     return entries
 

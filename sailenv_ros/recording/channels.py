@@ -78,8 +78,8 @@ _STAMPED = frozenset(AGENT_TOPICS.values())
 
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
 
-_NEWER_FIELD = "randomised"
-"""What the definition of `FrameInfo` did not have in version 0.2.0."""
+_NEWER_FIELD = "string lesson"
+"""What the definition of `FrameInfo` got last; version 0.2.0 had not that before it either."""
 
 _NEWER_FIELD_OF_OBJECTS = "painted"
 """What the definition of `Instance`, a part of `SceneInfo`, did not have in version 0.2.0."""

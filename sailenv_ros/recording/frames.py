@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sailenv_msgs_py.camera_info import intrinsics_from_camera_info
 from sailenv_msgs_py.frame_info import (
     camera_of_frame_info,
+    lesson_of_frame_info,
     randomised_of_frame_info,
     states_of_frame_info,
 )
@@ -171,6 +172,7 @@ class RecordedFrames(Sequence[Frame]):
             info=scene_info,
             states=states_of_frame_info(info),
             randomised=randomised_of_frame_info(info),
+            lesson=lesson_of_frame_info(info),
             draw_alone=self._amodal_reader(index),
         )
 

@@ -16,10 +16,12 @@ from sailenv_ros.errors import InvalidEntry, InvalidRequest
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.scene_diagnostics import Diagnostic, diagnose
 from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.scene.spec_lessons import LessonsSpec
 from sailenv_ros.scene.spec_objects import ObjectSpec
 from sailenv_ros.scene.yaml_nodes import Loc, compose
 
 __all__ = [
+    "checked_lessons",
     "checked_object",
     "checked_objects",
     "checked_scene",
@@ -61,6 +63,38 @@ def checked_objects(
     if len(entries) > MAX_OBJECTS:
         raise InvalidRequest("number of objects", len(entries), f"at most {MAX_OBJECTS}")
     return _checked(entries, knowledge, what="objects")
+
+
+def checked_lessons(
+    lessons: object, objects: Iterable[ObjectSpec], knowledge: SceneKnowledge
+) -> LessonsSpec:
+    """Check lessons that stand in no file.
+
+    Parameters
+    ----------
+    lessons : object
+        A mapping, as under `lessons` in a scene file.
+    objects : iterable of ObjectSpec
+        That there are for them.
+    knowledge : SceneKnowledge
+
+    Raises
+    ------
+    InvalidEntry
+        With every error, by its place.
+    """
+    keys = {"name", "asset", "appear", "leave", "behaviours"}
+    data = {
+        "version": 1,
+        "objects": [
+            entry.model_dump(mode="json", exclude_unset=True, include=keys) for entry in objects
+        ],
+        "lessons": plain_value(lessons),
+    }
+    spec = checked_scene(data, knowledge, what="lessons").lessons
+    if spec is None:
+        raise InvalidRequest("lessons", lessons, "a mapping with sequence, laps, after, pause")
+    return spec
 
 
 def checked_scene(data: Mapping[str, Any], knowledge: SceneKnowledge, *, what: str) -> SceneSpec:

@@ -31,6 +31,8 @@ class SceneKnowledge:
     object_errors : callable
         ``object_errors(entry)`` yields why an object's asset cannot be placed as its entry says.
         The entry is plain data; nothing in it is certain.
+    lesson_errors : callable
+        ``lesson_errors(scene)`` yields which of its lessons have no end.
     surfaces : tuple of str
         Every name that the material of a room's walls, floor or ceiling may have.
     skies : tuple of str
@@ -44,6 +46,7 @@ class SceneKnowledge:
     categories: tuple[str, ...]
     behaviour_errors: Callable[[str, Mapping[str, Any]], Diagnostics]
     object_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
+    lesson_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
     surfaces: tuple[str, ...] = ()
     skies: tuple[str, ...] = ()
     material_fault: Callable[[str], str] | None = None

@@ -29,6 +29,8 @@ _TITLES = {
     "DoorwaySpec": "A doorway",
     "FloorAreaSpec": "A floor area",
     "EnvironmentSpec": "The environment",
+    "LessonSpec": "A lesson",
+    "LessonsSpec": "Lessons",
     "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",

@@ -116,6 +116,8 @@ def _unknown_names(
     own = [c for c in listed if isinstance(c, Mapping)] if isinstance(listed, list) else []
     own_names = [c["name"] for c in own if isinstance(c.get("name"), str)]
     categories = [name for name in knowledge.categories if name != "background"] + own_names
+    for place, sentence in knowledge.lesson_errors(data):
+        yield Diagnostic(place, sentence)
     for loc, model, entry in found:
         if issubclass(model, ObjectSpec):
             yield from _unknown(loc, entry, "asset", knowledge.assets)

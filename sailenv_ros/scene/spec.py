@@ -15,6 +15,7 @@ from pydantic import Field
 from sailenv_ros.labels import MAX_CATEGORY_ID, Category
 from sailenv_ros.scene.field_types import Number, Switch, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
+from sailenv_ros.scene.lesson_rules import pupils_exist, stays_its_lesson
 from sailenv_ros.scene.randomise.random_rules import random_targets_exist
 from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.room_rules import names_beside_room
@@ -28,6 +29,7 @@ from sailenv_ros.scene.rules import (
     walls_need_a_room,
 )
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
+from sailenv_ros.scene.spec_lessons import LessonSpec, LessonsSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.scene.spec_room import RoomSpec
@@ -48,6 +50,8 @@ __all__ = [
     "CategorySpec",
     "DirectionalLightSpec",
     "EnvironmentSpec",
+    "LessonSpec",
+    "LessonsSpec",
     "LightSpec",
     "MoverSpec",
     "ObjectSpec",
@@ -106,6 +110,8 @@ class SceneSpec(SceneModel):
         parents_exist,
         walls_need_a_room,
         names_beside_room,
+        pupils_exist,
+        stays_its_lesson,
     )
 
     version: Annotated[Literal[1], Number(least=1, most=1, whole=True)] = Field(
@@ -146,6 +152,9 @@ class SceneSpec(SceneModel):
     randomise: tuple[RandomThing, ...] = Field(
         default=(), max_length=1000, description="what is drawn at random, by its seed"
     )
+    lessons: LessonsSpec | None = Field(
+        default=None, description="objects that come and go one after another, in laps"
+    )
     categories: tuple[CategorySpec, ...] = Field(
         default=(), max_length=10000, description="categories that the fixed table lacks"
     )
@@ -156,3 +165,14 @@ class SceneSpec(SceneModel):
         if self.movers:
             return self.movers
         return (self.mover or MoverSpec(),)
+
+    @property
+    def taught(self) -> frozenset[str]:
+        """Names of the objects that come and go with lessons."""
+        return frozenset() if self.lessons is None else self.lessons.names
+
+    @property
+    def visitors(self) -> frozenset[str]:
+        """Names of the objects that are not there all the time."""
+        passing = (e.name for e in self.objects if e.appear or e.leave is not None)
+        return self.taught.union(passing)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
@@ -21,6 +22,7 @@ from sailenv_ros.scene.fields import (
     Scale,
     SceneModel,
 )
+from sailenv_ros.scene.lesson_rules import leaves_after_it_appears
 from sailenv_ros.scene.placing import Turned
 from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.rules import at_most_one, distinct, only_beside, static_never_moves
@@ -65,6 +67,7 @@ class ObjectSpec(Turned):
         only_beside("wall", "at", "height", "gap"),
         static_never_moves,
         distinct("part", "materials"),
+        leaves_after_it_appears,
     )
 
     name: Name = Field(description="unique among the objects of the scene")
@@ -141,8 +144,22 @@ class ObjectSpec(Turned):
     behaviours: tuple[BehaviourSpec, ...] = Field(
         default=(), max_length=16, description="how it moves of itself"
     )
+    appear: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
+        default=0.0,
+        description="time at which it comes, nowhere before: since the scene's beginning, or since "
+        "that of its lesson [s]",
+    )
+    leave: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = Field(
+        default=None, description="time at which it goes, nowhere afterwards; counted as appear [s]"
+    )
 
     @property
     def pose(self) -> Pose:
         """Where it starts."""
         return self.pose_at(self.position)
+
+    @property
+    def angular_velocity_rad_s(self) -> tuple[float, float, float]:
+        """How fast it turns at the start, about the world's axes [rad/s]."""
+        x, y, z = (math.radians(rate) for rate in self.angular_velocity)
+        return x, y, z

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import inspect
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +29,10 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.orchestrator import Orchestrator
 from sailenv_ros.simulation.present_scene import PresentScene
 from sailenv_ros.simulation.randomiser import Chance, Randomiser
+from sailenv_ros.simulation.scenario import NOTHING_MORE, Additions
 from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.space_queries import SpaceQueries
@@ -41,9 +43,6 @@ from sailenv_ros.space import FreeSpace
 from sailenv_ros.world.world import World
 
 __all__ = ["SimulationCore"]
-
-Entries: TypeAlias = Sequence[Mapping[str, Any]]
-"""Objects as a scene file describes them, besides those of the scene."""
 
 SLICE_STEPS = 24
 """Steps between two looks at whether the simulation shall end (0.1 s of simulated time)."""
@@ -75,8 +74,10 @@ class SimulationCore(WorldOperations):
         Of the present world's random numbers.
     epoch : int
         Grows at each change of scene and each reset.
-    more_objects : sequence of mapping
-        What a scenario added to the scene's own objects.
+    additions : Additions
+        What a scenario added to what the scene has by itself.
+    orchestrator : Orchestrator
+        Lets objects come and go.
     editor : SceneEditor
     scene_writer : SceneWriter
     space : SpaceQueries
@@ -108,7 +109,8 @@ class SimulationCore(WorldOperations):
         self.agents = AgentTable()
         self.seed = seed
         self.epoch = 1
-        self.more_objects: Entries = ()
+        self.additions = NOTHING_MORE
+        self.orchestrator = Orchestrator(self)
         self.editor = SceneEditor(self)
         self.scene_writer = SceneWriter(self)
         self.randomiser = Randomiser(self)
@@ -132,6 +134,7 @@ class SimulationCore(WorldOperations):
         for spec in library.agents_of(self.world.scene):
             self.agents.add(spec, self.world)
         self.randomiser.begin(Chance())
+        self.orchestrator.begin()
         self.randomiser.place_cameras()
 
     # -- operations ------------------------------------------------------------------------
@@ -209,9 +212,7 @@ class SimulationCore(WorldOperations):
         chosen = self.seed if seed is None else seed
         if chance.record is not None:
             chosen = int(chance.record["seed"])
-        self.begin(
-            self.world.scene, chosen, as_registered=True, more=self.more_objects, chance=chance
-        )
+        self.begin(self.world.scene, chosen, as_registered=True, more=self.additions, chance=chance)
         self.randomiser.before_frame()
         return dict(self.randomiser.record or {})
 
@@ -221,7 +222,7 @@ class SimulationCore(WorldOperations):
         seed: int,
         *,
         as_registered: bool,
-        more: Entries = (),
+        more: Additions = NOTHING_MORE,
         chance: Chance | None = None,
     ) -> None:
         """Leave the present world for a new one at simulated time 0.
@@ -233,8 +234,8 @@ class SimulationCore(WorldOperations):
         as_registered : bool
             True puts the agents back to what they were on registration and keeps them alone;
             False adds those that the scene brings along.
-        more : sequence of mapping
-            Objects besides those of the scene.
+        more : Additions
+            What there is besides what the scene has by itself.
         chance : Chance or None
             What decides what is drawn at random; None is the first epoch of what the scene draws.
         """
@@ -246,15 +247,16 @@ class SimulationCore(WorldOperations):
             world.close()
             raise
         world.frustum_planes = self._frustum_planes
-        before = self.world, self.seed, self.more_objects
-        self.world, self.seed, self.more_objects = world, seed, more
+        before = self.world, self.seed, self.additions
+        self.world, self.seed, self.additions = world, seed, more
         self._relighter.watch(world.snapshot())
         self._holds_announcements = True
         try:
             self.randomiser.begin(chance or Chance())
+            self.orchestrator.begin()
         except BaseException:
             world.close()
-            self.world, self.seed, self.more_objects = before
+            self.world, self.seed, self.additions = before
             raise
         finally:
             self._holds_announcements = False
@@ -299,10 +301,16 @@ class SimulationCore(WorldOperations):
         while world.step_count < step and not self._should_end():
             self._render_streams(name for name, at in due().items() if 0 <= at <= world.step_count)
             ahead = {name: at for name, at in due().items() if at > world.step_count}
-            goal = min([step, world.step_count + SLICE_STEPS, *ahead.values()])
+            changes = self.orchestrator.next_step
+            stops = () if changes is None else (max(changes, world.step_count + 1),)
+            goal = min([step, world.step_count + SLICE_STEPS, *ahead.values(), *stops])
             world.step(goal - world.step_count)
+            paused = self.clock.paused
+            self.orchestrator.act()
             self.on_step(world.sim_time_ns)
             self._render_streams(name for name, at in ahead.items() if at == goal)
+            if self.clock.paused != paused:
+                break  # lessons have come to their end
 
     def render_due(self) -> None:
         """Render each agent's streamed frame if its time has come; once each."""
@@ -358,6 +366,7 @@ class SimulationCore(WorldOperations):
             info=info,
             states=self.world.states(),
             randomised=self.randomiser.record,
+            lesson=self.orchestrator.state,
             draw_alone=lambda only=0: self.run_later(
                 lambda: self.draw_alone(snapshot, camera, only)
             ),

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sailenv_ros.behaviours import start_behaviour
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.model import Asset
 from sailenv_ros.scene.entries import checked_scene, free_name, plain_value, read_document
@@ -19,7 +19,7 @@ from sailenv_ros.scene.serialisation import MOTION_KEYS, PLACE_KEYS
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.simulation.material_edits import set_material
 from sailenv_ros.simulation.saving import environment_entry
-from sailenv_ros.simulation.scenario import scenario_entries
+from sailenv_ros.simulation.scenario import scenario_additions
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 
 if TYPE_CHECKING:
@@ -54,7 +54,9 @@ class SceneEditor:
 
     def free_name(self, asset: str) -> str:
         """Return the first of ``chair_01_1``, ``chair_01_2`` … that no object has."""
-        taken = (drawn.instance.name for drawn in self._core.world.contents.instances)
+        world = self._core.world
+        there = (drawn.instance.name for drawn in world.contents.instances)
+        taken = (*there, *world.waiting.names())
         return free_name(self._core.library.canonical_asset(asset), taken)
 
     def spawn(self, entry: Mapping[str, Any], pose: Pose) -> int:
@@ -85,6 +87,8 @@ class SceneEditor:
         for key in changes:
             if key not in CHANGEABLE:
                 raise UnknownName("key of an object that can be changed", key, CHANGEABLE)
+        if changes.get("name", present.name) != present.name:
+            self.require_untaught(instance_id)
         if changes.get("materials", ()) is None:
             changes = {**changes, "materials": ()}
         placement = self._core.library.placement(
@@ -98,6 +102,22 @@ class SceneEditor:
         entry = present.model_copy(update=changed)
         world.replace_body(instance_id, replace(placement, entry=entry))
         self._core.announce()
+
+    def require_untaught(self, instance_id: int) -> None:
+        """Refuse to rename or remove an object that lessons name.
+
+        Raises
+        ------
+        InvalidState
+            If they name it.
+        """
+        world = self._core.world
+        name = world.body(instance_id).placement.name
+        if world.described is not None and name in world.described.taught:
+            raise InvalidState(
+                f"object {name!r} comes and goes with the lessons of the scene, which name it; "
+                "begin other lessons first"
+            )
 
     def set_material(self, instance_id: int, part: str, changes: Mapping[str, Any]) -> None:
         """Change what an object or a part of the room is made of."""
@@ -174,10 +194,11 @@ class SceneEditor:
         if not isinstance(scene, str) or len(names) > 1:
             raise InvalidRequest("scene", names, "the name of a scene")
         viewer = next((agent.name for agent in self._core.agents.specs), "")
-        more = scenario_entries(wanted, viewer=viewer)
+        more = scenario_additions(wanted, viewer=viewer)
         self._core.begin(scene, self._core.seed, as_registered=False, more=more)
-        ids = list(self._core.world.bodies_by_id)
-        return tuple(ids[len(ids) - len(more) :])
+        world = self._core.world
+        ids = sorted((*world.bodies_by_id, *world.waiting))
+        return tuple(ids[len(ids) - len(more.objects) :])
 
     # -- inside ----------------------------------------------------------------------------
 

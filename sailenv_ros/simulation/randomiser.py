@@ -217,10 +217,15 @@ class Randomiser:
             if "offset" in keys or "turn" in keys:
                 _carry(poses, entries, entry.name, keys)
         begun = {entry.name: entry for entry in spec.objects}
+        waiting = dict(world.waiting.names())
         for name in absent:
-            world.despawn(world.find(name))
+            world.despawn(waiting.pop(name, 0) or world.find(name))
         for entry in entries:
-            number, pose = world.find(entry.name), Pose.from_matrix(poses[entry.name])
+            pose = Pose.from_matrix(poses[entry.name])
+            if entry.name in waiting:
+                self._arrange_waiting(waiting[entry.name], entry, begun[entry.name], pose)
+                continue
+            number = world.find(entry.name)
             if entry.asset != begun[entry.name].asset:
                 world.despawn(number)
                 keys = entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS})
@@ -233,6 +238,31 @@ class Randomiser:
                 core.editor.change_object(number, {"scale": entry.scale})
             if not np.allclose(pose.matrix(), world.body(number).entry_pose.matrix(), atol=1e-12):
                 world.put_body(number, pose, teleport=True)
+
+    def _arrange_waiting(
+        self, number: int, entry: ObjectSpec, begun: ObjectSpec, pose: Pose
+    ) -> None:
+        """Let an object that waits enter as it was drawn."""
+        core, world = self._core, self._core.world
+        placement = world.waiting[number]
+        if entry.asset != begun.asset or entry.scale != begun.scale:
+            keys = entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, "appear", "leave"})
+            place = {"position": pose.position_m, "orientation": pose.orientation_xyzw}
+            drawn = core.library.placement(
+                {**keys, **place, "scale": entry.scale}, world, seed=core.seed, start_s=0.0
+            )
+            placement = replace(drawn, entry=entry)
+        elif np.allclose(pose.matrix(), placement.pose.matrix(), atol=1e-12):
+            return
+        world.wait_as(number, replace(placement, pose=pose))
+
+    def dress(self, number: int) -> None:
+        """Give an object that has just entered the looks that were drawn for it."""
+        name = self._core.world.body(number).placement.name
+        for values in (self._epoch, self._frame):
+            for part, keys in values.get("materials", {}).get(name, {}).items():
+                if keys:
+                    set_material(self._core, number, part, keys)
 
     def _change_looks(self, values: Values) -> None:
         core, world = self._core, self._core.world

@@ -34,6 +34,7 @@ from sailenv_ros.scene.spec import (
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.placement import Placement
 from sailenv_ros.world.world import World
 
 __all__ = ["described_world", "environment_entry", "room_entry", "unsaid", "uploaded_models"]
@@ -156,14 +157,34 @@ def _lights(world: World, spec: SceneSpec) -> list[Entry]:
 
 
 def _objects(world: World) -> list[Entry]:
-    begun = world.first_bodies
+    begun, waiting = world.first_bodies, world.waiting
+    assert world.described is not None
+    visitors = world.described.visitors
     # What is at a wall would come nearer to it without the board at its foot.
     same_walls = not world.room_changed and "skirting" not in world.missing_parts
-    return [
-        _object(body, unchanged=_placement_unchanged(body, begun, same_walls=same_walls))
-        for body in world.bodies
+    entries = {
+        id_: _visitor(body.placement, body.entry_pose)
+        if body.placement.name in visitors
+        else _object(body, unchanged=_placement_unchanged(body, begun, same_walls=same_walls))
+        for id_, body in world.numbered_bodies
         if body.placement.entry is not None
-    ]
+    }
+    entries.update({id_: _visitor(waiting[id_], waiting[id_].pose) for id_ in waiting})
+    return [entry for _, entry in sorted(entries.items())]
+
+
+def _visitor(placement: Placement, pose: Pose) -> Entry:
+    """Return what comes and goes: as it is when it comes, wherever it is now."""
+    assert placement.entry is not None
+    entry: Entry = placement.entry.model_dump(
+        mode="json", exclude_unset=True, exclude_defaults=True
+    )
+    carried = placement.entry.on is not None or placement.entry.wall is not None
+    if not carried and not _is_same(placement.entry.pose, pose):
+        for key in PLACE_KEYS:
+            entry.pop(key, None)
+        entry.update(pose_entry(pose))
+    return entry
 
 
 def _object(body: Body, *, unchanged: bool) -> Entry:

@@ -6,19 +6,18 @@ whether an entry is right is checked by whoever builds the scene.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from pydantic import ValidationError
-
-from sailenv_ros.behaviours import behaviour_kinds
+from sailenv_ros.behaviours.durations import moving_time_s
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
 from sailenv_ros.scene.entries import plain_value
 from sailenv_ros.validation import checked_flag, checked_number
 
-__all__ = ["SCENARIO_KEYS", "scenario_entries"]
+__all__ = ["NOTHING_MORE", "SCENARIO_KEYS", "Additions", "scenario_additions", "scenario_entries"]
 
-SCENARIO_KEYS = ("scene", "scene_name", "objects", "timings", "frustum")
+SCENARIO_KEYS = ("scene", "scene_name", "objects", "timings", "frustum", "lessons")
 
 TIMINGS = ("all_together", "wait_until_complete", "dict")
 
@@ -28,6 +27,34 @@ BOUNCE = "uniform_movement_random_bounce"
 _VECTORS = ("position", "rotation", "scale", "start_direction")
 
 Entry = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Additions:
+    """What there is besides what a scene has by itself.
+
+    Attributes
+    ----------
+    objects : sequence of mapping
+        As a scene file describes them.
+    lessons : mapping or None
+        Instead of those of the scene; as a scene file describes them.
+    """
+
+    objects: Sequence[Mapping[str, Any]] = ()
+    lessons: Mapping[str, Any] | None = None
+
+
+NOTHING_MORE = Additions()
+
+
+def scenario_additions(scenario: Mapping[str, Any], *, viewer: str) -> Additions:
+    """Return the objects and the lessons of a scenario; see `scenario_entries`."""
+    lessons = plain_value(scenario.get("lessons"))
+    if lessons is not None and scenario.get("timings") is not None:
+        accepted = "left out where there are lessons, which say when objects come"
+        raise InvalidRequest("timings", scenario["timings"], accepted)
+    return Additions(scenario_entries(scenario, viewer=viewer), lessons)
 
 
 def scenario_entries(scenario: Mapping[str, Any], *, viewer: str) -> list[Entry]:
@@ -166,7 +193,7 @@ def _one_after_another(entries: list[Entry], wait_s: float) -> list[float]:
     starts, next_s = [], 0.0
     for number, entry in enumerate(entries):
         starts.append(next_s)
-        duration_s = _duration_s(entry)
+        duration_s = moving_time_s(entry.get("behaviours"))
         if duration_s is None:
             if number < len(entries) - 1:
                 accepted = "all_together or dict where an object but the last moves without end"
@@ -174,28 +201,6 @@ def _one_after_another(entries: list[Entry], wait_s: float) -> list[float]:
             break
         next_s += duration_s + wait_s
     return starts
-
-
-def _duration_s(entry: Entry) -> float | None:
-    """Return how long an object moves [s]; None without end, 0 for what does not move."""
-    longest = 0.0
-    for behaviour in entry.get("behaviours") or []:
-        kind = (
-            behaviour_kinds().get(str(behaviour.get("type")))
-            if isinstance(behaviour, dict)
-            else None
-        )
-        if kind is None:
-            continue  # told by whoever checks the entry
-        try:
-            parameters = {key: value for key, value in behaviour.items() if key != "type"}
-            duration_s = kind.parameters.model_validate(parameters).duration_s
-        except ValidationError:
-            continue
-        if duration_s is None:
-            return None
-        longest = max(longest, duration_s)
-    return longest
 
 
 def _delay(entry: Entry, start_s: float) -> None:

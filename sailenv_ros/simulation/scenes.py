@@ -29,12 +29,19 @@ from sailenv_ros.behaviours import (
     readable_behaviour_errors,
     refusing_behaviour_errors,
 )
+from sailenv_ros.behaviours.durations import lesson_errors
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.generation import PREFIX as GENERATED
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.model import Asset, Model
-from sailenv_ros.scene.entries import checked_object, checked_objects, checked_scene, free_name
+from sailenv_ros.scene.entries import (
+    checked_lessons,
+    checked_object,
+    checked_objects,
+    checked_scene,
+    free_name,
+)
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.scene_catalogue import SceneCatalogue
 from sailenv_ros.scene.serialisation import light_entry
@@ -42,6 +49,7 @@ from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
+from sailenv_ros.simulation.scenario import NOTHING_MORE, Additions
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -140,6 +148,7 @@ class SceneLibrary:
             categories=tuple(category.name for category in self.categories.values()),
             behaviour_errors=readable_behaviour_errors,
             object_errors=ObjectFit(self._assets),
+            lesson_errors=lesson_errors,
             surfaces=surface_names(),
             skies=tuple(self._skies),
         )
@@ -176,9 +185,9 @@ class SceneLibrary:
         epoch: int,
         next_revision: Callable[[], int],
         *,
-        more: Sequence[Mapping[str, Any]] = (),
+        more: Additions = NOTHING_MORE,
     ) -> World:
-        """Build the world of a scene, with `more` objects than it has by itself.
+        """Build the world of a scene, with `more` objects and lessons than it has by itself.
 
         Uses the furniture that is built by now. See `load`, `scene.entries.checked_objects` and
         `world.build.build_world` for errors.
@@ -189,8 +198,14 @@ class SceneLibrary:
         known = self._with_materials(self._knowledge_to_build, self._stock_beside(path))
         spec = load_scene(path, knowledge=known)
         self._scene_folders[spec.name] = path.absolute().parent
+        spec = spec.model_copy(
+            update={"objects": (*spec.objects, *self._described(more.objects, spec))}
+        )
+        if more.lessons is not None:
+            lessons = checked_lessons(more.lessons, spec.objects, known)
+            spec = spec.model_copy(update={"lessons": lessons})
         world = build_world(
-            spec.model_copy(update={"objects": (*spec.objects, *self._described(more, spec))}),
+            spec,
             assets=self._assets,
             categories=self.categories,
             seed=seed,

@@ -24,6 +24,7 @@ from sailenv_ros.catalogue.thumbnails import Thumbnails
 from sailenv_ros.catalogue.upload_queue import UploadQueue
 from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import DeadlineExceeded, InvalidState, SailenvError, SimulationClosed
+from sailenv_ros.lessons import LessonState
 from sailenv_ros.notebook import scene_html
 from sailenv_ros.operations import Operation, Operations
 from sailenv_ros.render.backend import BackendName
@@ -199,6 +200,11 @@ class Simulation(Operations):
         if self._core is None:
             raise SimulationClosed("the simulation has ended")
         return self._core.world.contents
+
+    @property
+    def lesson(self) -> LessonState | None:
+        """Which lesson of which lap it is now, None if the scene has none; never blocks."""
+        return None if self._core is None else self._core.orchestrator.state
 
     @property
     def skipped_frames(self) -> int:

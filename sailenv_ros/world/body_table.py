@@ -19,6 +19,7 @@ from sailenv_ros.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.placement import Placement
+from sailenv_ros.world.waiting_room import WaitingRoom
 
 __all__ = ["BodyTable", "LabelledPiece"]
 
@@ -59,14 +60,23 @@ class BodyTable:
     placements : iterable of Placement
         What is there from the start; get the ids 1, 2, 3 … in this order. Parts of their models
         get the ids that follow.
+    waiting : collection of str
+        Names of those that are nowhere at first.
+
+    Attributes
+    ----------
+    waiting : WaitingRoom
+        Objects that are nowhere now.
     """
 
     def __init__(
         self,
         client: BulletClient,
         placements: Iterable[Placement],
+        waiting: Collection[str] = (),
     ) -> None:
         self._client = client
+        self.waiting = WaitingRoom()
         self._bodies: dict[int, Body] = {}
         self._parts: dict[int, tuple[int, ...]] = {}
         self._pieces: tuple[LabelledPiece, ...] | None = None
@@ -74,8 +84,8 @@ class BodyTable:
         self._last_id = 0
         self._last_history = 0
         for placement in placements:
-            self._add_body(placement)
-        for body_id in self._bodies:
+            self._add_body(placement, waits=placement.name in waiting)
+        for body_id in range(1, self._last_id + 1):
             self._number_parts(body_id)
         self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
         self._room_parts = frozenset(
@@ -151,9 +161,11 @@ class BodyTable:
             If there is no such object now.
         """
         if is_integer(obj):
+            self.waiting.refuse(int(obj))
             return self.piece(int(obj)).id
         if not isinstance(obj, str):
             raise InvalidRequest("object", obj, "an instance id, or the name of an object")
+        self.waiting.refuse(obj)
         ids = {piece.name: piece.id for piece in self.pieces}
         if obj in ids:
             return ids[obj]
@@ -221,10 +233,31 @@ class BodyTable:
 
     def remove(self, instance_id: int) -> None:
         """Take a body out of the engine, and wake what rests upon it."""
+        if instance_id in self.waiting:
+            self.waiting.forget(instance_id)
+        else:
+            gone = self[instance_id]
+            self.rouse_beside(gone)
+            gone.remove()
+            del self._bodies[instance_id]
+        del self._histories[instance_id], self._parts[instance_id]
+        self._pieces = None
+
+    def leave(self, instance_id: int) -> None:
+        """Take a body out of the engine as `remove` does, but keep its ids for when it enters."""
         gone = self[instance_id]
         self.rouse_beside(gone)
+        self.waiting.take_back(instance_id, gone)
         gone.remove()
-        del self._bodies[instance_id], self._histories[instance_id], self._parts[instance_id]
+        del self._bodies[instance_id]
+        self._pieces = None
+
+    def enter(self, instance_id: int, *, seed: int, start_s: float) -> None:
+        """Put a body that waits into the engine, at its place of the start and without a past."""
+        placement = self.waiting.give(instance_id, seed=seed, start_s=start_s)
+        self._bodies[instance_id] = Body(self._client, placement)
+        self._bodies = dict(sorted(self._bodies.items()))
+        self.cut_off_past(instance_id)
         self._pieces = None
 
     def rebuild(self, instance_id: int, placement: Placement) -> None:
@@ -302,25 +335,29 @@ class BodyTable:
         self._last_history += 1
         self._histories[instance_id] = self._last_history
 
-    def _add_body(self, placement: Placement) -> int:
+    def _add_body(self, placement: Placement, *, waits: bool = False) -> int:
         self._require_free_name(placement.name)
         self._require_ids(1)
-        body = Body(self._client, placement)
+        if waits:
+            self.waiting.take(self._last_id + 1, placement)
+        else:
+            self._bodies[self._last_id + 1] = Body(self._client, placement)
         self._last_id += 1
-        self._bodies[self._last_id] = body
         self._parts[self._last_id] = ()
         self.cut_off_past(self._last_id)
         return self._last_id
 
     def _number_parts(self, body_id: int) -> None:
-        count = len(self._bodies[body_id].placement.asset.parts)
+        waits = body_id in self.waiting
+        placement = self.waiting[body_id] if waits else self._bodies[body_id].placement
+        count = len(placement.asset.parts)
         self._require_ids(count)
         self._parts[body_id] = tuple(range(self._last_id + 1, self._last_id + 1 + count))
         self._last_id += count
         self._pieces = None
 
     def _require_free_name(self, name: str) -> None:
-        if any(body.placement.name == name for body in self):
+        if any(body.placement.name == name for body in self) or name in self.waiting.names():
             raise NameTaken("object", name)
 
     def _require_ids(self, count: int) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -78,6 +77,7 @@ def build_world(
                 for entry in spec.objects
             ),
         ],
+        waiting=spec.taught.union(e.name for e in spec.objects if e.appear),
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
@@ -166,7 +166,6 @@ def make_placement(
         )
         for place, b in enumerate(entry.behaviours)
     ]
-    x, y, z = (math.radians(rate) for rate in entry.angular_velocity)
     return Placement(
         name=entry.name,
         asset=asset,
@@ -179,7 +178,7 @@ def make_placement(
         friction=entry.friction,
         restitution=entry.restitution,
         linear_velocity=entry.velocity,
-        angular_velocity=(x, y, z),
+        angular_velocity=entry.angular_velocity_rad_s,
         behaviours=tuple(behaviours),
         materials=names,
         entry=entry,

@@ -33,6 +33,7 @@ from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
+from sailenv_ros.world.waiting_room import WaitingRoom
 
 __all__ = ["World"]
 
@@ -60,6 +61,8 @@ class World:
         What a scene file says of it all; None where there is none.
     settled : bool
         False leaves everything exactly where it is placed; see `resting.begin_at_rest`.
+    waiting : collection of str
+        Names of the placements that are nowhere until they `enter`.
 
     Attributes
     ----------
@@ -83,6 +86,7 @@ class World:
         gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
         described: SceneSpec | None = None,
         settled: bool = True,
+        waiting: Collection[str] = (),
     ) -> None:
         self.scene = scene
         self.epoch = epoch
@@ -105,7 +109,7 @@ class World:
         try:
             self._configure()
             self._client.gravity = gravity
-            self._bodies = BodyTable(self._client, placements)
+            self._bodies = BodyTable(self._client, placements, waiting)
             begin_at_rest(self._client, self.bodies, settled=settled)
         except BaseException:
             self.close()
@@ -277,7 +281,28 @@ class World:
         count = max(1, round(seconds * STEPS_PER_SECOND))
         return self._contact_log.contacts(self._step, count, ids, movers)
 
+    @property
+    def waiting(self) -> WaitingRoom:
+        """The objects that are nowhere now; read-only."""
+        return self._bodies.waiting
+
     # -- what is changed -------------------------------------------------------------------
+
+    def enter(self, instance_id: int, *, seed: int) -> None:
+        """Put an object that waits where it stands at the start; its behaviours begin now."""
+        now_s = self._step / STEPS_PER_SECOND
+        self._bodies.enter(instance_id, seed=seed, start_s=now_s)
+        self._moved_in_or_out(self._bodies[instance_id].placement)
+
+    def leave(self, instance_id: int) -> None:
+        """Take an object out of the world; it keeps its id and waits until it may `enter`."""
+        placement = self._bodies[instance_id].placement
+        self._bodies.leave(instance_id)
+        self._moved_in_or_out(placement)
+
+    def wait_as(self, instance_id: int, placement: Placement) -> None:
+        """Let an object that waits enter as another placement says."""
+        self._bodies.waiting.take(instance_id, placement)
 
     def spawn(self, placement: Placement) -> int:
         """Put one more object into the world.
@@ -438,6 +463,11 @@ class World:
             # Iterations end where they change nothing any more: most do after a few.
             solverResidualThreshold=SOLVER_RESIDUAL,
         )
+
+    def _moved_in_or_out(self, placement: Placement) -> None:
+        if placement.static:
+            self._changed_step = self._step
+        self._changed()
 
     def _forget_chart(self, instance_id: int) -> None:
         """Take the baked light off an instance whose surface is another now."""

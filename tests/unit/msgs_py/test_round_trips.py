@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -25,6 +25,7 @@ from sailenv_msgs_py.frame_info import (
     camera_of_frame_info,
     frame_info_to_msg,
     header_of_frame,
+    lesson_of_frame_info,
     randomised_of_frame_info,
     states_of_frame_info,
 )
@@ -52,6 +53,7 @@ from sailenv_ros.frame import RENDERED_VIEWS, VIEWS, Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
+from sailenv_ros.lessons import LessonPhase, LessonState
 from sailenv_ros.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
 from sailenv_ros.object_truth import AmodalMasks
 from sailenv_ros.objects import ObjectState
@@ -267,6 +269,19 @@ def frames(draw: st.DrawFn) -> Frame:
         timings_s={"render": draw(st.floats(0.0, 1e3))},
         states=draw(st.none() | instance_states()),
         randomised=draw(st.none() | st.dictionaries(TEXTS, COORDINATES, max_size=2)),
+        lesson=draw(st.none() | lesson_states()),
+    )
+
+
+def lesson_states() -> st.SearchStrategy[LessonState]:
+    """Return every state that lessons may be in."""
+    counts = st.integers(0, 2**62)
+    return st.builds(
+        LessonState,
+        phase=st.sampled_from(get_args(LessonPhase)),
+        name=TEXTS,
+        objects=st.lists(TEXTS, max_size=2).map(tuple),
+        **dict.fromkeys(("lap", "laps", "number", "count", "begins_ns", "ends_ns"), counts),
     )
 
 
@@ -516,6 +531,8 @@ def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float)
     same_states(states_of_frame_info(msg), frame.states)
     assert randomised_of_frame_info(msg) == frame.randomised
     told.pop("randomised")
+    assert lesson_of_frame_info(msg) == frame.lesson
+    told.pop("lesson")
     for name in [name for name in told if name.startswith(("instance_", "has_"))]:
         told.pop(name)
     assert told == {

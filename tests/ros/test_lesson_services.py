@@ -1,0 +1,92 @@
+"""Lessons over DDS: the same as in process, in frames, on the topic and in a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from std_msgs.msg import String
+
+from sailenv_ros import Agent
+from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
+from sailenv_ros.lessons import LessonState
+from tests.support.ros_probe import LATCHED, Probe
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.ros
+
+CLASS = """
+version: 1
+gravity: [0, 0, 0]
+objects:
+  - {name: one, asset: cube, position: [1, 0, 1], scale: 0.4}
+  - {name: two, asset: sphere, position: [1, 0, 1], scale: 0.4}
+lessons:
+  laps: 2
+  sequence: [{objects: [one], duration: 0.1}, {objects: [two], duration: 0.1}]
+"""
+
+
+@pytest.fixture(scope="module")
+def agent(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Agent]:
+    folder: Path = tmp_path_factory.mktemp("scenes")
+    (folder / "class.yaml").write_text(CLASS, encoding="utf-8")
+    parameters = {
+        "scene": "class",
+        "scene_paths": [str(folder)],
+        "mode": "lockstep",
+        "agent.name": "",
+        "gateway.port": 0,
+        "viewer.port": 0,
+        "backend": "native",
+    }
+    with Agent(
+        width=64, height=48, following=False, namespace="/lessons", simulator=parameters
+    ) as agent:
+        yield agent
+
+
+def test_frames_and_the_topic_tell_the_lesson(agent: Agent) -> None:
+    agent.reset()
+    with Probe("/lessons") as probe:
+        topic = probe.listen(String, "lesson", LATCHED)
+        told = []
+        for _ in range(5):
+            frame = agent.get_frame()
+            state = frame["lesson"]
+            assert agent.get_lesson() == state
+            there = {shown.name for shown in frame["instances"].values()}
+            assert there == (set() if state.phase == "ended" else set(state.objects))
+            until(
+                lambda state=state: topic.messages and topic.last.data == state.to_json(),
+                "the topic to follow",
+            )
+            told.append((state.lap, state.name, state.phase))
+            agent.step(24)
+        assert told == [
+            *((lap, name, "lesson") for lap in (1, 2) for name in ("one", "two")),
+            (2, "two", "ended"),
+        ]
+
+
+def test_lessons_are_begun_stopped_and_refused(agent: Agent) -> None:
+    agent.reset()
+    state = agent.start_lessons("{sequence: [{objects: [two], duration: 1}]}")
+    assert isinstance(state, LessonState)
+    assert (state.name, state.laps, state.count) == ("two", 0, 1)
+    with pytest.raises(InvalidEntry, match="takes no time"):
+        agent.start_lessons({"sequence": [{"objects": ["one"]}]})
+    with pytest.raises(InvalidRequest, match="a mapping"):
+        agent.start_lessons("[1]")
+    agent.stop_lessons()
+    with pytest.raises(InvalidState, match="no lessons"):
+        agent.stop_lessons()
+    assert agent.get_frame()["lesson"].phase == "stopped"
+    assert agent.start_lessons().name == "two"
+    agent.change_scene("optical")
+    assert agent.get_lesson() is None
+    assert agent.get_frame()["lesson"] is None
+    with pytest.raises(InvalidState, match="has no lessons"):
+        agent.start_lessons()
+    agent.change_scene("class")
