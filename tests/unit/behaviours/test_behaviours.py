@@ -54,6 +54,7 @@ ALL: dict[str, dict[str, Any]] = {
     "linear_waypoints": {"waypoints": CORNERS},
     "catmull_waypoints": {"waypoints": CORNERS},
     "wrench": {"force": [1, 2, 3], "duration": 1.0},
+    "open_and_close": {"period": 4.0},
 }
 
 
