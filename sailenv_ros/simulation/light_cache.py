@@ -26,10 +26,13 @@ class LightCache:
     ----------
     wanted : bool
         False hangs none.
+    drafts : bool
+        False hangs no draft: what is rendered must not depend on how far a bake is.
     """
 
-    def __init__(self, *, wanted: bool = True) -> None:
+    def __init__(self, *, wanted: bool = True, drafts: bool = True) -> None:
         self._wanted = wanted
+        self._drafts = drafts
         self._last: BakedLight | None = None
         self._is_draft = False
 
@@ -55,7 +58,8 @@ class LightCache:
         name = fingerprint(world.snapshot())
         if self._last is None or self._last.fingerprint != name or self._is_draft:
             before, self._last, self._is_draft = self._last, load_baked(name), False
-            if self._last is None and (draft := load_draft(name)) is not None:
+            draft = load_draft(name) if self._drafts and self._last is None else None
+            if draft is not None:
                 self._last, self._is_draft = draft, True
             elif self._last is None and before is not None and before.fingerprint == name:
                 self._last, self._is_draft = before, True

@@ -86,6 +86,8 @@ class SceneLibrary:
         when the scene is built.
     baked_light : bool
         False leaves worlds without baked light, whether there is any or not.
+    drafts : bool
+        False takes no rough light in the meantime, while a bake is not finished.
     """
 
     def __init__(
@@ -94,13 +96,14 @@ class SceneLibrary:
         *,
         allow_modules: bool = False,
         baked_light: bool = True,
+        drafts: bool = True,
     ) -> None:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
-        self._light_cache = LightCache(wanted=baked_light)
+        self._light_cache = LightCache(wanted=baked_light, drafts=drafts)
         self._generated = GeneratedScenes(self._assets)
         self._uploads = 0
         self._uploaded: set[str] = set()
