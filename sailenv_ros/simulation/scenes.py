@@ -214,7 +214,7 @@ class SceneLibrary:
         self._assets.renew(installed_sources(self._packs))
 
     def load_light(self, world: World) -> None:
-        """Give a world the light that was baked since it was built, if there is any."""
+        """Load the light that was baked since a world was built, if there is any."""
         if not self._light_cache.is_final(world):
             self._load_light(world, world.scene)
 
@@ -354,7 +354,7 @@ class SceneLibrary:
         return self._own_folder
 
     def is_uploaded(self, asset: str) -> bool:
-        """Say of a catalogue name if its model lies in no pack: a scene file cannot name it."""
+        """Return whether an asset's model lies in no pack, so that a scene file cannot name it."""
         return asset in self._unkept
 
     def keep_model(self, asset: str) -> None:
@@ -420,7 +420,7 @@ class SceneLibrary:
 
     def _load_light(self, world: World, scene: str) -> None:
         if world.described is not None and world.described.room is not None:
-            self._light_cache.hang(world, scene)
+            self._light_cache.apply(world, scene)
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec

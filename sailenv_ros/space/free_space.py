@@ -118,7 +118,7 @@ class FreeSpace:
         return x + (column + 0.5) * side, y + (row + 0.5) * side, self.body.floor_m
 
     def is_free(self, position: ArrayLike) -> bool:
-        """Say whether a place [m] is in a free cell."""
+        """Return whether a place [m] is in a free cell."""
         cell = self.cell_of(position)
         return cell is not None and bool(self.cells[cell] == FREE)
 
@@ -137,7 +137,7 @@ class FreeSpace:
         return result
 
     def reachable(self, start: ArrayLike, goal: ArrayLike) -> bool:
-        """Say whether a body can walk from one place [m] to another."""
+        """Return whether a body can walk from one place [m] to another."""
         cells = self.cell_of(start), self.cell_of(goal)
         if cells[0] is None or cells[1] is None:
             return False

@@ -88,7 +88,7 @@ def straightened(corners: NDArray[np.float64], free: Flags) -> NDArray[np.float6
 
 
 def in_sight(start: NDArray[np.float64], end: NDArray[np.float64], free: Flags) -> bool:
-    """Say whether all cells that a straight line touches are free."""
+    """Return whether all cells that a straight line touches are free."""
     (ax, ay), (bx, by) = sorted((tuple(start), tuple(end)))
     slope = (by - ay) / (bx - ax) if bx > ax else 0.0
     for column in range(math.floor(ax), math.floor(bx) + 1):
