@@ -105,7 +105,7 @@ def _walk(
         length += float(np.linalg.norm(np.diff(way[:, :2], axis=0), axis=1).sum())
         corners += list(way[1:])
         if len(corners) > ATTEMPTS * 100:
-            raise NoPlace("no way of that length")
+            raise NoPlace("no path of that length")
     path = np.array(corners)
     path[:, 2] = space.body.floor_m + height
     return _along(path, speed * times_s, pitch)
