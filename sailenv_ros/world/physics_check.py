@@ -128,7 +128,7 @@ def _distance(world: World, body: Body, probe: int, within_m: float) -> float:
 
 
 def _joined(a: Body, b: Body) -> bool:
-    """Say whether one carries the other on a joint: they may stand in one another there."""
+    """Return whether one carries the other on a joint: they may stand in one another there."""
     return any(isinstance(x, JointedBody) and x.parent is y for x, y in ((a, b), (b, a)))
 
 

@@ -187,7 +187,7 @@ class StepActions:
         return x, y, z
 
     def _wall(self, body: int, link: int) -> bool:
-        """Say if a body is static."""
+        """Return whether a body is static."""
         if (body, link) not in self._is_wall:
             self._is_wall[body, link] = not self._client.getDynamicsInfo(body, link)[0]
         return self._is_wall[body, link]

@@ -58,7 +58,7 @@ def test_joints_are_told_set_and_refused(probe: Probe) -> None:
 
 def test_an_agent_opens_a_drawer(probe: Probe) -> None:
     """By the same calls as a Simulation's."""
-    with Agent(namespace=NAMESPACE, width=64, height=48, start="never") as agent:
+    with Agent(namespace=NAMESPACE, width=64, height=48) as agent:
         agent.set_joint_position("drawer", 0.2)
         drawer = agent.get_joints()[1]
         assert (drawer.name, drawer.position, drawer.parent) == ("drawer", 0.2, "cabinet")
