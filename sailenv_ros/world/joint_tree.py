@@ -17,7 +17,7 @@ from sailenv_ros.world.collision import build_collision
 from sailenv_ros.world.kinematics import composed
 from sailenv_ros.world.placement import JointPlacement, Placement
 
-__all__ = ["JointTree", "Link"]
+__all__ = ["JointTree", "JointLink"]
 
 HELD = 1e-9
 """What moves by less in a step, [rad] or [m], is held by its friction and does not move."""
@@ -29,7 +29,7 @@ LIMIT_FORCE = 1e7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Link:
+class JointLink:
     """One object of a tree.
 
     Attributes
@@ -65,7 +65,7 @@ class JointTree:
     Parameters
     ----------
     client : BulletClient
-    links : sequence of Link
+    links : sequence of JointLink
         Parents before what they carry; the first one alone has the anchor as its parent.
     world_from_rest : Pose
         Of the first link's object while its joint's position is 0.
@@ -76,7 +76,9 @@ class JointTree:
         If an object's collision shape cannot have its scale; nothing is in the engine then.
     """
 
-    def __init__(self, client: BulletClient, links: Sequence[Link], world_from_rest: Pose) -> None:
+    def __init__(
+        self, client: BulletClient, links: Sequence[JointLink], world_from_rest: Pose
+    ) -> None:
         self._client = client
         self._links = tuple(links)
         self._driven: set[int] = set()
@@ -216,7 +218,7 @@ class JointTree:
         )
         return int(body)
 
-    def _offset(self, link: Link) -> Pose:
+    def _offset(self, link: JointLink) -> Pose:
         """Return where a link's frame is in that of its parent, at the joint's position 0."""
         if link.parent < 0:
             return Pose()
@@ -225,7 +227,7 @@ class JointTree:
         x, y, z = here.position_m
         return Pose((x - ox, y - oy, z - oz), here.orientation_xyzw)
 
-    def _set_dynamics(self, number: int, link: Link) -> None:
+    def _set_dynamics(self, number: int, link: JointLink) -> None:
         spec, placement = link.joint.spec, link.placement
         self._client.changeDynamics(
             self.bullet_id,

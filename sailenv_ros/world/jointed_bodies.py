@@ -18,7 +18,7 @@ from sailenv_ros.validation import checked_number
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3
 from sailenv_ros.world.bullet import BulletClient
-from sailenv_ros.world.joint_tree import JointTree, Link
+from sailenv_ros.world.joint_tree import JointLink, JointTree
 from sailenv_ros.world.kinematics import Twist, composed, link_pose, link_velocity
 from sailenv_ros.world.placement import JointPlacement, Placement
 
@@ -57,10 +57,10 @@ class JointedBody(Body):
 
     # -- where it is -----------------------------------------------------------------------
 
-    def as_link(self, parent: int) -> Link:
+    def as_link(self, parent: int) -> JointLink:
         """Return what a tree is made of."""
         position, velocity = self.joint_state()
-        return Link(
+        return JointLink(
             placement=self.placement,
             parent=parent,
             mass_kg=self.mass_kg,

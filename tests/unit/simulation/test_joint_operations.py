@@ -15,7 +15,7 @@ from sailenv_ros import Simulation
 from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation.edit_records import EditOperations
-from tests.support.doors import SCENE
+from tests.support.plain_doors import SCENE
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.world import World
-from tests.support.doors import DOOR_INERTIA, DOOR_KG, door, joined
+from tests.support.plain_doors import DOOR_INERTIA, DOOR_KG, door, joined
 from tests.support.simple_solids import UNIT_BALL, placed
 from tests.unit.world.test_world import make_world
 
