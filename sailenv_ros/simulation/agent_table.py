@@ -151,7 +151,7 @@ class AgentTable:
             stream.end(f"agent {name!r} was deleted")
 
     def pose(self, name: str | None, world: World) -> AgentPose:
-        """Say where an agent is."""
+        """Return where an agent is."""
         record = self[name]
         return AgentPose(
             pose=self.camera(record, world).pose,

@@ -179,7 +179,7 @@ class SimulationCore(WorldOperations):
         )
 
     def announce(self) -> None:
-        """Tell the scene as it is now, under a new revision."""
+        """Announce the scene as it is now, under a new revision."""
         if self._holds_announcements:
             self._unannounced = True
             return
@@ -189,7 +189,7 @@ class SimulationCore(WorldOperations):
 
     @contextmanager
     def announced_once(self) -> Iterator[None]:
-        """Tell the scene once after several changes, if there were any."""
+        """Announce the scene once after several changes, if there were any."""
         if self._holds_announcements:
             yield
             return
