@@ -35,6 +35,7 @@ from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.free_space_topic import FreeSpaceTopic
 from sailenv_ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
+from sailenv_ros.nodes.joint_topic import JointTopic
 from sailenv_ros.nodes.lesson_topic import LessonTopic
 from sailenv_ros.nodes.lifecycle import StopRequest, stop_at_end_of
 from sailenv_ros.nodes.live_parameters import LiveParameters
@@ -96,6 +97,7 @@ class SimNode:
             node, publish_clock=publish_clock, on_info=self._scene_changed
         )
         self._contacts, self._lessons = ContactTopic(node), LessonTopic(node)
+        self._joints = JointTopic(node)
         self._stop_maps = simulation.on_free_space(FreeSpaceTopic(node).publish)
         self._leases = AgentLeases(node, runner)
         self._services = SimulatorServices(
@@ -123,6 +125,7 @@ class SimNode:
         self._announcements.begin(self._simulation)
         self._contacts.begin(self._simulation)
         self._lessons.begin(self._simulation)
+        self._joints.begin(self._simulation)
         self._executor.add_node(self._node)
         self._spinning.start()
 
@@ -134,6 +137,7 @@ class SimNode:
         self._announcements.end()
         self._contacts.end()
         self._lessons.end()
+        self._joints.end()
         self._stop_maps()
         self._endpoints.close()
         return self._hosted.close_simulation(timeout_s)

@@ -9,7 +9,13 @@ from sailenv_ros.scene.messages import shown, suggestion
 from sailenv_ros.scene.rules import Entry, Faults
 from sailenv_ros.validation import is_finite_number
 
-__all__ = ["after_needs_laps", "leaves_after_it_appears", "pupils_exist", "stays_its_lesson"]
+__all__ = [
+    "after_needs_laps",
+    "leaves_after_it_appears",
+    "pupils_exist",
+    "stays_its_lesson",
+    "visitors_stand_alone",
+]
 
 
 def after_needs_laps(entry: Entry) -> Faults:
@@ -61,6 +67,23 @@ def stays_its_lesson(scene: Entry) -> Faults:
                     f"{name!r} appears {shown(appears[name])} s after its lesson has begun, which "
                     f"then is over; a lesson must be longer than that",
                 )
+
+
+def visitors_stand_alone(scene: Entry) -> Faults:
+    """Refuse joints of and on what comes and goes."""
+    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
+    lessons = scene.get("lessons")
+    taught = {name for _, name in _named(scene)} if isinstance(lessons, Mapping) else set()
+    joints = [entry["joint"] for entry in objects if isinstance(entry.get("joint"), Mapping)]
+    parents = {str(joint.get("parent")) for joint in joints}
+    for number, entry in enumerate(objects):
+        name = entry.get("name")
+        comes = name in taught or entry.get("appear") or entry.get("leave") is not None
+        if comes and (entry.get("joint") is not None or name in parents):
+            yield (
+                ("objects", number),
+                f"{shown(name)} cannot come and go, as it is on a joint or carries what is on one",
+            )
 
 
 def _named(scene: Entry) -> list[tuple[tuple[str | int, ...], str]]:

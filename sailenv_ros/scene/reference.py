@@ -31,6 +31,7 @@ _TITLES = {
     "EnvironmentSpec": "The environment",
     "LessonSpec": "A lesson",
     "LessonsSpec": "Lessons",
+    "JointSpec": "A joint",
     "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",
@@ -78,7 +79,7 @@ def write_reference(path: Path, schema: Mapping[str, Any]) -> None:
 
 
 def is_stale(path: Path, schema: Mapping[str, Any]) -> bool:
-    """Tell if `write_reference` would change the page."""
+    """Return whether `write_reference` would change the page."""
     _, marker, rest = path.read_text(encoding="utf-8").partition(MARKER)
     return marker + rest != reference(schema)
 

@@ -15,7 +15,7 @@ from pydantic import Field
 from sailenv_ros.labels import MAX_CATEGORY_ID, Category
 from sailenv_ros.scene.field_types import Number, Switch, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
-from sailenv_ros.scene.lesson_rules import pupils_exist, stays_its_lesson
+from sailenv_ros.scene.lesson_rules import pupils_exist, stays_its_lesson, visitors_stand_alone
 from sailenv_ros.scene.randomise.random_rules import random_targets_exist
 from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.room_rules import names_beside_room
@@ -29,6 +29,7 @@ from sailenv_ros.scene.rules import (
     walls_need_a_room,
 )
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
+from sailenv_ros.scene.spec_joints import JointSpec, joints_hold
 from sailenv_ros.scene.spec_lessons import LessonSpec, LessonsSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
@@ -52,6 +53,7 @@ __all__ = [
     "EnvironmentSpec",
     "LessonSpec",
     "LessonsSpec",
+    "JointSpec",
     "LightSpec",
     "MoverSpec",
     "ObjectSpec",
@@ -108,10 +110,12 @@ class SceneSpec(SceneModel):
         movers_exist,
         carriers_exist,
         parents_exist,
+        joints_hold,
         walls_need_a_room,
         names_beside_room,
         pupils_exist,
         stays_its_lesson,
+        visitors_stand_alone,
     )
 
     version: Annotated[Literal[1], Number(least=1, most=1, whole=True)] = Field(

@@ -105,6 +105,8 @@ class Orchestrator:
         knowledge = self._core.library.knowledge_of(world.scene)
         spec = checked_lessons(lessons, objects.values(), knowledge)
         ids = self._all_ids()
+        for name in sorted(spec.names):
+            world.require_free(ids[name])
         before = frozenset(self._ids)
         world.described = world.described.model_copy(update={"lessons": spec})
         with self._core.announced_once():

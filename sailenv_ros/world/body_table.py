@@ -18,6 +18,8 @@ from sailenv_ros.model import AssetPart
 from sailenv_ros.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.joint_table import JointTable
+from sailenv_ros.world.jointed_bodies import make_body
 from sailenv_ros.world.placement import Placement
 from sailenv_ros.world.waiting_room import WaitingRoom
 
@@ -77,6 +79,7 @@ class BodyTable:
     ) -> None:
         self._client = client
         self.waiting = WaitingRoom()
+        self.joints = JointTable(client)
         self._bodies: dict[int, Body] = {}
         self._parts: dict[int, tuple[int, ...]] = {}
         self._pieces: tuple[LabelledPiece, ...] | None = None
@@ -85,6 +88,7 @@ class BodyTable:
         self._last_history = 0
         for placement in placements:
             self._add_body(placement, waits=placement.name in waiting)
+        self.joints.arrange(self)
         for body_id in range(1, self._last_id + 1):
             self._number_parts(body_id)
         self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
@@ -228,6 +232,13 @@ class BodyTable:
         """
         self._require_ids(1 + len(placement.asset.parts))
         body_id = self._add_body(placement)
+        try:
+            self.joints.arrange(self)
+        except BaseException:
+            self._bodies.pop(body_id).remove()
+            del self._histories[body_id], self._parts[body_id]
+            self._last_id -= 1
+            raise
         self._number_parts(body_id)
         return body_id
 
@@ -237,11 +248,23 @@ class BodyTable:
             self.waiting.forget(instance_id)
         else:
             gone = self[instance_id]
+            self._require_nothing_on(gone, "to be removed")
             self.rouse_beside(gone)
             gone.remove()
             del self._bodies[instance_id]
         del self._histories[instance_id], self._parts[instance_id]
         self._pieces = None
+        self.joints.arrange(self)
+
+    def require_free(self, instance_id: int) -> None:
+        """Refuse an object that is on a joint or carries one; see `World.require_free`."""
+        if instance_id in self.waiting:
+            return
+        body = self[instance_id]
+        if body.placement.joint is not None:
+            name = body.placement.name
+            raise InvalidRequest("object that comes and goes", name, "one that is not on a joint")
+        self._require_nothing_on(body, "that comes and goes")
 
     def leave(self, instance_id: int) -> None:
         """Take a body out of the engine as `remove` does, but keep its ids for when it enters."""
@@ -251,14 +274,16 @@ class BodyTable:
         gone.remove()
         del self._bodies[instance_id]
         self._pieces = None
+        self.joints.arrange(self)
 
     def enter(self, instance_id: int, *, seed: int, start_s: float) -> None:
         """Put a body that waits into the engine, at its place of the start and without a past."""
         placement = self.waiting.give(instance_id, seed=seed, start_s=start_s)
-        self._bodies[instance_id] = Body(self._client, placement)
+        self._bodies[instance_id] = make_body(self._client, placement)
         self._bodies = dict(sorted(self._bodies.items()))
         self.cut_off_past(instance_id)
         self._pieces = None
+        self.joints.arrange(self)
 
     def rebuild(self, instance_id: int, placement: Placement) -> None:
         """Make of a body what another placement says; it keeps its id, its place, its motion.
@@ -271,10 +296,19 @@ class BodyTable:
         old = self[instance_id]
         if placement.name != old.placement.name:
             self._require_free_name(placement.name)
+            self._require_nothing_on(old, "to be renamed")
+        if not placement.static and placement.joint is None:
+            self._require_nothing_on(old, "that moves freely")
         new = old.rebuilt(placement)
         self.rouse_beside(old)
-        old.remove()
         self._bodies[instance_id] = new
+        try:
+            self.joints.arrange(self)
+        except BaseException:
+            self._bodies[instance_id] = old
+            new.remove()
+            raise
+        old.remove()
         self._pieces = None
 
     def replace_room(self, placements: Iterable[Placement], without: Collection[int] = ()) -> None:
@@ -302,7 +336,7 @@ class BodyTable:
         made: list[Body] = []
         try:
             for placement in wanted:
-                made.append(Body(self._client, placement))
+                made.append(make_body(self._client, placement))
         except BaseException:
             for body in made:
                 body.remove()
@@ -321,6 +355,7 @@ class BodyTable:
         for id_ in leaving:
             del self._bodies[id_], self._histories[id_], self._parts[id_]
         self._pieces = None
+        self.joints.arrange(self)
         self._room_parts = frozenset(placement.name for placement in wanted)
 
     def rouse_beside(self, body: Body) -> None:
@@ -341,7 +376,7 @@ class BodyTable:
         if waits:
             self.waiting.take(self._last_id + 1, placement)
         else:
-            self._bodies[self._last_id + 1] = Body(self._client, placement)
+            self._bodies[self._last_id + 1] = make_body(self._client, placement)
         self._last_id += 1
         self._parts[self._last_id] = ()
         self.cut_off_past(self._last_id)
@@ -355,6 +390,13 @@ class BodyTable:
         self._parts[body_id] = tuple(range(self._last_id + 1, self._last_id + 1 + count))
         self._last_id += count
         self._pieces = None
+
+    def _require_nothing_on(self, body: Body, what: str) -> None:
+        carried = self.joints.carried_by(body)
+        if carried:
+            one = carried[0].placement.name
+            accepted = f"one that carries nothing on a joint; this one carries {one!r}"
+            raise InvalidRequest(f"object {what}", body.placement.name, accepted)
 
     def _require_free_name(self, name: str) -> None:
         if any(body.placement.name == name for body in self) or name in self.waiting.names():
