@@ -122,6 +122,7 @@ def _head_of(frame: Frame) -> str:
         "camera_from_world": frame.camera.camera_from_world[:3].ravel().tolist(),
         "position": list(frame.camera.pose.position_m),
         "rpy_deg": list(frame.camera.pose.rpy_deg),
+        "lesson": "" if frame.lesson is None else str(frame.lesson),
         "timings_ms": {name: 1e3 * seconds for name, seconds in frame.timings_s.items()},
     }
     if "instance" in frame.views:

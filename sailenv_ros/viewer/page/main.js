@@ -161,7 +161,7 @@ class App {
     this.#times.push(now);
     const span = now - this.#times[0];
     if (span > 200) $("fps").textContent = `${fixed((1000 * (this.#times.length - 1)) / span, 1)} fps`;
-    if (this.view.root.isConnected) this.view.frame(head);
+    for (const panel of this.#panels) if (panel.root.isConnected) panel.frame(head);
     this.#probe();
     this.drawObjects();
   }

@@ -33,6 +33,7 @@ export class ScenePanel {
     this.roomSeed = el("input", { type: "number", min: 0, max: 2147483647, step: 1, value: 1, id: "room-seed" });
     this.made = el("p", { class: "advice", id: "room-made" });
     this.kept = "";
+    this.lesson = el("p", { class: "advice", id: "lesson" }, "The scene has none.");
     this.agents = el("dl", { class: "values" });
     this.about = el("dl", { class: "values" });
     this.root = el(
@@ -68,12 +69,23 @@ export class ScenePanel {
           button("Keep it", () => this.#keepDrawn(), { title: "Save what was drawn as a scene", kind: "keep-drawn" })),
         el("label", { class: "line" }, el("span", {}, "picture here"), this.size),
       ),
+      section(
+        "Lessons",
+        this.lesson,
+        el("div", { class: "buttons" },
+          button("Begin", () => app.try("start_lessons", {}), { title: "Begin with the first lesson", kind: "start-lessons" }),
+          button("Stop", () => app.try("stop_lessons", {}), { title: "What is there stays", kind: "stop-lessons" })),
+      ),
       section("Agents", this.agents),
       section("Simulator", this.about),
     );
   }
 
-  frame() {}
+  /** Say which lesson the frame on the screen is of. */
+  frame({ lesson }) {
+    const told = lesson || "The scene has none.";
+    if (this.lesson.textContent !== told) this.lesson.textContent = told;
+  }
 
   update(scene) {
     if (!this.kind.options.length) this.#kinds();
