@@ -88,5 +88,8 @@ def _look_key(part: ModelPart) -> tuple[object, ...]:
         material.metallic_roughness_texture,
         material.normal_texture,
     )
-    numbers = (material.base_colour, material.metallic, material.roughness)
+    numbers = (
+        *(material.base_colour, material.metallic, material.roughness),
+        *(material.emission, material.glow),
+    )
     return (material.name, *numbers, *(id(texture) for texture in textures))

@@ -328,7 +328,10 @@ def _look(material: Material) -> tuple[object, ...]:
         material.metallic_roughness_texture,
         material.normal_texture,
     )
-    numbers = (material.base_colour, material.metallic, material.roughness)
+    numbers = (
+        *(material.base_colour, material.metallic, material.roughness),
+        *(material.emission, material.glow),
+    )
     return (material.name, *numbers, *(id(texture) for texture in textures))
 
 
