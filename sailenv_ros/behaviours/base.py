@@ -263,7 +263,7 @@ class RunningBehaviour:
     idle_until_s: float = 0.0
 
     def is_idle(self, time_s: float) -> bool:
-        """Say if it does nothing in the step that begins at `time_s` [s of simulated time]."""
+        """Return whether nothing is done in the step that begins at `time_s` [simulated s]."""
         return self.own_time_s(time_s) < self.idle_until_s - 1e-9
 
     def own_time_s(self, time_s: float) -> float:

@@ -277,7 +277,7 @@ class Relighter:
 
 
 def _has_shape_of(drawn: DrawnInstance, before: DrawnInstance) -> bool:
-    """Tell if something has the very triangles that another has, of whatever material."""
+    """Return whether something has the very triangles that another has, of whatever material."""
     if drawn.scale != before.scale or len(drawn.model.parts) != len(before.model.parts):
         return False
     return drawn.model is before.model or all(

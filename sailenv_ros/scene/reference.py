@@ -76,7 +76,7 @@ def write_reference(path: Path, schema: Mapping[str, Any]) -> None:
 
 
 def is_stale(path: Path, schema: Mapping[str, Any]) -> bool:
-    """Tell if `write_reference` would change the page."""
+    """Return whether `write_reference` would change the page."""
     _, marker, rest = path.read_text(encoding="utf-8").partition(MARKER)
     return marker + rest != reference(schema)
 

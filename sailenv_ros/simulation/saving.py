@@ -187,7 +187,7 @@ def _object(body: Body, *, unchanged: bool) -> Entry:
 
 
 def _placement_unchanged(body: Body, begun: Mapping[str, Body], *, same_walls: bool) -> bool:
-    """Say if it stands where its entry puts it, and so does all that carries it."""
+    """Return whether it stands where its entry puts it, and so does all that carries it."""
     entry = body.placement.entry
     if entry is None or not body.arranged:
         return False
@@ -216,7 +216,7 @@ def _only_settled(body: Body) -> bool:
 
 
 def _is_same(first: Pose, second: Pose) -> bool:
-    """Say if two poses are the same up to rounding."""
+    """Return whether two poses are the same up to rounding."""
     return math.dist(first.position_m, second.position_m) < 1e-12 and (
         _angle_deg(first, second) < 1e-6
     )

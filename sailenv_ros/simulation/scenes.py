@@ -86,6 +86,8 @@ class SceneLibrary:
         when the scene is built.
     baked_light : bool
         False leaves worlds without baked light, whether there is any or not.
+    drafts : bool
+        False takes no rough light in the meantime, while a bake is not finished.
     """
 
     def __init__(
@@ -94,13 +96,14 @@ class SceneLibrary:
         *,
         allow_modules: bool = False,
         baked_light: bool = True,
+        drafts: bool = True,
     ) -> None:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
-        self._light_cache = LightCache(wanted=baked_light)
+        self._light_cache = LightCache(wanted=baked_light, drafts=drafts)
         self._generated = GeneratedScenes(self._assets)
         self._uploads = 0
         self._uploaded: set[str] = set()
@@ -211,7 +214,7 @@ class SceneLibrary:
         self._assets.renew(installed_sources(self._packs))
 
     def load_light(self, world: World) -> None:
-        """Give a world the light that was baked since it was built, if there is any."""
+        """Load the light that was baked since a world was built, if there is any."""
         if not self._light_cache.is_final(world):
             self._load_light(world, world.scene)
 
@@ -351,7 +354,7 @@ class SceneLibrary:
         return self._own_folder
 
     def is_uploaded(self, asset: str) -> bool:
-        """Say of a catalogue name if its model lies in no pack: a scene file cannot name it."""
+        """Return whether an asset's model lies in no pack, so that a scene file cannot name it."""
         return asset in self._unkept
 
     def keep_model(self, asset: str) -> None:
@@ -417,7 +420,7 @@ class SceneLibrary:
 
     def _load_light(self, world: World, scene: str) -> None:
         if world.described is not None and world.described.room is not None:
-            self._light_cache.hang(world, scene)
+            self._light_cache.apply(world, scene)
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec

@@ -30,10 +30,10 @@ from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.model_workers import ModelWorkers
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
-from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.snapshot import SceneContents
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for

@@ -186,7 +186,7 @@ class StepActions:
         return x, y, z
 
     def _wall(self, body: int) -> bool:
-        """Say if a body is static."""
+        """Return whether a body is static."""
         if body not in self._is_wall:
             self._is_wall[body] = not self._client.getDynamicsInfo(body, LINK_OF_BASE)[0]
         return self._is_wall[body]

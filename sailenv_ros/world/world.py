@@ -260,7 +260,7 @@ class World:
         return self._bodies.find(obj)
 
     def object_state(self, instance_id: int) -> ObjectState:
-        """Say what and where an object, or a part of one, is now.
+        """Return what and where an object, or a part of one, is now.
 
         Raises
         ------
