@@ -19,6 +19,10 @@ EMISSION_SCALE = 16.0
 """Radiance, in units of the base colour, that the G-buffer's 8 bits can hold."""
 
 
+DARKEST = 0.1
+"""Brightness that the colour of what glows has at least: 8 bits hold few shades of black."""
+
+
 @dataclass(frozen=True, slots=True)
 class MaterialFactors:
     """The numbers of one material.
@@ -62,8 +66,11 @@ def material_factors(
     emission = np.asarray(material.emission) + np.multiply(material.glow, lamp_power)
     glow = float(emission.max())
     if glow > 0.0:
-        # The G-buffer holds one colour and one strength: what glows has the glow's colour.
-        base[:3] = emission / glow
+        # The G-buffer holds one colour and one strength: what glows has the glow's colour, about
+        # as bright as its own, so that it gives back as much light.
+        bright = float(min(1.0, max(base[:3].max(), DARKEST, glow / EMISSION_SCALE)))
+        base[:3] = emission / glow * bright
+        glow /= bright
     red, green, blue = (float(number) for number in np.sqrt(base[:3]))
     edge = SIZES_PX[array_of(material.base_colour_texture)]
     fall, least = cutoff_by_level(material, edge)

@@ -31,7 +31,7 @@ from sailenv_ros.assets.standard.catalogues import CatalogueEntry, Catalogues
 from sailenv_ros.assets.standard.dividing import LabelledMesh, divided
 from sailenv_ros.assets.standard.finishes import FINISHES, finish_of, finished
 from sailenv_ros.assets.standard.handmade import HANDMADE
-from sailenv_ros.assets.standard.handmade.devices import desktop_picture
+from sailenv_ros.assets.standard.handmade.devices import SCREEN_BLACK, desktop_picture
 from sailenv_ros.assets.standard.handmade.paintings import landscape_picture
 from sailenv_ros.assets.standard.patterns import PATTERNS
 from sailenv_ros.assets.standard.recipe import MaterialRule, RecipeEntry
@@ -221,7 +221,7 @@ def _showing(mesh: RawMesh, material: Material, what: str) -> tuple[RawMesh, Mat
     ratio = float(size[1] / np.hypot(size[0], size[2]))
     picture = desktop_picture(0, ratio) if what == "desktop" else landscape_picture(5, ratio)
     shown = dataclasses.replace(
-        material, base_colour=(1.0, 1.0, 1.0, 1.0), base_colour_texture=picture
+        material, base_colour=(*SCREEN_BLACK, 1.0), base_colour_texture=picture
     )
     return dataclasses.replace(mesh, uvs=places), shown
 

@@ -13,6 +13,7 @@ from sailenv_ros.assets.standard.handmade.shapes import Vector3, box, part, raw_
 from sailenv_ros.model import Texture
 
 __all__ = [
+    "SCREEN_BLACK",
     "SCREEN_WHITE",
     "computer",
     "desktop_picture",
@@ -22,6 +23,9 @@ __all__ = [
     "stove",
     "whiteboard",
 ]
+
+SCREEN_BLACK = (0.02, 0.02, 0.022)
+"""What the white of its picture gives back of other light."""
 
 SCREEN_WHITE = (0.45, 0.47, 0.5)
 """Radiance of the white of a screen that is on: about that of a white wall in daylight."""
@@ -78,7 +82,7 @@ def monitor(wide: float, tall: float, number: int) -> list[RawPart]:
         part(
             "display",
             shown,
-            base_colour=(1, 1, 1, 1),
+            base_colour=(*SCREEN_BLACK, 1.0),
             base_colour_texture=picture,
             roughness=0.25,
             emission=SCREEN_WHITE,

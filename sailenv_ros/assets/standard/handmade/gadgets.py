@@ -6,7 +6,7 @@ import numpy as np
 
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
-from sailenv_ros.assets.standard.handmade.devices import SCREEN_WHITE
+from sailenv_ros.assets.standard.handmade.devices import SCREEN_BLACK, SCREEN_WHITE
 from sailenv_ros.assets.standard.handmade.forms import (
     circle,
     curve,
@@ -197,7 +197,7 @@ def tablet() -> list[RawPart]:
                 "display",
                 panel(0.154, 0.230, 0.0073),
                 base_colour_texture=screen.texture(),
-                base_colour=(1.0, 1.0, 1.0, 1.0),
+                base_colour=(*SCREEN_BLACK, 1.0),
                 roughness=0.08,
                 emission=SCREEN_WHITE,
             ),
