@@ -206,6 +206,7 @@ setup(
     ),
     package_data={
         "sailenv_ros": ["py.typed"],
+        "sailenv_ros.dataset": ["preview/*"],
         "sailenv_ros.render": ["shaders/*"],
         "sailenv_ros.viewer": ["page/*"],
         "sailenv_msgs_py": ["py.typed"],
