@@ -1,4 +1,4 @@
-"""Hangs baked light into worlds, where it has been baked already. From `World` to `World`.
+"""Loads baked light into worlds, where it has been baked already. From `World` to `World`.
 
 Never bakes: a simulator that runs must not be held up for minutes.
 """
@@ -25,9 +25,9 @@ class LightCache:
     Parameters
     ----------
     wanted : bool
-        False hangs none.
+        False loads none.
     drafts : bool
-        False hangs no draft: what is rendered must not depend on how far a bake is.
+        False loads no draft: what is rendered must not depend on how far a bake is.
     """
 
     def __init__(self, *, wanted: bool = True, drafts: bool = True) -> None:
@@ -37,13 +37,13 @@ class LightCache:
         self._is_draft = False
 
     def is_final(self, world: World) -> bool:
-        """Tell whether a world has light that no bake will replace."""
+        """Return whether a world has light that no bake will replace."""
         baked = world.contents.baked
         if baked is None:
             return False
         return not (self._is_draft and self._last is not None and baked.layers is self._last.layers)
 
-    def hang(self, world: World, scene: str) -> None:
+    def apply(self, world: World, scene: str) -> None:
         """Load a world's baked light, the draft if that is all there is, or say how to bake it.
 
         Parameters
