@@ -45,6 +45,13 @@ class _ModelParts:
 class PartTable:
     """The parts of the contents that are shown.
 
+    Parameters
+    ----------
+    meshes : MeshStore or None
+    textures : TextureStore or None
+        Shared with tables of scenes that are shown before and after, which must not be at the same
+        time; None for its own.
+
     Attributes
     ----------
     contents : SceneContents or None
@@ -54,9 +61,11 @@ class PartTable:
         The same as `opaque`, with no lamp on.
     """
 
-    def __init__(self) -> None:
-        self._meshes = MeshStore()
-        self._textures = TextureStore()
+    def __init__(
+        self, meshes: MeshStore | None = None, textures: TextureStore | None = None
+    ) -> None:
+        self._meshes = MeshStore() if meshes is None else meshes
+        self._textures = TextureStore() if textures is None else textures
         self._models: dict[tuple[int, int], _ModelParts] = {}
         self.contents: SceneContents | None = None
         self.opaque = self.glass = self.casters = np.zeros(0, PART)
