@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,14 +18,14 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.generation.checks import Fault, faults, unseen
+from sailenv_ros.generation.checks import Fault, faults, look_backend, unseen
 from sailenv_ros.generation.furnishing import Furnisher
 from sailenv_ros.generation.items import Item, Namer
 from sailenv_ros.generation.lighting import environment_entry, light_entries
 from sailenv_ros.generation.names import MAX_SEED
 from sailenv_ros.generation.plan import RoomPlan
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.room_agents import agent_entries, best_first, standing
+from sailenv_ros.generation.room_agents import StandingWorld, agent_entries, best_first
 from sailenv_ros.generation.route import mover_entry
 from sailenv_ros.generation.rule_files import Rules, rules_of
 from sailenv_ros.generation.rule_models import KindFile
@@ -33,8 +34,10 @@ from sailenv_ros.generation.shells import Shell, shell_of
 from sailenv_ros.generation.stock import Stock
 from sailenv_ros.generation.things import lay_things
 from sailenv_ros.labels import CategoryTable
-from sailenv_ros.scene.room_rules import room_part_names
+from sailenv_ros.render.backend import RenderBackend
+from sailenv_ros.scene.room_rules import WALLS, room_part_names
 from sailenv_ros.scene.spec import EnvironmentSpec, SceneSpec
+from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
 from sailenv_ros.validation import checked_integer
 from sailenv_ros.world.build import build_world
 from sailenv_ros.world.world import World
@@ -127,13 +130,14 @@ class Generator:
         """
         file = self._rules.kind(kind)
         seed = checked_integer("seed", seed, 0, MAX_SEED)
-        for attempt in range(MAX_ATTEMPTS):
-            draft = self._drafted(kind, file, seed, attempt)
-            if draft is None:
-                continue
-            made = self._checked(draft)
-            if made is not None:
-                return made
+        with closing(look_backend()) as backend:
+            for attempt in range(MAX_ATTEMPTS):
+                draft = self._drafted(kind, file, seed, attempt)
+                if draft is None:
+                    continue
+                made = self._checked(draft, backend)
+                if made is not None:
+                    return made
         raise InvalidState(
             f"{MAX_ATTEMPTS} rooms of kind {kind!r} with the seed {seed} have failed the checks; "
             "the rules leave too little space"
@@ -187,18 +191,16 @@ class Generator:
                 x, y, _ = item.entry["position"]
                 item.entry["position"] = [x, y, round(top + RUG_GAP_M, 4)]
 
-    def _checked(self, draft: _Draft) -> GeneratedScene | None:
+    def _checked(self, draft: _Draft, backend: RenderBackend) -> GeneratedScene | None:
         """Take out what fails a check; None if that is something the room needs."""
         taken_out: list[Fault] = []
         for _ in range(MAX_ROUNDS):
             data = self._described(draft)
             world = self._built(draft.spec_of(data))
             try:
-                found = list(faults(world))
+                found = [*faults(world), *unseen(world, draft.eyes(), backend)]
                 if not found:
-                    found = list(unseen(world, draft.eyes()))
-                if not found:
-                    _with_cameras(data, world, draft)
+                    _with_cameras(data, StandingWorld(world, backend), draft)
             finally:
                 world.close()
             if not found:
@@ -244,8 +246,10 @@ class Generator:
         return data
 
     def _built(self, spec: SceneSpec) -> World:
-        # No check looks at the sky, which takes time to read.
-        plain = spec.model_copy(update={"environment": EnvironmentSpec()})
+        # No check looks at the sky or at materials, which take time to make.
+        plain = spec.model_copy(
+            update={"environment": EnvironmentSpec(), "room": _without_looks(spec.room)}
+        )
         return build_world(
             plain,
             assets=self._stock.assets,
@@ -321,13 +325,29 @@ class _Draft:
         return [*corners, *between]
 
 
-def _with_cameras(data: dict[str, Any], world: World, draft: _Draft) -> None:
+def _with_cameras(data: dict[str, Any], scene: StandingWorld, draft: _Draft) -> None:
     """Add agents to a scene, and begin the camera's way where its view is best."""
-    with standing(world) as scene:
-        mover = data["mover"]
-        mover["waypoints"] = best_first(scene, mover["waypoints"])
-        rooms = len(draft.shell.areas)
-        data["agents"] = agent_entries(scene, max(2, rooms), draft.seed)
+    mover = data["mover"]
+    mover["waypoints"] = best_first(scene, mover["waypoints"])
+    data["agents"] = agent_entries(scene, max(2, len(draft.shell.areas)), draft.seed)
+
+
+def _without_looks(room: RoomSpec | None) -> RoomSpec | None:
+    """Return a room of the same shape that is all of one material."""
+    if room is None:
+        return None
+    one = SurfaceSpec()
+    bare: dict[str, None] = dict.fromkeys(WALLS)
+    return room.model_copy(
+        update={
+            "walls": one,
+            "wall_materials": WallMaterialsSpec(),
+            "floor": one,
+            "ceiling": None if room.ceiling is None else one,
+            "partitions": tuple(each.model_copy(update=bare) for each in room.partitions),
+            "floors": tuple(each.model_copy(update={"surface": one}) for each in room.floors),
+        }
+    )
 
 
 def _lies_under(rug: Item, item: Item) -> bool:

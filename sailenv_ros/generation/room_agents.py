@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
-from sailenv_ros.generation.checks import look_backend
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.space import FreeSpace
@@ -25,7 +24,7 @@ from sailenv_ros.viewpoints import ViewScene, sample_cameras
 from sailenv_ros.viewpoints.room_view import outlook
 from sailenv_ros.world.world import World
 
-__all__ = ["StandingWorld", "agent_entries", "best_first", "standing"]
+__all__ = ["StandingWorld", "agent_entries", "best_first"]
 
 WALKER = "eye"
 """Follows the mover."""
@@ -38,24 +37,20 @@ _LOOK_PX = (80, 60)
 
 
 class StandingWorld(ViewScene):
-    """A world that stands still, as rules of cameras see it; a context manager.
+    """A world that stands still, as rules of cameras see it.
 
     Parameters
     ----------
     world : World
-    lens : CameraIntrinsics
+    backend : RenderBackend
     """
 
-    def __init__(self, world: World, lens: CameraIntrinsics) -> None:
+    def __init__(self, world: World, backend: RenderBackend) -> None:
+        width, height = _LOOK_PX
+        lens = CameraIntrinsics(width=width, height=height, vertical_fov_deg=FOV_DEG)
         super().__init__(world.snapshot(), lens)
         self._world = world
-        self._backend: RenderBackend = look_backend()
-
-    def __enter__(self) -> StandingWorld:
-        return self
-
-    def __exit__(self, *reason: object) -> None:
-        self._backend.close()
+        self._backend = backend
 
     def instances(self, pose: Pose) -> NDArray[np.uint16]:
         """Return the (H, W) instance view from a pose."""
@@ -108,11 +103,3 @@ def best_first(scene: StandingWorld, waypoints: Sequence[dict[str, Any]]) -> lis
     ]
     first = int(np.argmax(worth))
     return [*waypoints[first:], *waypoints[:first]]
-
-
-def standing(world: World) -> StandingWorld:
-    """Return a world for the choice of cameras."""
-    width, height = _LOOK_PX
-    return StandingWorld(
-        world, CameraIntrinsics(width=width, height=height, vertical_fov_deg=FOV_DEG)
-    )
