@@ -14,7 +14,7 @@ from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.world import World

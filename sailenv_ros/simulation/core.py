@@ -29,12 +29,12 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.present_scene import PresentScene
 from sailenv_ros.simulation.randomiser import Chance, Randomiser
 from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.space_queries import SpaceQueries
-from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 from sailenv_ros.space import FreeSpace
@@ -363,10 +363,9 @@ class SimulationCore(WorldOperations):
             ),
         )
 
-    def look(self, camera: Camera, view: str) -> NDArray[Any]:
-        """Render one view of the scene as it stands now, through a camera that is no agent's."""
-        rendered = self._renderer.render(self.world.snapshot(), None, camera, (view,))
-        return rendered.views[view]
+    def look(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
+        """Render views of the scene as it stands now, through a camera that is no agent's."""
+        return self._renderer.render(self.world.snapshot(), None, camera, views).views
 
     def view_scene(self, lens: CameraIntrinsics) -> PresentScene:
         """Return the scene as it stands now, for rules of cameras."""

@@ -315,7 +315,7 @@ class SceneLibrary:
         names = tuple(category.name for category in world.categories.values())
         stock = self.materials_of(world.scene)
         known = replace(self._knowledge_of_strangers, categories=names)
-        spec = checked_object(entry, self._with_materials(known, stock))
+        spec = _checked_alone(entry, self._with_materials(known, stock))
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -438,6 +438,16 @@ class SceneLibrary:
         own = tuple(category.name for category in spec.categories)
         known = self._with_materials(self._knowledge_of_strangers, self.materials_of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
+
+
+def _checked_alone(entry: Mapping[str, Any], known: SceneKnowledge) -> ObjectSpec:
+    """Check an object beside which there are others: what its joint is on, the world knows."""
+    joint = entry.get("joint") if isinstance(entry, Mapping) else None
+    parent = joint.get("parent") if isinstance(joint, Mapping) else None
+    if not isinstance(parent, str) or parent == entry.get("name"):
+        return checked_object(entry, known)
+    stands_in = {"name": parent, "asset": entry.get("asset"), "static": True}
+    return checked_objects([entry, stands_in], known)[0]
 
 
 def _standard_pack_version() -> tuple[int, int]:
