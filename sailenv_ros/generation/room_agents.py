@@ -51,14 +51,15 @@ class StandingWorld(ViewScene):
         super().__init__(world.snapshot(), lens)
         self._world = world
         self._backend = backend
+        self._last: tuple[Pose, Mapping[str, NDArray[Any]]] | None = None
 
     def instances(self, pose: Pose) -> NDArray[np.uint16]:
         """Return the (H, W) instance view from a pose."""
-        return self._view(pose, "instance")
+        return self._surfaces(pose)["instance"]
 
     def depth_m(self, pose: Pose) -> NDArray[np.float32]:
         """Return the (H, W) depth view from a pose [m]."""
-        return self._view(pose, "depth")
+        return self._surfaces(pose)["depth"]
 
     def whole_pixels(self, pose: Pose, only: int = 0) -> Mapping[int, int]:
         """Return how many pixels each object would cover alone; see `ViewScene`."""
@@ -76,9 +77,12 @@ class StandingWorld(ViewScene):
         )
         return map_free_space(solids, body)
 
-    def _view(self, pose: Pose, name: str) -> NDArray[Any]:
-        drawn = self._backend.render(self.snapshot, None, self.camera(pose), (name,))
-        return np.asarray(drawn.views[name])
+    def _surfaces(self, pose: Pose) -> Mapping[str, NDArray[Any]]:
+        """Return depth and ids, which cost no more than one of them."""
+        if self._last is None or self._last[0] is not pose:
+            camera, wanted = self.camera(pose), ("depth", "instance")
+            self._last = pose, self._backend.render(self.snapshot, None, camera, wanted).views
+        return self._last[1]
 
 
 def agent_entries(scene: StandingWorld, count: int, seed: int) -> list[dict[str, Any]]:
