@@ -29,6 +29,7 @@ _TITLES = {
     "DoorwaySpec": "A doorway",
     "FloorAreaSpec": "A floor area",
     "EnvironmentSpec": "The environment",
+    "JointSpec": "A joint",
     "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",

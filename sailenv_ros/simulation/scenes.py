@@ -42,6 +42,7 @@ from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
+from sailenv_ros.viewpoints.rule_table import rule_errors
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -143,6 +144,7 @@ class SceneLibrary:
             categories=tuple(category.name for category in self.categories.values()),
             behaviour_errors=readable_behaviour_errors,
             object_errors=ObjectFit(self._assets),
+            camera_errors=rule_errors,
             surfaces=surface_names(),
             skies=tuple(self._skies),
         )
@@ -315,7 +317,7 @@ class SceneLibrary:
         names = tuple(category.name for category in world.categories.values())
         stock = self.materials_of(world.scene)
         known = replace(self._knowledge_of_strangers, categories=names)
-        spec = checked_object(entry, self._with_materials(known, stock))
+        spec = _checked_alone(entry, self._with_materials(known, stock))
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -438,6 +440,16 @@ class SceneLibrary:
         own = tuple(category.name for category in spec.categories)
         known = self._with_materials(self._knowledge_of_strangers, self.materials_of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
+
+
+def _checked_alone(entry: Mapping[str, Any], known: SceneKnowledge) -> ObjectSpec:
+    """Check an object beside which there are others: what its joint is on, the world knows."""
+    joint = entry.get("joint") if isinstance(entry, Mapping) else None
+    parent = joint.get("parent") if isinstance(joint, Mapping) else None
+    if not isinstance(parent, str) or parent == entry.get("name"):
+        return checked_object(entry, known)
+    stands_in = {"name": parent, "asset": entry.get("asset"), "static": True}
+    return checked_objects([entry, stands_in], known)[0]
 
 
 def _standard_pack_version() -> tuple[int, int]:

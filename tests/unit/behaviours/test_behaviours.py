@@ -54,6 +54,7 @@ ALL: dict[str, dict[str, Any]] = {
     "linear_waypoints": {"waypoints": CORNERS},
     "catmull_waypoints": {"waypoints": CORNERS},
     "wrench": {"force": [1, 2, 3], "duration": 1.0},
+    "open_and_close": {"period": 4.0},
 }
 
 
@@ -65,7 +66,8 @@ def at_rest(pose: Pose | None = None, **kwargs: Any) -> BodyState:
 
 def actions(type_: str, seed: int, count: int = 480) -> list[Any]:
     running = start_behaviour(type_, ALL[type_], seed=seed, object_name="thing", place=0)
-    return [running.act(step * STEP_S, at_rest()) for step in range(count)]
+    body = at_rest(joint_limits=(0.0, 1.0))
+    return [running.act(step * STEP_S, body) for step in range(count)]
 
 
 def test_a_step_is_the_engines() -> None:
