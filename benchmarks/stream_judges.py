@@ -14,6 +14,7 @@ for. Needs PyTorch, OpenCV, SciPy, Pillow and matplotlib; nothing of this packag
 from __future__ import annotations
 
 import argparse
+import importlib
 import importlib.abc
 import importlib.machinery
 import json
@@ -124,6 +125,8 @@ def _patch(frames: int | None) -> None:
     import cv2
     import lve
 
+    if not hasattr(lve, "InputStream"):
+        _complete(lve)
     # For faces, which are given no weight; OpenCV 5 has none.
     vars(cv2).setdefault("CascadeClassifier", MagicMock())
     read = lve.InputStream.__init__
@@ -137,6 +140,24 @@ def _patch(frames: int | None) -> None:
 
     lve.InputStream.__init__ = init
     lve.VisualizationServer = MagicMock(name="VisualizationServer")
+
+
+def _complete(package: types.ModuleType) -> None:
+    """Give continual-of's package the names that it uses: its `__init__.py` is not published."""
+    package.__file__ = str(Path(next(iter(package.__path__))) / "__init__.py")
+    for module, names in (
+        ("in_stream", ("InputStream", "InputType")),
+        ("out_stream", ("OutputStream", "OutputType")),
+        ("worker", ("Worker",)),
+        ("opticalflow_cv", ("OpticalFlowCV",)),
+        ("visuserver", ("VisualizationServer",)),
+        ("vprocessor", ("VProcessor",)),
+        ("net_hs", ("NetHS",)),
+        ("worker_hs", ("WorkerHS",)),
+    ):
+        found = importlib.import_module(f"lve.{module}")
+        for name in names:
+            setattr(package, name, getattr(found, name))
 
 
 def _run(program: Path, arguments: Sequence[str]) -> None:
