@@ -50,6 +50,7 @@ from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
 from sailenv_ros.simulation.scenario import NOTHING_MORE, Additions
+from sailenv_ros.viewpoints.rule_table import rule_errors
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -152,6 +153,7 @@ class SceneLibrary:
             behaviour_errors=readable_behaviour_errors,
             object_errors=ObjectFit(self._assets),
             lesson_errors=lesson_errors,
+            camera_errors=rule_errors,
             surfaces=surface_names(),
             skies=tuple(self._skies),
         )
