@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from std_msgs.msg import String
 
-from sailenv_ros import Agent
+from sailenv_ros import Agent, Simulation
+from sailenv_ros.agents import AgentSpec
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
 from sailenv_ros.lessons import LessonState
+from sailenv_ros.recording.frames import RecordedFrames
+from sailenv_ros.recording.lockstep import record_lockstep
+from sailenv_ros.recording.reader import RecordingReader
+from sailenv_ros.recording.writer import RecordingWriter
 from tests.support.ros_probe import LATCHED, Probe
 from tests.support.waiting import until
 
@@ -90,3 +97,23 @@ def test_lessons_are_begun_stopped_and_refused(agent: Agent) -> None:
     with pytest.raises(InvalidState, match="has no lessons"):
         agent.start_lessons()
     agent.change_scene("class")
+
+
+def test_recorded_frames_tell_their_lessons(tmp_path: Path) -> None:
+    (tmp_path / "class.yaml").write_text(CLASS, encoding="utf-8")
+    eye = AgentSpec(name="eye", intrinsics=CameraIntrinsics(width=32, height=24), rate_hz=20.0)
+    told = []
+    with Simulation("class", mode="lockstep", scene_paths=[tmp_path], agent=eye) as simulation:
+        with RecordingWriter(tmp_path / "bag") as writer:
+            record_lockstep(simulation, writer, frames=10, views=["instance"])
+        simulation.reset()
+        for _ in range(10):
+            told.append(simulation.capture(["instance"]))
+            simulation.step(12)
+    with RecordingReader(tmp_path / "bag") as reader:
+        frames = list(RecordedFrames(reader))
+    assert [frame.lesson for frame in frames] == [frame.lesson for frame in told]
+    assert len({frame.lesson for frame in frames}) == 5
+    for recorded, live in zip(frames, told, strict=True):
+        assert recorded.instances == live.instances
+        assert np.array_equal(recorded["instance"], live["instance"])
