@@ -162,7 +162,8 @@ def record_lockstep(
         late = tuple(view for view in wanted or () if view in FORWARD_VIEWS)
         made = _frames(simulation, shots, _rendered(wanted))
         for frame in with_forward_motion(made, late) if late else made:
-            while infos:
+            # The next frame is being made: what is told for it must not come before this one.
+            while infos and infos[0].revision <= frame.revision:
                 recorder.write_info(infos.pop(0))
             recorder.write_frame(frame, ranges[frame.agent], amodal=amodal)
             count += 1
