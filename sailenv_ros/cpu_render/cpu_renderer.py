@@ -219,7 +219,7 @@ class NativeRenderer:
         glows: bool,
     ) -> NDArray[np.float32]:
         """Draw linear radiance of some instances, without glass, as an array (H, W, 3)."""
-        parts = self._table.opaque
+        parts = self._table.unlit
         if not glows:
             parts = parts.copy()
             parts["emission"] = 0.0
