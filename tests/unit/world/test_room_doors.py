@@ -54,9 +54,7 @@ def corners(world: World, *names: str) -> np.ndarray:
 
 @pytest.mark.parametrize("degrees", [0, 40, 90])
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_a_hinged_leaf_is_where_a_fixed_one_stands(
-    tmp_path: Path, degrees: int, side: str
-) -> None:
+def test_a_hinged_leaf_is_where_a_fixed_one_stands(tmp_path: Path, degrees: int, side: str) -> None:
     """Frame and leaf together are the very triangles of the door in one piece."""
     keys = f", open: {degrees}, hinge: {side}"
     whole = world_of(room(tmp_path, outer=keys))
