@@ -121,6 +121,20 @@ def test_saved_rooms_keep_doors_open(tmp_path: Path) -> None:
         np.testing.assert_allclose(positions, [0.7, 1.1], rtol=1e-15)
 
 
+def test_a_leaf_is_painted_with_its_door(tmp_path: Path) -> None:
+    """Frame and leaf have one colour, which is saved; the leaf stays open."""
+    with Simulation(room(tmp_path, outer=", hinged: true"), mode="lockstep") as simulation:
+        simulation.set_joint_position("door 1 leaf", 0.5)
+        simulation.set_material("door 1", colour="#ff0000")
+        leaf = next(i.id for i in simulation.info.instances if i.name == "door 1 leaf")
+        cast = simulation.cast_rays([(-1.5, 0.0, 1.9)], [(0.0, -1.0, 0.0)])
+        assert cast.instance_ids.tolist() == [leaf]
+        assert [joint.position for joint in simulation.get_joints()] == [0.5]
+        assert "colour: '#ff0000'" in simulation.scene_text()
+        with pytest.raises(InvalidRequest, match="with which goes its leaf"):
+            simulation.set_material("door 1 leaf", colour="#00ff00")
+
+
 def test_what_means_nothing_is_refused(tmp_path: Path) -> None:
     """`open` of a doorway without a door; an object by the name of a leaf; moving a leaf."""
     with pytest.raises(SceneError, match="only beside door"):
