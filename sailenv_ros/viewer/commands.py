@@ -19,6 +19,7 @@ from sailenv_ros.operations import Operations
 from sailenv_ros.simulation.edit_records import EditOperations
 from sailenv_ros.viewer.chance_commands import CHANCE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
+from sailenv_ros.viewer.joint_commands import JOINT_COMMANDS
 from sailenv_ros.viewer.lesson_commands import LESSON_COMMANDS
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
 from sailenv_ros.viewer.material_commands import MATERIAL_COMMANDS
@@ -39,6 +40,7 @@ _commands = CommandTable(
         **LIGHT_COMMANDS,
         **ROOM_COMMANDS,
         **MATERIAL_COMMANDS,
+        **JOINT_COMMANDS,
         **CHANCE_COMMANDS,
         **LESSON_COMMANDS,
     }
