@@ -25,7 +25,7 @@ host, port = "127.0.0.1", int((sys.argv[1:] or ["8085"])[0])
 
 
 def listens() -> bool:
-    """Tell if a simulator answers on the port."""
+    """Return whether a simulator answers on the port."""
     with socket.socket() as probe:
         return probe.connect_ex((host, port)) == 0
 

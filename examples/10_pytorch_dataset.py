@@ -16,7 +16,7 @@ except ImportError:
     DataLoader, IterableDataset = None, object
 
     def get_worker_info() -> None:
-        """Say that this is no worker."""
+        """Start as no worker."""
 
 
 LOCKSTEP = {"scene": "optical", "mode": "lockstep"}

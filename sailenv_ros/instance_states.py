@@ -87,7 +87,7 @@ class InstanceStates:
         return len(self.ids)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether all numbers are the same."""
+        """Return whether all numbers are the same."""
         if not isinstance(other, InstanceStates):
             return NotImplemented
         names = [entry.name for entry in fields(self)]

@@ -264,7 +264,7 @@ def _listed(names: Iterable[str], most: int = 8) -> str:
 
 
 def _in_a_notebook() -> bool:
-    """Tell if this is a kernel that shows HTML; a terminal with IPython is none."""
+    """Return whether this is a kernel that shows HTML; a terminal with IPython is none."""
     ipython = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
     return getattr(shell, "kernel", None) is not None

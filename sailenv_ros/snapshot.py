@@ -34,11 +34,20 @@ class DrawnInstance:
         Shared between instances; compared by identity.
     scale : (3,) tuple of float
         Applied to the model in its body frame, before the pose.
+    stands : bool or None
+        True if its light is baked: it never moves, or stands until its joint is moved. None takes
+        what the instance says of physics.
     """
 
     instance: Instance
     model: Model
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    stands: bool | None = None
+
+    @property
+    def is_baked(self) -> bool:
+        """True if its light is baked with that of what stands still."""
+        return self.instance.static if self.stands is None else self.stands
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -31,13 +31,13 @@ IDENTIFIER = re.compile(r"[a-z][a-z0-9_]{0,62}")
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Tell if a value is a real number, be it infinite or not a number."""
+    """Return whether a value is a real number, be it infinite or not a number."""
     number = isinstance(value, int | float | np.integer | np.floating)
     return number and not isinstance(value, bool)
 
 
 def is_finite_number(value: object) -> TypeGuard[float]:
-    """Tell if a value is a number that a float can hold; an integer may be too large for that."""
+    """Return whether a value is a number that a float can hold; an integer may be too large."""
     try:
         return is_number(value) and math.isfinite(float(value))
     except OverflowError:
@@ -45,7 +45,7 @@ def is_finite_number(value: object) -> TypeGuard[float]:
 
 
 def is_integer(value: object) -> TypeGuard[int]:
-    """Tell if a value is an integer by its type; 3.0 is none."""
+    """Return whether a value is an integer by its type; 3.0 is none."""
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 

@@ -103,7 +103,7 @@ def traced_views(
 
 
 def missing_views(files: Mapping[str, Path]) -> list[str]:
-    """Tell which views have no file yet."""
+    """Return which views have no file yet."""
     return [view for view, file in files.items() if not file.exists()]
 
 

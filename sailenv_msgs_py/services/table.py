@@ -15,6 +15,7 @@ import numpy as np
 import sailenv_msgs.srv as srv
 from sailenv_msgs_py.contact_msgs import contact_from_msg, contact_to_msg
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
+from sailenv_msgs_py.joint_msgs import joints_from_response, joints_to_response
 from sailenv_msgs_py.object_msgs import (
     keys_to_json,
     object_state_from_response,
@@ -348,6 +349,13 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
         name="get_contacts",
         fill=_fill_contacts,
         result=lambda response: tuple(map(contact_from_msg, response.contacts)),
+    ),
+    Service(Operations.set_joint_position, srv.SetJointPosition),
+    Service(
+        Operations.get_joints,
+        srv.GetJoints,
+        fill=lambda response, joints, info: joints_to_response(response, joints),
+        result=joints_from_response,
     ),
     Service(
         Operations.load_scenario,

@@ -101,15 +101,15 @@ class Connection:
         self._is_alive = is_alive
 
     def simulator_lives(self) -> bool:
-        """Say whether nothing is known of the simulator's end."""
+        """Return whether nothing is known of the simulator's end."""
         return self._is_alive()
 
     def simulator_answers(self) -> bool:
-        """Say whether there is a simulator that takes requests now."""
+        """Return whether there is a simulator that takes requests now."""
         return bool(self._client(RegisterAgent, "register_agent").service_is_ready())
 
     def simulator_is_here(self) -> bool:
-        """Say whether a simulator of this name runs on this host."""
+        """Return whether a simulator of this name runs on this host."""
         return self.simulator_here() is not None
 
     def simulator_here(self) -> int | None:

@@ -91,7 +91,7 @@ def acquire(
 
 
 def release(link: Link) -> None:
-    """Say that one user of a link is done with it."""
+    """Release a link for one of its users."""
     with _lock:
         link.users -= 1
         if link.users == 0:

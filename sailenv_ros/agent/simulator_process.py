@@ -68,7 +68,7 @@ class SimulatorProcess:
         return self._process.pid
 
     def is_alive(self) -> bool:
-        """Say whether the child runs."""
+        """Return whether the child runs."""
         return self._process.poll() is None
 
     def log(self) -> str:
@@ -76,7 +76,7 @@ class SimulatorProcess:
         return os.pread(self._log.fileno(), 1 << 20, 0).decode(errors="replace")
 
     def failure(self) -> SimulationClosed:
-        """Say why a child that has ended did so, in its own last words."""
+        """Return why a child that has ended did so, in its own last words."""
         lines = [line for line in self.log().splitlines() if line.strip()]
         status = self._process.poll()
         last = lines[-1] if lines else "it said nothing"

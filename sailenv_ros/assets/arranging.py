@@ -83,6 +83,10 @@ def _place(
         carrier = by_name[entry.on]
         base = _place(carrier, by_name, assets, room, poses, (*above, entry.name))
         pose = _upon(entry, assets[entry.name], carrier, assets[entry.on], base)
+    elif entry.joint is not None and entry.joint.parent is not None:
+        parent = by_name[entry.joint.parent]  # rules of scenes see to it that it is there
+        base = _place(parent, by_name, assets, room, poses, (*above, entry.name))
+        pose = Pose.from_matrix(base.matrix() @ entry.pose.matrix())
     elif entry.wall is not None:
         if room is None:
             raise InvalidRequest(f"wall of {entry.name!r}", entry.wall, "left out without a room")

@@ -154,7 +154,7 @@ def _without_hidden(clouds: list[Floats]) -> list[Floats]:
 
 
 def _dense(clouds: list[Floats], kept: list[int], volumes: Floats) -> NDArray[np.bool_]:
-    """Tell of which pieces the hull fills most of the box, so that what is in it is hidden."""
+    """Return which pieces have a hull that fills most of their box and hides what is in it."""
     return np.array([_hull_volume(clouds[k]) > 0.8 * volumes[k] for k in kept], dtype=bool)
 
 

@@ -20,7 +20,7 @@ from sailenv_ros.model import Asset, Material, ModelPart
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.spec_materials import LookSpec
 
-__all__ = ["LaidMaterial", "MaterialStock", "material_names"]
+__all__ = ["LaidMaterial", "MaterialStock", "appearance_key", "material_names"]
 
 PICTURE_TILE_M = 1.0
 """Side of a picture that says nothing of its size [m]."""
@@ -153,3 +153,14 @@ def _size_m(part: ModelPart) -> tuple[float, float]:
 
 def _near(problem: UnknownName) -> str:
     return suggestion(problem.name, problem.known)
+
+
+def appearance_key(material: Material) -> tuple[object, ...]:
+    """Return what tells materials apart in caches, while their textures live."""
+    textures = (
+        material.base_colour_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+    )
+    numbers = (material.base_colour, material.metallic, material.roughness)
+    return (material.name, *numbers, *(id(texture) for texture in textures))

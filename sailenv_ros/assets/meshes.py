@@ -166,7 +166,7 @@ def components(raw: RawMesh) -> Indices:
 
 
 def is_open(raw: RawMesh, share: float = 0.02) -> bool:
-    """Tell if more than a share of the edges belong to one triangle alone, as a sheet's do."""
+    """Return whether over a share of the edges belong to one triangle alone, as a sheet's do."""
     edges, _ = _edges(raw, np.zeros(len(raw.triangles), dtype=np.int64))
     _, counts = np.unique(edges, axis=0, return_counts=True)
     return bool((counts == 1).mean() > share) if counts.size else False

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sailenv_ros.assets.box_mapping import box_mapped
-from sailenv_ros.assets.material_stock import LaidMaterial, MaterialStock
+from sailenv_ros.assets.material_stock import LaidMaterial, MaterialStock, appearance_key
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.model import Model, ModelPart
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialSpec
@@ -60,7 +60,7 @@ def finished(
             raise InvalidRequest(f"material or picture of {spec.part!r}", spec.part, accepted)
         for n, part in zip(named, changed, strict=True):
             parts[n] = parts[n] if part is None else part
-    key = tuple((id(part.mesh), _look_key(part)) for part in parts)
+    key = tuple((id(part.mesh), appearance_key(part.material)) for part in parts)
     kept = _made.setdefault(model, weakref.WeakValueDictionary())
     found = kept.get(key)
     if found is None:
@@ -79,14 +79,3 @@ def _part(
     if finish.tile_m is not None and spec.mapping == "box":
         mesh = box_mapped(mesh, finish.tile_m, turn_deg=finish.turn_deg, scale=scale)
     return replace(part, mesh=mesh, material=finish.material)
-
-
-def _look_key(part: ModelPart) -> tuple[object, ...]:
-    material = part.material
-    textures = (
-        material.base_colour_texture,
-        material.metallic_roughness_texture,
-        material.normal_texture,
-    )
-    numbers = (material.base_colour, material.metallic, material.roughness)
-    return (material.name, *numbers, *(id(texture) for texture in textures))

@@ -62,7 +62,7 @@ def _normal(polygon: Floats) -> Floats:
 
 
 def _is_convex(corners: Sequence[Point]) -> bool:
-    """Tell of four corners if all turn to one side; in plain numbers, which files have many of."""
+    """Return whether four corners all turn to one side; plain numbers, as files have many."""
     edges = [_difference(corners[(k + 1) % 4], corners[k]) for k in range(4)]
     turns = [_cross(edges[k], edges[(k + 1) % 4]) for k in range(4)]
     normal = tuple(sum(turn[axis] for turn in turns) for axis in range(3))

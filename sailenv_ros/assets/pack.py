@@ -242,7 +242,7 @@ class AssetPack:
         return MappingProxyType({file: problem for file, problem in found.items() if problem})
 
     def _problem(self, file: str, checksum: str) -> str:
-        """Say what is wrong with a file; empty if nothing is."""
+        """Return what is wrong with a file; empty if nothing is."""
         path = self.folder / file
         try:
             if not path.is_file():

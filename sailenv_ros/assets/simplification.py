@@ -207,7 +207,7 @@ def _quadrics(points: Floats, triangles: Indices, place: Indices) -> Floats:
 
 
 def _where_surfaces_end(triangles: Indices, first: int, second: int) -> Flags:
-    """Tell of which triangles that edge has no triangle with the same vertices beyond it."""
+    """Return which triangles have no triangle with the same vertices beyond that edge."""
     limit = int(triangles.max()) + 1
     beyond = triangles[:, [1, 2, 0]] * limit + triangles[:, [0, 1, 2]]
     result: Flags = ~np.isin(triangles[:, first] * limit + triangles[:, second], beyond)
@@ -228,7 +228,7 @@ def _add_planes(
 
 
 def _listed(sorted_keys: Indices, keys: Indices) -> Flags:
-    """Tell which keys are in an ascending list."""
+    """Return which keys are in an ascending list."""
     if not len(sorted_keys):
         return np.zeros(len(keys), dtype=bool)
     at = np.minimum(np.searchsorted(sorted_keys, keys), len(sorted_keys) - 1)
@@ -275,7 +275,7 @@ def _independent(edges: _Edges, order: Indices, corners: int) -> Indices:
 def _spoiling(
     points: Floats, triangles: Indices, place: Indices, edges: _Edges, chosen: Indices
 ) -> Flags:
-    """Tell which contractions would turn a triangle over or join surfaces that do not meet."""
+    """Return which contractions would turn a triangle over or join surfaces that do not meet."""
     corners = len(points)
     goal = np.arange(corners)
     goal[edges.starts[chosen]] = edges.ends[chosen]

@@ -39,7 +39,7 @@ class UnbuiltPack:
         return MappingProxyType({name: recipe.display_name(name) for name in names})
 
     def load(self, name: str) -> Asset:
-        """Say what is to be done.
+        """Return what is to be done.
 
         Raises
         ------

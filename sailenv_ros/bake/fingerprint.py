@@ -31,7 +31,7 @@ def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -
     _add(digest, [_light(light) for light in contents.lights])
     _add_sky(digest, contents.environment)
     for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
-        if drawn.instance.static:
+        if drawn.is_baked:
             _add(digest, [drawn.instance.id, list(drawn.scale)])
             _add_array(digest, pose)
             digest.update(_of_model(drawn.model))

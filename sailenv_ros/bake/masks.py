@@ -15,7 +15,7 @@ _GRID = [(i + 1 / 3, j + 1 / 3) for i in range(_STEPS) for j in range(_STEPS - i
 
 
 def is_mostly_there(material: Material, uvs: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """Tell of each triangle whether its mask leaves at least half of it.
+    """Return for each triangle whether its mask leaves at least half of it.
 
     Parameters
     ----------

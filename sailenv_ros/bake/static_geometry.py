@@ -100,7 +100,7 @@ def static_geometry_of(snapshot: WorldSnapshot) -> StaticGeometry:
     pieces: list[_Piece] = []
     count = 0
     for drawn, pose in zip(snapshot.contents.instances, snapshot.world_from_body, strict=True):
-        if not drawn.instance.static or not drawn.model.triangle_count:
+        if not drawn.is_baked or not drawn.model.triangle_count:
             continue
         instance = StaticInstance(
             id=drawn.instance.id,

@@ -13,6 +13,7 @@ from sailenv_ros.behaviours.base import (
     batch_behaviour,
     behaviour,
 )
+from sailenv_ros.behaviours.joint_motion import JointMotion, running_motion
 from sailenv_ros.behaviours.registry import (
     behaviour_errors,
     behaviour_kinds,
@@ -31,6 +32,7 @@ __all__ = [
     "BehaviourParameters",
     "BodyState",
     "BodyStates",
+    "JointMotion",
     "RunningBehaviour",
     "batch_behaviour",
     "behaviour",
@@ -39,5 +41,6 @@ __all__ = [
     "known_behaviour_errors",
     "readable_behaviour_errors",
     "refusing_behaviour_errors",
+    "running_motion",
     "start_behaviour",
 ]

@@ -7,6 +7,7 @@ with plain numbers.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, TypeAlias
@@ -69,6 +70,11 @@ class BehaviourParameters(BaseModel):
         return None
 
     @property
+    def needs_joint(self) -> bool:
+        """True if it moves nothing but joints."""
+        return False
+
+    @property
     def viewer(self) -> str:
         """Name of the agent in whose view the object is kept; empty for none."""
         return ""
@@ -98,6 +104,10 @@ class BodyState:
         normal (a, b, c). None at all unless its parameters name a viewer.
     centre_of_mass_m : (3,) float64
         In the body frame, scale included.
+    joint_position, joint_velocity : float
+        Of the joint that it is on [rad, rad/s] or [m, m/s]; 0 where there is none.
+    joint_limits : (2,) tuple of float
+        Least and greatest position of the joint; both 0 where there is none.
     """
 
     pose: Pose
@@ -107,6 +117,9 @@ class BodyState:
     inertia_kg_m2: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
     frustum_planes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
     centre_of_mass_m: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    joint_position: float = 0.0
+    joint_velocity: float = 0.0
+    joint_limits: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,21 +134,33 @@ class Action:
         Set before the step, world frame [m/s].
     angular_velocity : (3,) tuple of float or None
         Set before the step, world frame [rad/s].
+    joint_velocity : float or None
+        With which the joint that it is on is moved during the step, as far as the joint's effort
+        suffices [rad/s] or [m/s].
+    joint_position : float or None
+        Of that joint, set before the step [rad] or [m].
     idle_until_s : float or None
         Time on the behaviour's clock before which it need not be asked again [s].
+
+    Notes
+    -----
+    Of an object on a joint, velocities that are asked for count along the joint.
     """
 
     force_n: Vector3 | None = None
     torque_nm: Vector3 | None = None
     linear_velocity: Vector3 | None = None
     angular_velocity: Vector3 | None = None
+    joint_velocity: float | None = None
+    joint_position: float | None = None
     idle_until_s: float | None = None
 
     @property
     def acts(self) -> bool:
         """True if the engine has anything to do."""
         done = (self.force_n, self.torque_nm, self.linear_velocity, self.angular_velocity)
-        return any(part is not None for part in done)
+        joint = (self.joint_velocity, self.joint_position)
+        return any(part is not None for part in (*done, *joint))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -262,8 +287,13 @@ class RunningBehaviour:
     memory: dict[str, Any] = field(default_factory=dict)
     idle_until_s: float = 0.0
 
+    @property
+    def is_over(self) -> bool:
+        """True once it never does anything again."""
+        return self.idle_until_s == math.inf
+
     def is_idle(self, time_s: float) -> bool:
-        """Say if it does nothing in the step that begins at `time_s` [s of simulated time]."""
+        """Return whether nothing is done in the step that begins at `time_s` [simulated s]."""
         return self.own_time_s(time_s) < self.idle_until_s - 1e-9
 
     def own_time_s(self, time_s: float) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
+from sailenv_ros.behaviours.joint_motion import open_and_close
 from sailenv_ros.behaviours.poltergeist import poltergeist
 from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
 from sailenv_ros.behaviours.uniform_movement import uniform_movement_random_bounce
@@ -46,6 +47,7 @@ _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
             linear_waypoints,
             catmull_waypoints,
             wrench,
+            open_and_close,
         )
     }
 )

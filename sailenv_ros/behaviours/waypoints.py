@@ -16,7 +16,7 @@ from sailenv_ros.behaviours.base import (
     BodyState,
     behaviour,
 )
-from sailenv_ros.behaviours.steering import towards
+from sailenv_ros.behaviours.steering import towards, turn_vector
 from sailenv_ros.geometry import Pose, interpolate
 from sailenv_ros.scene.field_types import Number, Switch
 from sailenv_ros.scene.fields import Position, Rotation
@@ -29,6 +29,9 @@ __all__ = [
     "linear_pose",
     "linear_waypoints",
 ]
+
+ARRIVED = 1e-6
+"""What is nearer than this to its goal is there [m], [rad]."""
 
 
 class ObjectWaypoint(BaseModel):
@@ -55,10 +58,21 @@ class Waypoints(BehaviourParameters):
         default=True, description="true: the last waypoint leads on to the first"
     )
 
+    rest: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
+        default=0.0,
+        description="time that it stands at the first waypoint after each round [s], if it loops",
+    )
+
     @property
     def duration_s(self) -> float | None:
         """Time until the last waypoint is reached for the first time [s]."""
         return self.total_time
+
+    def rests_at(self, time_s: float) -> bool:
+        """Return whether a time [s] falls into a rest."""
+        if not self.loop or not self.rest:
+            return False
+        return max(0.0, time_s) % (self.total_time + self.rest) >= self.total_time
 
     @cached_property
     def poses(self) -> tuple[Pose, ...]:
@@ -70,7 +84,12 @@ class Waypoints(BehaviourParameters):
         legs = len(self.waypoints) if self.loop else len(self.waypoints) - 1
         if len(self.waypoints) == 1:
             return 0, 0.0
-        progress = max(0.0, time_s) / self.total_time * legs
+        time_s = max(0.0, time_s)
+        if self.loop and self.rest:
+            if self.rests_at(time_s):
+                return legs - 1, 1.0
+            time_s %= self.total_time + self.rest
+        progress = time_s / self.total_time * legs
         if not self.loop and progress >= legs:
             return legs - 1, 1.0
         leg = int(progress)
@@ -124,7 +143,7 @@ def linear_waypoints(
     rng: np.random.Generator,
 ) -> Action:
     """Run along straight lines from waypoint to waypoint."""
-    return towards(body, linear_pose(parameters, time_s + STEP_S))
+    return _led(parameters, time_s, body, linear_pose(parameters, time_s + STEP_S))
 
 
 @behaviour("catmull_waypoints", Waypoints)
@@ -136,4 +155,21 @@ def catmull_waypoints(
     rng: np.random.Generator,
 ) -> Action:
     """Run along a smooth curve through the waypoints."""
-    return towards(body, catmull_pose(parameters, time_s + STEP_S))
+    return _led(parameters, time_s, body, catmull_pose(parameters, time_s + STEP_S))
+
+
+def _led(parameters: Waypoints, time_s: float, body: BodyState, goal: Pose) -> Action:
+    """Return what brings a body to a pose; one that rests there is left alone."""
+    if not parameters.rests_at(time_s) or not _is_at(body, goal):
+        return towards(body, goal)
+    if not (body.linear_velocity.any() or body.angular_velocity.any()):
+        return Action()
+    # What is not moved keeps its pose to the last bit, so that its flow is exactly 0.
+    still = (0.0, 0.0, 0.0)
+    return Action(linear_velocity=still, angular_velocity=still)
+
+
+def _is_at(body: BodyState, goal: Pose) -> bool:
+    way = np.asarray(goal.position_m) - np.asarray(body.pose.position_m)
+    turn = turn_vector(body.pose, goal)
+    return bool(np.abs(way).max() < ARRIVED and np.abs(turn).max() < ARRIVED)

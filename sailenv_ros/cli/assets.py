@@ -112,7 +112,7 @@ def _list(args: argparse.Namespace) -> int:
 
 
 def _verify(_: argparse.Namespace) -> int:
-    """Tell of every damaged file and what makes it anew; 1 if there is one."""
+    """Print every damaged file and what makes it anew; 1 if there is one."""
     problems = [*_pack_problems(), *_source_problems(), *_light_problems(), *_picture_problems()]
     for file, problem, remedy in problems:
         print(f"{file}: {problem}; {remedy}")

@@ -32,6 +32,7 @@ COMMANDS = {
     "run": "start the simulator, with or without ROS",
     "scene": "check, render, bake, list and begin scenes, export the schema of the format",
     "setup": "build the furniture and bake the light of the rooms, once on each machine",
+    "stream": "make the published streams of continual learning as bags",
 }
 """What each subcommand does, by its name, which is its module's too."""
 

@@ -123,7 +123,7 @@ class PartTable:
             )
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
-        """Tell which instances have baked light: those that stand where they stood for it."""
+        """Return which instances have baked light: those that stand where they stood for it."""
         same: NDArray[np.bool_] = (snapshot.world_from_body == self._baked_poses).all(axis=(1, 2))
         return same
 

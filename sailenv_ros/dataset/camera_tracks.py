@@ -105,7 +105,7 @@ def _walk(
         length += float(np.linalg.norm(np.diff(way[:, :2], axis=0), axis=1).sum())
         corners += list(way[1:])
         if len(corners) > ATTEMPTS * 100:
-            raise NoPlace("no way of that length")
+            raise NoPlace("no path of that length")
     path = np.array(corners)
     path[:, 2] = space.body.floor_m + height
     return _along(path, speed * times_s, pitch)
@@ -215,7 +215,7 @@ def _target(name: str | None, scene: WorldOperations, random: np.random.Generato
 def _in_sight(
     scene: WorldOperations, middle: Vector3, eyes: NDArray[np.float64], target: _Target | None
 ) -> bool:
-    """Say whether from all these places a point is seen, or the object around it."""
+    """Return whether from all these places a point is seen, or the object around it."""
     hits = scene.cast_rays(eyes, middle - eyes)
     if target is None:
         return bool((hits.distances_m >= np.linalg.norm(middle - eyes, axis=1)).all())

@@ -112,7 +112,7 @@ class ShardRecipe(SceneModel):
 
 
 def _formats_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Say which formats lack views, or have too many cameras."""
+    """Return which formats lack views, or have too many cameras."""
     views = entry.get("views", FIVE_VIEWS)
     formats = entry.get("formats", ())
     if not isinstance(views, list | tuple) or not isinstance(formats, list | tuple):
@@ -132,7 +132,7 @@ def _formats_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ..
 
 
 def _splits_have_scenes(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Say which splits no scene is for."""
+    """Return which splits no scene is for."""
     clips, scenes = entry.get("clips"), entry.get("scenes")
     if not isinstance(scenes, list | tuple) or not scenes:
         return

@@ -21,7 +21,7 @@ RECORDS_FOLDER = "records"
 
 
 def merges(kind: type[DatasetFormat]) -> bool:
-    """Say whether a format writes something once all shards are known."""
+    """Return whether a format writes something once all shards are known."""
     return not kind.is_sequence and (not kind.is_shard or kind.needs_records)
 
 

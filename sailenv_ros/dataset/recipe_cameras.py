@@ -107,7 +107,7 @@ class FixedCamera(CameraModel, Aimed):
 
 
 def _settings_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Say which settings the rule does not have, or not so."""
+    """Return which settings the rule does not have, or not so."""
     rule, settings = entry.get("rule"), entry.get("settings", {})
     if rule not in camera_rules() or not isinstance(settings, Mapping):
         return

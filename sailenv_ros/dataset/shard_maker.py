@@ -74,7 +74,7 @@ class ShardMaker:
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
         self._folder = TemporaryDirectory(prefix="sailenv-scenes-", dir=scratch)
         self._baked = self._recipe.light == "baked"
-        self._library = SceneLibrary(baked_light=self._baked)
+        self._library = SceneLibrary(baked_light=self._baked, drafts=False)
         self._paths = {
             name: self._written(f"{number}/{Path(name).name}", text)
             for number, (name, text) in enumerate(job.scene_texts.items())

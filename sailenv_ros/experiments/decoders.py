@@ -37,7 +37,7 @@ END_TO_END_WIDTHS = (6, 6 + PROTOTYPES)
 
 
 def recognised(outputs: Outputs) -> str:
-    """Tell a network's kind by its outputs.
+    """Return a network's kind by its outputs.
 
     Returns
     -------

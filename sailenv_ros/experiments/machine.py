@@ -25,7 +25,7 @@ PACKAGES = (
 
 
 def provenance(command: Sequence[str]) -> dict[str, Any]:
-    """Tell where and how a measurement is being made.
+    """Return where and how a measurement is being made.
 
     Parameters
     ----------

@@ -96,7 +96,7 @@ class _Canvas:
         axes.set_ylabel(y, color=self.theme["ink"], fontsize=9)
 
     def legend(self, axes: Any, **kwargs: Any) -> None:
-        """Say what is what, beside the axes."""
+        """Draw the legend beside the axes."""
         kwargs = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), **kwargs}
         axes.legend(frameon=False, fontsize=8.5, labelcolor=self.theme["ink"], **kwargs)
 

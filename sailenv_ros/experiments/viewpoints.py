@@ -133,7 +133,7 @@ class Stage:
         self.close()
 
     def instances(self, category: str) -> int:
-        """Say how many objects of a category the rooms have."""
+        """Return how many objects of a category the rooms have."""
         return len(self._targets(category))
 
     def viewpoints(

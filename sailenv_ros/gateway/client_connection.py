@@ -128,7 +128,7 @@ class ClientConnection:
         return True
 
     def _patience(self) -> tuple[str, float]:
-        """Say what is waited for and how much longer [s]; a command counts from its first byte."""
+        """Return what is waited for, and how much longer [s] from a command's first byte."""
         if self._began_s is None:
             return f"the next command of {self.peer}", self._limits.idle_s
         limit_s = self._limits.command_s if self._greeted else self._limits.hello_s

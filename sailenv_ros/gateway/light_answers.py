@@ -38,12 +38,12 @@ class LightAnswers:
         self._info = info
 
     def get_lights(self) -> Answer:
-        """Tell the lights' names."""
+        """Return the lights' names."""
         yield from ()
         return [pack_strings(light.name for light in self._info().lights)]
 
     def get_light_type(self, light: str) -> Answer:
-        """Tell a light's type."""
+        """Return a light's type."""
         try:
             found: Light = yield Ask(Operations.get_light, light)
         except SailenvError:
@@ -51,7 +51,7 @@ class LightAnswers:
         return [pack_string(found.type)]
 
     def get_light_colour(self, light: str) -> Answer:
-        """Tell a light's colour."""
+        """Return a light's colour."""
         return (yield from _read(light, lambda it: pack_ints(*srgb8_from_linear(it.colour))))
 
     def set_light_colour(self, light: str, red: int, green: int, blue: int) -> Answer:
@@ -59,7 +59,7 @@ class LightAnswers:
         return (yield from _written(light, lambda: {"colour": _linear(red, green, blue)}))
 
     def get_light_intensity(self, light: str) -> Answer:
-        """Tell a light's intensity."""
+        """Return a light's intensity."""
         return (yield from _read(light, lambda it: pack_floats(it.intensity)))
 
     def set_light_intensity(self, light: str, value: float) -> Answer:
@@ -67,7 +67,7 @@ class LightAnswers:
         return (yield from _written(light, lambda: {"intensity": value}))
 
     def get_light_indirect(self, light: str) -> Answer:
-        """Tell the factor of a light's bounced part."""
+        """Return the factor of a light's bounced part."""
         return (yield from _read(light, lambda it: pack_floats(it.indirect_multiplier)))
 
     def set_light_indirect(self, light: str, value: float) -> Answer:
@@ -75,7 +75,7 @@ class LightAnswers:
         return (yield from _written(light, lambda: {"indirect_multiplier": value}))
 
     def get_light_position(self, light: str) -> Answer:
-        """Tell where a light is."""
+        """Return where a light is."""
         return (yield from _read(light, lambda it: pack_floats(*unity_from_vector(it.position_m))))
 
     def set_light_position(self, light: str, vector: Vector3) -> Answer:
@@ -84,7 +84,7 @@ class LightAnswers:
         return (yield from _written(light, lambda: {"position_m": vector_from_unity(*position)}))
 
     def get_light_direction(self, light: str) -> Answer:
-        """Tell where a light travels to."""
+        """Return where a light travels to."""
         return (yield from _read(light, lambda it: pack_floats(*unity_from_vector(it.direction))))
 
     def set_light_direction(self, light: str, vector: Vector3) -> Answer:
@@ -93,7 +93,7 @@ class LightAnswers:
         return (yield from _written(light, lambda: {"direction": vector_from_unity(*direction)}))
 
     def get_ambient_colour(self) -> Answer:
-        """Tell the colour of the light that arrives from everywhere."""
+        """Return the colour of the light that arrives from everywhere."""
         yield from ()
         return [pack_string("ok"), pack_ints(*srgb8_from_linear(self._info().environment.ambient))]
 

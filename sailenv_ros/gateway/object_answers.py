@@ -42,7 +42,7 @@ class ObjectAnswers:
         self._agent = agent
 
     def get_spawnables(self) -> Answer:
-        """Tell the names of what can be spawned, as people write them: ``Chair 01``."""
+        """Return the names of what can be spawned, as people write them: ``Chair 01``."""
         names = yield Ask(Operations.spawnable_display_names)
         return [pack_strings(names)]
 

@@ -128,7 +128,7 @@ class Session:
         yield Ask(Operations.change_scene, scene_of_wire(name, self._info()))
 
     def get_categories(self) -> Answer:
-        """Tell the number and name of each category."""
+        """Return the number and name of each category."""
         yield from ()
         table = self._info().categories
         entries = [pack_ints(number) + pack_string(table[number].name) for number in table]
@@ -137,7 +137,7 @@ class Session:
     # -- pose ------------------------------------------------------------------------------
 
     def get_position(self) -> Answer:
-        """Tell where the agent is."""
+        """Return where the agent is."""
         here = yield Ask(Operations.get_agent_pose, agent=self.agent)
         return [pack_floats(*unity_from_vector(here.pose.position_m))]
 
@@ -151,7 +151,7 @@ class Session:
         )
 
     def get_rotation(self) -> Answer:
-        """Tell how the agent is turned."""
+        """Return how the agent is turned."""
         here = yield Ask(Operations.get_agent_pose, agent=self.agent)
         return [pack_floats(*unity_angles_deg(here.pose))]
 

@@ -19,7 +19,7 @@ from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 from sailenv_ros.world.world import World
 
-__all__ = ["Fault", "faults", "unseen"]
+__all__ = ["Fault", "faults", "look_backend", "unseen"]
 
 STILL_M = 0.004
 STILL_DEG = 2.0
@@ -83,7 +83,7 @@ def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator
     # An object is seen where a part of it is.
     wholes = {drawn.instance.id: drawn.instance.parent for drawn in snapshot.contents.instances}
     missing = set(bodies)
-    backend = _backend()
+    backend = look_backend()
 
     def look(eye: tuple[float, float, float], at: tuple[float, ...], angle_deg: float) -> None:
         lens = CameraIntrinsics(width=_LOOK_PX[0], height=_LOOK_PX[1], vertical_fov_deg=angle_deg)
@@ -113,7 +113,7 @@ def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator
         yield Fault(names=(bodies[number].placement.name,), why="is seen from nowhere")
 
 
-def _backend() -> RenderBackend:
+def look_backend() -> RenderBackend:
     """Return the renderer whose ids are the same on every machine, or one that needs nothing."""
     try:
         return make_backend("native", None)

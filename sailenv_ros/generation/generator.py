@@ -24,6 +24,7 @@ from sailenv_ros.generation.lighting import environment_entry, light_entries
 from sailenv_ros.generation.names import MAX_SEED
 from sailenv_ros.generation.plan import RoomPlan
 from sailenv_ros.generation.randomness import Dice
+from sailenv_ros.generation.room_agents import agent_entries, best_first, standing
 from sailenv_ros.generation.route import mover_entry
 from sailenv_ros.generation.rule_files import Rules, rules_of
 from sailenv_ros.generation.rule_models import KindFile
@@ -190,15 +191,19 @@ class Generator:
         """Take out what fails a check; None if that is something the room needs."""
         taken_out: list[Fault] = []
         for _ in range(MAX_ROUNDS):
-            spec, text = self._described(draft)
-            world = self._built(spec)
+            data = self._described(draft)
+            world = self._built(draft.spec_of(data))
             try:
                 found = list(faults(world))
                 if not found:
                     found = list(unseen(world, draft.eyes()))
+                if not found:
+                    _with_cameras(data, world, draft)
             finally:
                 world.close()
             if not found:
+                spec = draft.spec_of(data)
+                text = scene_text(spec, draft.kind, draft.seed, draft.items)
                 return GeneratedScene(
                     kind=draft.kind, seed=draft.seed, spec=spec, text=text,
                     attempts=draft.attempt + 1, taken_out=tuple(taken_out),
@@ -211,8 +216,8 @@ class Generator:
                 taken_out.append(fault)
         return None
 
-    def _described(self, draft: _Draft) -> tuple[SceneSpec, str]:
-        """Return a draft as a scene and as the text of its file."""
+    def _described(self, draft: _Draft) -> dict[str, Any]:
+        """Return a draft as a scene file has it, without agents."""
 
         def dice(purpose: str) -> Dice:
             return Dice(draft.kind, draft.seed, draft.attempt, purpose)
@@ -236,9 +241,7 @@ class Generator:
         mover = mover_entry(draft.plan, draft.items, dice("way"), draft.file.speed)
         data["mover"] = mover
         draft.waypoints = [tuple(w["position"]) for w in mover["waypoints"]]
-        name = f"{draft.kind}_{draft.seed}"
-        spec = SceneSpec.model_validate({"name": name, **data})
-        return spec, scene_text(spec, draft.kind, draft.seed, draft.items)
+        return data
 
     def _built(self, spec: SceneSpec) -> World:
         # No check looks at the sky, which takes time to read.
@@ -265,6 +268,10 @@ class _Draft:
     plan: RoomPlan
     items: list[Item]
     waypoints: Sequence[tuple[float, ...]] = ()
+
+    def spec_of(self, data: dict[str, Any]) -> SceneSpec:
+        """Return what a scene file says, checked."""
+        return SceneSpec.model_validate({"name": f"{self.kind}_{self.seed}", **data})
 
     def settle(self, fault: Fault) -> bool:
         """Let a thing lie where it came to rest, once; say if it may."""
@@ -312,6 +319,15 @@ class _Draft:
             if math.dist(a, b) > 1.0
         ]
         return [*corners, *between]
+
+
+def _with_cameras(data: dict[str, Any], world: World, draft: _Draft) -> None:
+    """Add agents to a scene, and begin the camera's way where its view is best."""
+    with standing(world) as scene:
+        mover = data["mover"]
+        mover["waypoints"] = best_first(scene, mover["waypoints"])
+        rooms = len(draft.shell.areas)
+        data["agents"] = agent_entries(scene, max(2, rooms), draft.seed)
 
 
 def _lies_under(rug: Item, item: Item) -> bool:

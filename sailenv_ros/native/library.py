@@ -131,7 +131,7 @@ def native_library() -> NativeLibrary:
 
 @lru_cache(maxsize=1)
 def native_is_usable() -> bool:
-    """Tell whether the library can be loaded; the first time, log why not."""
+    """Return whether the library can be loaded; the first time, log why not."""
     try:
         load_library()
     except NativeLibraryError as problem:

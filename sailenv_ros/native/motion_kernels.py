@@ -133,7 +133,7 @@ def transform_points(
     *,
     threads: int,
 ) -> NDArray[np.float32]:
-    """Give each pixel's surface point in other axes.
+    """Return each pixel's surface point in other axes.
 
     Parameters
     ----------

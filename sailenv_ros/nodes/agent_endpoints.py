@@ -88,7 +88,7 @@ class AgentEndpoints:
 
 
 def _same_topics(one: AgentSpec, other: AgentSpec) -> bool:
-    """Say whether two specs differ at most in what topics and services need not be made for.
+    """Return whether two specs differ at most in what topics and services need not be made for.
 
     Another lens is none of it: frames bring their camera along, and a service that changes it must
     live to answer.

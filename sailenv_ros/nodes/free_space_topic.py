@@ -31,6 +31,6 @@ class FreeSpaceTopic:
         self._topic = node.create_publisher(self._type, "free_space", latched_qos())
 
     def publish(self, space: FreeSpace) -> None:
-        """Tell a map; called from the simulation's thread."""
+        """Publish a map; called from the simulation's thread."""
         if self._type is not None:
             self._topic.publish(occupancy_grid_to_msg(space, self._type))

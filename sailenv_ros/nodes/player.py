@@ -151,11 +151,11 @@ class Player:
             return
         data = bytes(present_form(topic, raw.data))
         if self._own_clock is not None:
-            self._tell_time(topic, data, raw.log_ns)
+            self._publish_time(topic, data, raw.log_ns)
         publisher.publish(data)
         self.played += 1
 
-    def _tell_time(self, topic: RecordedTopic, data: bytes, log_ns: int) -> None:
+    def _publish_time(self, topic: RecordedTopic, data: bytes, log_ns: int) -> None:
         time_ns = stamp_of(topic.type, data) if self._stamped else log_ns
         if time_ns is not None and time_ns != self._published_ns and self._own_clock is not None:
             self._published_ns = time_ns

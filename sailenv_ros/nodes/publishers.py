@@ -102,7 +102,7 @@ class AgentPublisher:
         return self._closing.is_set() or (self._stream is not None and self._stream.closed)
 
     def subscribed(self, views: tuple[str, ...]) -> bool:
-        """Say whether somebody subscribes to every one of these views."""
+        """Return whether somebody subscribes to every one of these views."""
         topics = [self._images.get(view) for view in views]
         return all(topic is not None and _is_subscribed(topic) for topic in topics)
 
@@ -203,7 +203,7 @@ class AgentPublisher:
             self._publish(frame)
 
     def _pose_alone(self) -> None:
-        """Tell where the agent is while no frames are made."""
+        """Publish where the agent is while no frames are made."""
         wanted = self._tf.wanted or _is_subscribed(self._pose)
         if self._stream is None or self._stream.views or not wanted:
             return
@@ -259,5 +259,5 @@ class AgentPublisher:
 
 
 def _is_subscribed(topic: Publisher, *, beside: bool = False) -> bool:
-    """Say whether there is a subscriber; with `beside` whether there is another one."""
+    """Return whether there is a subscriber; with `beside` whether there is another one."""
     return bool(topic.get_subscription_count() > beside)

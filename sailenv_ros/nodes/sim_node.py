@@ -35,6 +35,7 @@ from sailenv_ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.nodes.free_space_topic import FreeSpaceTopic
 from sailenv_ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
+from sailenv_ros.nodes.joint_topic import JointTopic
 from sailenv_ros.nodes.lifecycle import StopRequest, stop_at_end_of
 from sailenv_ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.nodes.log_bridge import LogBridge
@@ -95,6 +96,7 @@ class SimNode:
             node, publish_clock=publish_clock, on_info=self._scene_changed
         )
         self._contacts = ContactTopic(node)
+        self._joints = JointTopic(node)
         self._stop_maps = simulation.on_free_space(FreeSpaceTopic(node).publish)
         self._leases = AgentLeases(node, runner)
         self._services = SimulatorServices(
@@ -121,6 +123,7 @@ class SimNode:
         self._reconcile()
         self._announcements.begin(self._simulation)
         self._contacts.begin(self._simulation)
+        self._joints.begin(self._simulation)
         self._executor.add_node(self._node)
         self._spinning.start()
 
@@ -131,6 +134,7 @@ class SimNode:
         self._spinning.stop(0.5)
         self._announcements.end()
         self._contacts.end()
+        self._joints.end()
         self._stop_maps()
         self._endpoints.close()
         return self._hosted.close_simulation(timeout_s)

@@ -100,14 +100,14 @@ class TfTree:
         self._fixed.publish(self._message(transforms=every))
 
     def publish(self, agent: str, pose: Pose, stamp: Any) -> None:
-        """Tell where an agent is at an instant."""
+        """Send where an agent is at an instant."""
         if not self.wanted:
             return
         header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
         self._moving.publish(self._message(transforms=[transform_of(pose, header, agent)]))
 
     def publish_instances(self, frame: Frame, stamp: Any) -> None:
-        """Tell where every instance of a frame is, if that is asked for.
+        """Send where every instance of a frame is, if that is asked for.
 
         Several agents may see one instant: it is told once, as tf2 warns of repeated ones.
         """

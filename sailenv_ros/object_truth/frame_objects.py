@@ -151,7 +151,7 @@ def _moved(transforms: NDArray[np.float64], points: NDArray[np.float64]) -> NDAr
 def _is_visible(
     frame: Frame, depths: NDArray[np.float64], pixels: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Say which points lie in the picture with nothing before them."""
+    """Return which points lie in the picture with nothing before them."""
     lens: CameraIntrinsics = frame.camera.intrinsics
     with np.errstate(invalid="ignore"):
         u, v = np.rint(pixels[..., 0]), np.rint(pixels[..., 1])

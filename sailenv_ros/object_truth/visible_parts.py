@@ -100,7 +100,7 @@ def measure_with_numpy(
 
 
 def _present(keys: NDArray[np.int64], lines: int, slots: int) -> NDArray[np.bool_]:
-    """Say in which lines each instance is: (lines, N)."""
+    """Return in which lines each instance is: (lines, N)."""
     seen = np.zeros(lines * slots, np.bool_)
     seen[keys.reshape(-1)] = True
     return seen.reshape(lines, slots)[:, 1:]

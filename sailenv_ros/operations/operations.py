@@ -11,6 +11,7 @@ from sailenv_ros.operations.chance_operations import ChanceOperations
 from sailenv_ros.operations.clock_operations import ClockOperations
 from sailenv_ros.operations.environment import EnvironmentOperations
 from sailenv_ros.operations.frame_pictures import FramePictures
+from sailenv_ros.operations.joint_operations import JointOperations
 from sailenv_ros.operations.light_operations import LightOperations
 from sailenv_ros.operations.material_operations import MaterialOperations
 from sailenv_ros.operations.models import ModelOperations
@@ -27,6 +28,7 @@ __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 class WorldOperations(
     AgentOperations,
     ObjectOperations,
+    JointOperations,
     MaterialOperations,
     LightOperations,
     EnvironmentOperations,

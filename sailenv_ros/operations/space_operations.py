@@ -147,7 +147,7 @@ class SpaceOperations(Caller):
         Raises
         ------
         InvalidRequest
-            If one of the places is not free, or there is no way.
+            If one of the places is not free, or no path joins them.
         """
         body = BodySize(
             height_m=height_m,

@@ -22,7 +22,7 @@ DAMAGED_SUFFIX = ".damaged"
 
 
 def is_whole(path: Path) -> bool:
-    """Say whether a file can be read as it is, each chunk of it included."""
+    """Return whether a file can be read as it is, each chunk of it included."""
     try:
         with RecordingReader(path) as reader:
             for _ in reader.messages():

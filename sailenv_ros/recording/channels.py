@@ -181,7 +181,7 @@ def present_form(topic: RecordedTopic, data: Buffer) -> Buffer:
 
 
 def is_present_form(topic: RecordedTopic) -> bool:
-    """Tell if messages of a topic can be read: a `SceneInfo` has changed since version 0.2.0."""
+    """Return whether a topic's messages can be read: `SceneInfo` has changed since 0.2.0."""
     return topic.type != SCENE_INFO or _NEWER_FIELD_OF_OBJECTS in topic.schema
 
 

@@ -12,7 +12,7 @@ _UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9}
 def progress_line(
     *, frames: int, message_bytes: int, file_bytes: int, elapsed_s: float, dropped: int
 ) -> str:
-    """Say in one line how a recording goes.
+    """Return one line that says how a recording goes.
 
     Parameters
     ----------

@@ -255,7 +255,7 @@ class Relighter:
             same = before is not None and _has_shape_of(drawn, before)
             if same and id_ in contents.baked.charts and drawn.model.triangle_count:
                 rows.append((row, id_, original.baked.charts[id_].world_from_body))
-            elif drawn.instance.static and drawn.model.triangle_count and not same:
+            elif drawn.is_baked and drawn.model.triangle_count and not same:
                 size = np.ptp(drawn.model.bounds(), axis=0) * np.abs(drawn.scale)
                 if np.sort(size)[1] >= SMALLEST_M:
                     rows.append((row, id_, np.full((4, 4), np.nan)))
@@ -277,7 +277,7 @@ class Relighter:
 
 
 def _has_shape_of(drawn: DrawnInstance, before: DrawnInstance) -> bool:
-    """Tell if something has the very triangles that another has, of whatever material."""
+    """Return whether something has the very triangles that another has, of whatever material."""
     if drawn.scale != before.scale or len(drawn.model.parts) != len(before.model.parts):
         return False
     return drawn.model is before.model or all(

@@ -264,7 +264,7 @@ class _Relighting:
         return far.reshape(shape), near.reshape(shape)
 
     def _inside(self, points: Floats) -> NDArray[np.bool_]:
-        """Tell which points lie in the box of something that changes: nothing is known there."""
+        """Return which points lie in the box of something that changes: nothing is known there."""
         inside = np.zeros(len(points), bool)
         for thing in self._world.changed:
             if not thing.shape.kept:

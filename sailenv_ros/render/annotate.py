@@ -159,7 +159,7 @@ def annotate(
 def _object_coords(
     arrays: Mapping[str, NDArray[Any]], snapshot: WorldSnapshot, camera: Camera, threads: int
 ) -> NDArray[np.float32]:
-    """Give each pixel's surface point in its instance's own frame."""
+    """Return each pixel's surface point in its instance's own frame."""
     ids = snapshot.contents.instance_ids
     rows = np.zeros(65536, np.uint16)
     rows[ids] = np.arange(1, len(ids) + 1)

@@ -128,7 +128,7 @@ def _gather(  # type: ignore[no-untyped-def]  # compiled
 
 @numba.njit(cache=True, nogil=True)
 def _is_beyond(cluster, sides):  # type: ignore[no-untyped-def]  # compiled
-    """Tell if a cluster's sphere lies beyond one of the picture's four sides."""
+    """Return whether a cluster's sphere lies beyond one of the picture's four sides."""
     c = cluster.centre
     for s in range(4):
         inside = sides[s, 0] * c[0] + sides[s, 1] * c[1] + sides[s, 2] * c[2] + sides[s, 3]
@@ -139,7 +139,7 @@ def _is_beyond(cluster, sides):  # type: ignore[no-untyped-def]  # compiled
 
 @numba.njit(cache=True, nogil=True)
 def _faces_away(cluster, eye):  # type: ignore[no-untyped-def]  # compiled
-    """Tell if no triangle within the sphere, with a normal within the cone, can face the eye."""
+    """Return whether no triangle in the sphere, with a normal in the cone, can face the eye."""
     dx, dy, dz = cluster.centre[0] - eye[0], cluster.centre[1] - eye[1], cluster.centre[2] - eye[2]
     distance = np.sqrt(dx * dx + dy * dy + dz * dz)
     along = cluster.axis[0] * dx + cluster.axis[1] * dy + cluster.axis[2] * dz

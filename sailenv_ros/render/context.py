@@ -63,7 +63,7 @@ class DeviceReport:
 
 
 def is_software(renderer: str) -> bool:
-    """Tell from OpenGL's name for a renderer whether it runs on the CPU."""
+    """Return whether a renderer runs on the CPU, by OpenGL's name for it."""
     return any(word in renderer.lower() for word in _SOFTWARE)
 
 

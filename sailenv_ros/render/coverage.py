@@ -20,7 +20,7 @@ LEAST_EDGE_PX = 8
 
 
 def cutoff_by_level(material: Material, edge: int) -> tuple[float, float]:
-    """Say how the cut-off falls.
+    """Return how the cut-off falls.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def cutoff_by_level(material: Material, edge: int) -> tuple[float, float]:
 
 
 def _fitting(alpha: NDArray[np.float32], edge: int, covered: float) -> list[float]:
-    """Give, for each level after the first, the cut-off that covers so much of it."""
+    """Return, for each level after the first, the cut-off that covers so much of it."""
     found = []
     size = edge // 2
     while size >= LEAST_EDGE_PX:

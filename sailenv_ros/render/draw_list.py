@@ -208,7 +208,7 @@ class DrawList:
         return seen, [(first, count) for first, count in lies.tolist()]
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
-        """Tell which instances have baked light: those that stand where they stood for it."""
+        """Return which instances have baked light: those that stand where they stood for it."""
         same: NDArray[np.bool_] = (snapshot.world_from_body == self._baked_poses).all(axis=(1, 2))
         return same
 
@@ -232,7 +232,7 @@ def _corners(mesh: Mesh) -> NDArray[np.float64]:
 def _seen(
     clip_from_part: NDArray[np.float64], corners: NDArray[np.float64]
 ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """Tell which boxes reach into the picture, and how far their middles are.
+    """Return which boxes reach into the picture, and how far their middles are.
 
     A box is out of it if all its corners lie beyond one of the four sides. The picture is taken a
     hundredth wider than it is, so that no rounding on the GPU can make a difference.

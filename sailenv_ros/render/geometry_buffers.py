@@ -96,7 +96,7 @@ class GeometryBuffers:
         self.corner_index_buffer = self._context.buffer(_or_one(self.corner_indices).tobytes())
 
     def slice(self, mesh: DrawnMesh) -> MeshSlice:
-        """Say where a mesh that is shown lies."""
+        """Return where a mesh that is shown lies."""
         return self._slices[mesh.key]
 
     def close(self) -> None:

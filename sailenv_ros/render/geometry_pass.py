@@ -206,7 +206,7 @@ class GeometryPass:
 
 
 def _by_corner(kind: BatchKind, targets: Targets) -> bool:
-    """Tell if nothing is read of a kind's vertices but their positions."""
+    """Return whether nothing is read of a kind's vertices but their positions."""
     # Masked materials need their alpha even where no picture is made.
     return targets.shape is None and not targets.outputs and not kind.masked
 

@@ -216,7 +216,7 @@ def _set_textures(program: moderngl.Program, targets: Targets, illumination: Ill
 
 
 def set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
-    """Tell a program of `picture.glsl` where it looks from, and what lies around."""
+    """Set in a program of `picture.glsl` where it looks from, and what lies around."""
     intrinsics = camera.intrinsics
     exposure = 2.0**environment.exposure
     set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))

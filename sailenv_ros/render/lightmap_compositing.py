@@ -241,7 +241,7 @@ def _add(
 
 
 def _stands_alike(light: Light, baked: Light) -> bool:
-    """Tell if two lights differ in nothing but what layers are multiplied by."""
+    """Return whether two lights differ in nothing but what layers are multiplied by."""
     power = (baked.colour, baked.intensity, baked.indirect_multiplier)
     colour, intensity, indirect = power
     alike: bool = (

@@ -123,5 +123,5 @@ class MaterialBuffers:
 
 
 def _packed_key(material: Material) -> tuple[int, int]:
-    """Tell joined maps apart, while the materials live."""
+    """Return a key that tells joined maps apart while the materials live."""
     return id(material.metallic_roughness_texture), id(material.normal_texture)

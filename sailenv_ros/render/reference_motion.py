@@ -81,7 +81,7 @@ def transform_points(
     *,
     threads: int,
 ) -> NDArray[np.float32]:
-    """Give each pixel's surface point in other axes; see `native.motion_kernels`."""
+    """Return each pixel's surface point in other axes; see `native.motion_kernels`."""
     height, width = depth.shape
     focal, cx, cy, _, _ = lens
     u, v = np.arange(width, dtype=np.float64)[None], np.arange(height, dtype=np.float64)[:, None]

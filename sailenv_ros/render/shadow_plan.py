@@ -33,7 +33,7 @@ comes to rest creeps for seconds, by less than can be seen, and needs no new map
 
 
 def casts(drawn: DrawnInstance) -> bool:
-    """Tell if a body casts a shadow: walls and ceilings of halls do, grounds do not."""
+    """Return whether a body casts a shadow: walls and ceilings of halls do, grounds do not."""
     boxes = _boxes([drawn])
     return bool(_casting(boxes[:, 1] - boxes[:, 0])[0])
 
@@ -221,7 +221,7 @@ class ShadowPlan:
         self.map_from_world = half @ self.clip_from_light @ self.light_from_world
 
     def _is_stale(self, casting: NDArray[np.bool_]) -> bool:
-        """Tell if something that was drawn as resting has moved since, or casts no more."""
+        """Return whether something that was drawn as resting has moved since, or casts no more."""
         rest = self._at_rest
         if len(rest) != len(casting) or (rest & ~casting).any():
             return True
@@ -229,7 +229,7 @@ class ShadowPlan:
 
 
 def _key(drawn: DrawnInstance) -> tuple[object, ...]:
-    """Tell casters apart while their models live."""
+    """Return a key that tells casters apart while their models live."""
     return drawn.instance.id, id(drawn.model), drawn.scale
 
 

@@ -61,7 +61,7 @@ def _text(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
 
 
 def _is_paragraph(text: str) -> bool:
-    """Say if a text is a longer one whose lines can be broken at its spaces, and nothing else."""
+    """Return whether a text is long and its lines can be broken at spaces, and nowhere else."""
     words = text.removesuffix("\n")
     return len(words) > WIDTH // 2 and words.isprintable() and words == " ".join(words.split())
 
@@ -88,7 +88,7 @@ def _block(dumper: yaml.SafeDumper, section: _Section) -> yaml.MappingNode:
 
 
 def _is_short(value: object) -> bool:
-    """Say if a collection fits on one line; several mappings in a list have one each."""
+    """Return whether a collection fits on one line; several mappings in a list have one each."""
     return _length(value) <= WIDTH - MARGIN
 
 

@@ -114,7 +114,7 @@ class Number(_FieldType):
         return number
 
     def _missed(self, number: float | int) -> str:
-        """Say what the number should have been; nothing if it is accepted."""
+        """Return what the number should have been; nothing if it is accepted."""
         if not math.isfinite(number):
             return self.accepted
         if (self.above is not None and number <= self.above) or (

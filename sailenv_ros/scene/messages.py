@@ -42,7 +42,7 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def suggestion(name: str, known: Iterable[str], *, listing: str = "known") -> str:
-    """Say which known name was meant, or list what is known.
+    """Return a sentence: which known name was meant, or what is known.
 
     Parameters
     ----------

@@ -29,6 +29,7 @@ _TITLES = {
     "DoorwaySpec": "A doorway",
     "FloorAreaSpec": "A floor area",
     "EnvironmentSpec": "The environment",
+    "JointSpec": "A joint",
     "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",
@@ -76,7 +77,7 @@ def write_reference(path: Path, schema: Mapping[str, Any]) -> None:
 
 
 def is_stale(path: Path, schema: Mapping[str, Any]) -> bool:
-    """Tell if `write_reference` would change the page."""
+    """Return whether `write_reference` would change the page."""
     _, marker, rest = path.read_text(encoding="utf-8").partition(MARKER)
     return marker + rest != reference(schema)
 

@@ -17,6 +17,7 @@ from sailenv_ros.scene.messages import shown, shown_number, suggestion
 from sailenv_ros.validation import is_finite_number
 
 __all__ = [
+    "Faults",
     "at_most_one",
     "away_from_position",
     "below",

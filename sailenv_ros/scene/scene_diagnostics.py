@@ -103,7 +103,7 @@ def model_diagnostics(
 
 
 def _counts_the_right_alone(details: ErrorDetails) -> bool:
-    """Say if a list is called too short only because entries of it are wrong."""
+    """Return whether a list is called too short only because entries of it are wrong."""
     if details["type"] != "too_short" or not isinstance(details["input"], list | tuple):
         return False
     return len(details["input"]) >= int(details["ctx"]["min_length"])

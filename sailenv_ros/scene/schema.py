@@ -46,7 +46,7 @@ def write_schema(path: Path, behaviours: Mapping[str, type[BaseModel]]) -> None:
 
 
 def is_stale(path: Path, behaviours: Mapping[str, type[BaseModel]]) -> bool:
-    """Tell if the schema's file is not what `write_schema` would write now."""
+    """Return whether the schema's file is not what `write_schema` would write now."""
     return not path.is_file() or path.read_text(encoding="utf-8") != schema_text(behaviours)
 
 

@@ -28,6 +28,7 @@ from sailenv_ros.scene.rules import (
     walls_need_a_room,
 )
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
+from sailenv_ros.scene.spec_joints import JointSpec, joints_hold
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.scene.spec_room import RoomSpec
@@ -48,6 +49,7 @@ __all__ = [
     "CategorySpec",
     "DirectionalLightSpec",
     "EnvironmentSpec",
+    "JointSpec",
     "LightSpec",
     "MoverSpec",
     "ObjectSpec",
@@ -104,6 +106,7 @@ class SceneSpec(SceneModel):
         movers_exist,
         carriers_exist,
         parents_exist,
+        joints_hold,
         walls_need_a_room,
         names_beside_room,
     )

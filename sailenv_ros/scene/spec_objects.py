@@ -24,6 +24,7 @@ from sailenv_ros.scene.fields import (
 from sailenv_ros.scene.placing import Turned
 from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.rules import at_most_one, distinct, only_beside, static_never_moves
+from sailenv_ros.scene.spec_joints import JointSpec, on_a_joint
 from sailenv_ros.scene.spec_materials import MaterialSpec
 from sailenv_ros.scene.spec_room import WallName
 
@@ -64,6 +65,7 @@ class ObjectSpec(Turned):
         at_most_one("on", "wall"),
         only_beside("wall", "at", "height", "gap"),
         static_never_moves,
+        on_a_joint,
         distinct("part", "materials"),
     )
 
@@ -111,6 +113,9 @@ class ObjectSpec(Turned):
     )
     restitution: Fraction = Field(
         default=0.0, description="bounce, from 0 (none) to 1 (all the speed is kept)"
+    )
+    joint: JointSpec | None = Field(
+        default=None, description="hinge or slide on which it moves, or to what it is fixed"
     )
     category: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a category")] | None = Field(
         default=None, description="instead of the asset's category"

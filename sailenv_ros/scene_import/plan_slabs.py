@@ -72,7 +72,7 @@ def slab(outline: Doubles, low_m: float, high_m: float) -> tuple[RawMesh, tuple[
 
 
 def inside(outline: Doubles, point: Doubles) -> bool:
-    """Say whether a point (2,) lies in an outline."""
+    """Return whether a point (2,) lies in an outline."""
     x, y = point
     ax, ay = outline.T
     bx, by = np.roll(outline, -1, axis=0).T

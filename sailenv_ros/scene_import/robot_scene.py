@@ -188,7 +188,7 @@ class _RobotBuilder:
             self._scene.notes.append(f"{len(held)} joints are fixed where they begin: {shown}")
 
     def _is_loose(self, number: int) -> bool:
-        """Say whether a body moves freely: it alone, or with nothing on joints below it."""
+        """Return whether a body moves freely: it alone, or with nothing on joints below it."""
         bodies = self._read["bodies"]
         free = any(joint["type"] == _FREE for joint in bodies[number]["joints"])
         return free and not any(body["parent"] == number for body in bodies[1:])

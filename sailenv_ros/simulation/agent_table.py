@@ -14,7 +14,7 @@ from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.simulation.stream import FrameStream
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.world import World
@@ -151,7 +151,7 @@ class AgentTable:
             stream.end(f"agent {name!r} was deleted")
 
     def pose(self, name: str | None, world: World) -> AgentPose:
-        """Say where an agent is."""
+        """Return where an agent is."""
         record = self[name]
         return AgentPose(
             pose=self.camera(record, world).pose,

@@ -29,12 +29,12 @@ from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.present_scene import PresentScene
 from sailenv_ros.simulation.randomiser import Chance, Randomiser
 from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.space_queries import SpaceQueries
-from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 from sailenv_ros.space import FreeSpace
@@ -179,7 +179,7 @@ class SimulationCore(WorldOperations):
         )
 
     def announce(self) -> None:
-        """Tell the scene as it is now, under a new revision."""
+        """Announce the scene as it is now, under a new revision."""
         if self._holds_announcements:
             self._unannounced = True
             return
@@ -189,7 +189,7 @@ class SimulationCore(WorldOperations):
 
     @contextmanager
     def announced_once(self) -> Iterator[None]:
-        """Tell the scene once after several changes, if there were any."""
+        """Announce the scene once after several changes, if there were any."""
         if self._holds_announcements:
             yield
             return

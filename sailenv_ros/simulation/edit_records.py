@@ -51,6 +51,9 @@ class ObjectRecord:
         Each with its ``type`` and all its parameters.
     surface : mapping or None
         What a scene file says of the look of a part of the room; None if it can say nothing.
+    joint_position : float or None
+        Of its joint [rad] or [m]; None where it has none that moves. `pose` is where the object is
+        while that is 0, as in a scene file.
     """
 
     name: str
@@ -58,6 +61,7 @@ class ObjectRecord:
     pose: Pose
     behaviours: tuple[Mapping[str, Any], ...]
     surface: Mapping[str, Any] | None = None
+    joint_position: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +84,10 @@ class SurroundingsRecord:
 def record_of(core: SimulationCore, number: int) -> ObjectRecord:
     """Take down the object of an instance id as it is now."""
     state, spec = core.world.object_state(number), core.world.body(number).placement.entry
-    entry = None
+    entry, pose = None, state.pose
+    joint = core.world.joint(number)
+    if spec is not None and spec.joint is not None:
+        pose = spec.pose
     if spec is not None:
         entry = {
             **core.editor.entry_without_place(spec),
@@ -92,9 +99,10 @@ def record_of(core: SimulationCore, number: int) -> ObjectRecord:
     return ObjectRecord(
         name=state.name,
         entry=entry,
-        pose=state.pose,
+        pose=pose,
         behaviours=state.behaviours,
         surface=surface_keys(core, number) if spec is None else None,
+        joint_position=None if joint is None else joint.position,
     )
 
 
@@ -149,6 +157,8 @@ class EditOperations(Caller):
             for behaviour in wanted.behaviours:
                 core.editor.add_behaviour(number, behaviour)
             core.announce()
+        if wanted.joint_position is not None and wanted.joint_position != present.joint_position:
+            core.world.set_joint(number, wanted.joint_position)
         if wanted.pose != present.pose:
             core.world.put_body(number, wanted.pose, teleport=True)
         return number
@@ -232,4 +242,7 @@ def bring_back(core: SimulationCore, wanted: ObjectRecord) -> int:
     entry = {**wanted.entry, "behaviours": wanted.behaviours}
     if entry["asset"] not in core.library.spawnables:
         raise UnknownName("asset", entry["asset"], core.library.spawnables)
-    return core.editor.spawn(entry, wanted.pose)
+    number = core.editor.spawn(entry, wanted.pose)
+    if wanted.joint_position is not None:
+        core.world.set_joint(number, wanted.joint_position)
+    return number

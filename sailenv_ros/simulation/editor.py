@@ -20,6 +20,7 @@ from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.simulation.material_edits import set_material
 from sailenv_ros.simulation.saving import environment_entry
 from sailenv_ros.simulation.scenario import scenario_entries
+from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class SceneEditor:
         if changes.get("materials", ()) is None:
             changes = {**changes, "materials": ()}
         placement = self._core.library.placement(
-            {**_without_place(present), **_place(body.pose()), **changes},
+            {**_without_place(present), **_place_of(body, present), **changes},
             world,
             seed=self._core.seed,
             start_s=0.0,
@@ -189,6 +190,11 @@ class SceneEditor:
 def _without_place(entry: ObjectSpec) -> dict[str, Any]:
     """Return the keys of an entry, but for where it is and how it moves."""
     return entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, *MOTION_KEYS})
+
+
+def _place_of(body: Body, entry: ObjectSpec) -> dict[str, Any]:
+    """Return where a body is; of one on a joint, where it is while the joint's position is 0."""
+    return _place(body.pose() if entry.joint is None else entry.pose)
 
 
 def _place(pose: Pose) -> dict[str, Any]:

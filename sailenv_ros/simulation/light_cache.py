@@ -1,4 +1,4 @@
-"""Hangs baked light into worlds, where it has been baked already. From `World` to `World`.
+"""Loads baked light into worlds, where it has been baked already. From `World` to `World`.
 
 Never bakes: a simulator that runs must not be held up for minutes.
 """
@@ -25,22 +25,25 @@ class LightCache:
     Parameters
     ----------
     wanted : bool
-        False hangs none.
+        False loads none.
+    drafts : bool
+        False loads no draft: what is rendered must not depend on how far a bake is.
     """
 
-    def __init__(self, *, wanted: bool = True) -> None:
+    def __init__(self, *, wanted: bool = True, drafts: bool = True) -> None:
         self._wanted = wanted
+        self._drafts = drafts
         self._last: BakedLight | None = None
         self._is_draft = False
 
     def is_final(self, world: World) -> bool:
-        """Tell whether a world has light that no bake will replace."""
+        """Return whether a world has light that no bake will replace."""
         baked = world.contents.baked
         if baked is None:
             return False
         return not (self._is_draft and self._last is not None and baked.layers is self._last.layers)
 
-    def hang(self, world: World, scene: str) -> None:
+    def apply(self, world: World, scene: str) -> None:
         """Load a world's baked light, the draft if that is all there is, or say how to bake it.
 
         Parameters
@@ -55,7 +58,8 @@ class LightCache:
         name = fingerprint(world.snapshot())
         if self._last is None or self._last.fingerprint != name or self._is_draft:
             before, self._last, self._is_draft = self._last, load_baked(name), False
-            if self._last is None and (draft := load_draft(name)) is not None:
+            draft = load_draft(name) if self._drafts and self._last is None else None
+            if draft is not None:
                 self._last, self._is_draft = draft, True
             elif self._last is None and before is not None and before.fingerprint == name:
                 self._last, self._is_draft = before, True

@@ -87,7 +87,7 @@ def surface_keys(core: SimulationCore, instance_id: int) -> dict[str, Any] | Non
 
 
 def set_surface(core: SimulationCore, instance_id: int, keys: Mapping[str, Any] | None) -> None:
-    """Give a part of the room the look of these keys; None gives it that of the scene's file."""
+    """Change the look of a part of the room to these keys; None: to the scene file's."""
     world = core.world
     body = world.body(instance_id)
     name = body.placement.name

@@ -89,7 +89,7 @@ class RoomOperations(Caller):
     @operation()
     @staticmethod
     def floor_plan(core: SimulationCore) -> FloorPlan:
-        """Tell the room and its objects as they lie in a plan now."""
+        """Return the room and its objects as they lie in a plan now."""
         assert core.world.described is not None
         room = core.world.described.room
         return FloorPlan(

@@ -33,6 +33,7 @@ from sailenv_ros.scene.spec import (
 )
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
 
@@ -172,6 +173,8 @@ def _object(body: Body, *, unchanged: bool) -> Entry:
     entry: Entry = placement.entry.model_dump(
         mode="json", exclude_unset=True, exclude_defaults=True, exclude={"behaviours"}
     )
+    if isinstance(body, JointedBody):
+        return {**entry, "joint": _joint(body), **_driven(body, placement.entry)}
     if not unchanged:
         for key in (*PLACE_KEYS, *VELOCITY_KEYS):
             entry.pop(key, None)
@@ -182,12 +185,28 @@ def _object(body: Body, *, unchanged: bool) -> Entry:
         entry.update(pose_entry(placement.entry.pose))
     if placement.static:
         entry = {key: value for key, value in entry.items() if key not in VELOCITY_KEYS}
-    behaviours = _behaviours(body, placement.entry)
-    return {**entry, "behaviours": behaviours} if behaviours else entry
+    return {**entry, **_driven(body, placement.entry)}
+
+
+def _driven(body: Body, entry: ObjectSpec) -> Entry:
+    behaviours = _behaviours(body, entry)
+    return {"behaviours": behaviours} if behaviours else {}
+
+
+def _joint(body: JointedBody) -> Entry:
+    """Return an object's joint as its entry has it, with its position and velocity of now."""
+    spec = body.joint.spec
+    entry: Entry = spec.model_dump(mode="json", exclude_unset=True)
+    position, velocity = body.joint_state()
+    if position != spec.start:
+        entry["position"] = position
+    if velocity != spec.velocity:
+        entry["velocity"] = velocity
+    return entry
 
 
 def _placement_unchanged(body: Body, begun: Mapping[str, Body], *, same_walls: bool) -> bool:
-    """Say if it stands where its entry puts it, and so does all that carries it."""
+    """Return whether it stands where its entry puts it, and so does all that carries it."""
     entry = body.placement.entry
     if entry is None or not body.arranged:
         return False
@@ -216,7 +235,7 @@ def _only_settled(body: Body) -> bool:
 
 
 def _is_same(first: Pose, second: Pose) -> bool:
-    """Say if two poses are the same up to rounding."""
+    """Return whether two poses are the same up to rounding."""
     return math.dist(first.position_m, second.position_m) < 1e-12 and (
         _angle_deg(first, second) < 1e-6
     )

@@ -128,7 +128,7 @@ def _frustum(given: object, viewer: str) -> dict[str, Any]:
 
 
 def _starts(given: object, entries: list[Entry]) -> list[float]:
-    """Say when each object begins to move [s]."""
+    """Return when each object begins to move [s]."""
     timings = {"type": "all_together"} if given is None else given
     if not isinstance(timings, Mapping) or not set(timings) <= {"type", "description"}:
         raise InvalidRequest("timings", given, "a mapping with type and description")

@@ -86,6 +86,8 @@ class SceneLibrary:
         when the scene is built.
     baked_light : bool
         False leaves worlds without baked light, whether there is any or not.
+    drafts : bool
+        False takes no rough light in the meantime, while a bake is not finished.
     """
 
     def __init__(
@@ -94,13 +96,14 @@ class SceneLibrary:
         *,
         allow_modules: bool = False,
         baked_light: bool = True,
+        drafts: bool = True,
     ) -> None:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
-        self._light_cache = LightCache(wanted=baked_light)
+        self._light_cache = LightCache(wanted=baked_light, drafts=drafts)
         self._generated = GeneratedScenes(self._assets)
         self._uploads = 0
         self._uploaded: set[str] = set()
@@ -211,7 +214,7 @@ class SceneLibrary:
         self._assets.renew(installed_sources(self._packs))
 
     def load_light(self, world: World) -> None:
-        """Give a world the light that was baked since it was built, if there is any."""
+        """Load the light that was baked since a world was built, if there is any."""
         if not self._light_cache.is_final(world):
             self._load_light(world, world.scene)
 
@@ -312,7 +315,7 @@ class SceneLibrary:
         names = tuple(category.name for category in world.categories.values())
         stock = self.materials_of(world.scene)
         known = replace(self._knowledge_of_strangers, categories=names)
-        spec = checked_object(entry, self._with_materials(known, stock))
+        spec = _checked_alone(entry, self._with_materials(known, stock))
         return make_placement(
             spec,
             self._assets.get(spec.asset),
@@ -351,7 +354,7 @@ class SceneLibrary:
         return self._own_folder
 
     def is_uploaded(self, asset: str) -> bool:
-        """Say of a catalogue name if its model lies in no pack: a scene file cannot name it."""
+        """Return whether an asset's model lies in no pack, so that a scene file cannot name it."""
         return asset in self._unkept
 
     def keep_model(self, asset: str) -> None:
@@ -417,7 +420,7 @@ class SceneLibrary:
 
     def _load_light(self, world: World, scene: str) -> None:
         if world.described is not None and world.described.room is not None:
-            self._light_cache.hang(world, scene)
+            self._light_cache.apply(world, scene)
 
     def _described(
         self, more: Sequence[Mapping[str, Any]], spec: SceneSpec
@@ -435,6 +438,16 @@ class SceneLibrary:
         own = tuple(category.name for category in spec.categories)
         known = self._with_materials(self._knowledge_of_strangers, self.materials_of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
+
+
+def _checked_alone(entry: Mapping[str, Any], known: SceneKnowledge) -> ObjectSpec:
+    """Check an object beside which there are others: what its joint is on, the world knows."""
+    joint = entry.get("joint") if isinstance(entry, Mapping) else None
+    parent = joint.get("parent") if isinstance(joint, Mapping) else None
+    if not isinstance(parent, str) or parent == entry.get("name"):
+        return checked_object(entry, known)
+    stands_in = {"name": parent, "asset": entry.get("asset"), "static": True}
+    return checked_objects([entry, stands_in], known)[0]
 
 
 def _standard_pack_version() -> tuple[int, int]:

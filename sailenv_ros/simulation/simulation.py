@@ -24,16 +24,17 @@ from sailenv_ros.catalogue.thumbnails import Thumbnails
 from sailenv_ros.catalogue.upload_queue import UploadQueue
 from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import DeadlineExceeded, InvalidState, SailenvError, SimulationClosed
+from sailenv_ros.joints import JointState
 from sailenv_ros.notebook import scene_html
 from sailenv_ros.operations import Operation, Operations
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.model_workers import ModelWorkers
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
-from sailenv_ros.simulation.stream import FrameStream
 from sailenv_ros.snapshot import SceneContents
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for
@@ -308,6 +309,18 @@ class Simulation(Operations):
         if self._core is None or threading.current_thread() is not self._thread:
             raise InvalidState("this is for listeners of on_step; others call contacts(seconds)")
         return self._core.world.contacts(seconds)
+
+    def joints_now(self) -> tuple[JointState, ...]:
+        """Return the states of all joints; for listeners of `on_step` alone.
+
+        Raises
+        ------
+        InvalidState
+            If it is called from another thread than theirs, which has the operation `get_joints`.
+        """
+        if self._core is None or threading.current_thread() is not self._thread:
+            raise InvalidState("this is for listeners of on_step; others call get_joints()")
+        return self._core.world.joints()
 
     def refresh(self) -> Future[None]:
         """Begin to take up furniture and baked light that were built since the start."""

@@ -1,4 +1,4 @@
-"""The free space of a scene: a map of where a body can stand, and ways through it.
+"""The free space of a scene: a map of where a body can stand, and paths through it.
 
 A plain value that can be sent and kept; `grid.map_free_space` makes it.
 """
@@ -118,7 +118,7 @@ class FreeSpace:
         return x + (column + 0.5) * side, y + (row + 0.5) * side, self.body.floor_m
 
     def is_free(self, position: ArrayLike) -> bool:
-        """Say whether a place [m] is in a free cell."""
+        """Return whether a place [m] is in a free cell."""
         cell = self.cell_of(position)
         return cell is not None and bool(self.cells[cell] == FREE)
 
@@ -137,7 +137,7 @@ class FreeSpace:
         return result
 
     def reachable(self, start: ArrayLike, goal: ArrayLike) -> bool:
-        """Say whether a body can walk from one place [m] to another."""
+        """Return whether a body can walk from one place [m] to another."""
         cells = self.cell_of(start), self.cell_of(goal)
         if cells[0] is None or cells[1] is None:
             return False
@@ -145,15 +145,15 @@ class FreeSpace:
         return first == last != 0
 
     def distances_m(self, start: ArrayLike) -> NDArray[np.float64]:
-        """Return (H, W) how far each cell is from a place on a way through free cells [m].
+        """Return (H, W) how far each cell is from a place on a path through free cells [m].
 
-        Along rows, columns and diagonals; inf where there is no way.
+        Along rows, columns and diagonals; inf where no path leads.
         """
         distances, _ = self._graph.from_cell(self._free_cell("start", start))
         return distances * self.resolution_m
 
     def path(self, start: ArrayLike, goal: ArrayLike) -> NDArray[np.float64]:
-        """Return the way from one place to another.
+        """Return the shortest path from one place to another.
 
         The shortest along rows, columns and diagonals of free cells, without cutting corners of
         others; then its corners are left out where the straight line stays in free cells.
@@ -166,16 +166,16 @@ class FreeSpace:
         Returns
         -------
         positions : (N, 3) float64
-            Corners of the way upon the floor, the start and the goal themselves included [m].
+            Corners of the path on the floor, the start and the goal themselves included [m].
 
         Raises
         ------
         InvalidRequest
-            If one of the places is not free, or there is no way.
+            If one of the places is not free, or no path joins them.
         """
         first, last = self._free_cell("start", start), self._free_cell("goal", goal)
         _, before = self._graph.from_cell(first)
-        cells = self._graph.way(first, last, before)
+        cells = self._graph.cells_between(first, last, before)
         if cells is None:
             raise InvalidRequest("goal", _shown(goal), f"reachable from the start, {_shown(start)}")
         side = self.resolution_m
@@ -198,7 +198,7 @@ class FreeSpace:
             What it is for: other names have other random numbers.
         seed : int
         reachable_from : (2,) or (3,) array-like or None
-            A place from which there is a way to it [m]; None means the largest region.
+            A place from which a path leads to it [m]; None means the largest region.
 
         Returns
         -------

@@ -47,8 +47,10 @@ class GridGraph:
         )
         self.from_cell = lru_cache(maxsize=4)(self._from_cell)
 
-    def way(self, start: Cell, goal: Cell, before: NDArray[np.int32]) -> list[Cell] | None:
-        """Return the cells from one to another; None if there is no way."""
+    def cells_between(
+        self, start: Cell, goal: Cell, before: NDArray[np.int32]
+    ) -> list[Cell] | None:
+        """Return the cells from one to another; None if no path joins them."""
         width = self._shape[1]
         first, at = start[0] * width + start[1], goal[0] * width + goal[1]
         cells = [at]
@@ -60,7 +62,7 @@ class GridGraph:
         return [divmod(cell, width) for cell in reversed(cells)]
 
     def _from_cell(self, start: Cell) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """Return (H, W) distances in cells, and (H·W,) the cell before each on the way to it."""
+        """Return (H, W) distances in cells, and (H·W,) the cell before each on the path to it."""
         number = start[0] * self._shape[1] + start[1]
         distances, before = dijkstra(
             self._graph, directed=False, indices=number, return_predecessors=True
@@ -69,7 +71,7 @@ class GridGraph:
 
 
 def straightened(corners: NDArray[np.float64], free: Flags) -> NDArray[np.float64]:
-    """Leave out corners of a way where the straight line past them stays in free cells.
+    """Leave out corners of a path where the straight line past them stays in free cells.
 
     Parameters
     ----------
@@ -88,7 +90,7 @@ def straightened(corners: NDArray[np.float64], free: Flags) -> NDArray[np.float6
 
 
 def in_sight(start: NDArray[np.float64], end: NDArray[np.float64], free: Flags) -> bool:
-    """Say whether all cells that a straight line touches are free."""
+    """Return whether all cells that a straight line touches are free."""
     (ax, ay), (bx, by) = sorted((tuple(start), tuple(end)))
     slope = (by - ay) / (bx - ax) if bx > ax else 0.0
     for column in range(math.floor(ax), math.floor(bx) + 1):

@@ -54,7 +54,7 @@ class ClientLock(ProcessLock):
 
 
 def client_lives(name: str) -> bool | None:
-    """Say whether the client of that name lives.
+    """Return whether the client of that name lives.
 
     Returns
     -------

@@ -37,7 +37,7 @@ _MAX_DESCRIPTORS = 4
 
 
 def is_wanted() -> bool:
-    """Say whether frames may be handed over beside ROS.
+    """Return whether frames may be handed over beside ROS.
 
     Not where SROS 2 is set up: whom its keys keep out shall not come in here.
     """
@@ -80,7 +80,7 @@ def connect(domain_id: int, namespace: str) -> socket.socket | None:
 
 
 def peer_is_same_user(sock: socket.socket) -> bool:
-    """Say whether the process at the other end is of this user."""
+    """Return whether the process at the other end is of this user."""
     credentials = sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize("3i"))
     _, user, _ = struct.unpack("3i", credentials)
     return bool(user == os.getuid())

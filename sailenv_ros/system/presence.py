@@ -107,7 +107,7 @@ def checked_namespace(namespace: object) -> str:
 
 
 def simulator_is_present(domain_id: int, namespace: str) -> bool:
-    """Say whether a simulator of that name runs on this host as this user."""
+    """Return whether a simulator of that name runs on this host as this user."""
     return present_simulator(domain_id, namespace) is not None
 
 

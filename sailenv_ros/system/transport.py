@@ -131,14 +131,14 @@ def stay_local(environment: MutableMapping[str, str] = os.environ) -> None:
 
 
 def is_local(environment: Mapping[str, str] = os.environ) -> bool:
-    """Say whether ROS stays on this machine, by what the environment says."""
+    """Return whether ROS stays on this machine, by what the environment says."""
     if environment.get("ROS_LOCALHOST_ONLY"):
         return environment["ROS_LOCALHOST_ONLY"] == "1"
     return environment.get(RANGE_VARIABLE, "").upper() in ("LOCALHOST", "OFF")
 
 
 def who_may_command(domain_id: int, environment: Mapping[str, str] = os.environ) -> str:
-    """Say in one sentence from where a simulator of that ROS domain can be commanded."""
+    """Return one sentence: from where a simulator of that ROS domain can be commanded."""
     if environment.get("ROS_SECURITY_ENABLE", "").lower() == "true":
         return "programs with a key of this SROS 2 keystore may command it"
     if is_local(environment):

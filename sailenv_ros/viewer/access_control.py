@@ -34,7 +34,7 @@ SECURITY_HEADERS: Mapping[str, str] = MappingProxyType(
 
 
 def is_loopback(host: str) -> bool:
-    """Say if an address, or the name of one, can be reached from this machine alone."""
+    """Return whether an address, or the name of one, can be reached from this machine alone."""
     if host == "localhost":
         return True
     try:
@@ -60,21 +60,21 @@ class AccessControl:
     token: str = ""
 
     def refusal_of_request(self, headers: Mapping[str, str]) -> str:
-        """Say why a request is refused; empty if it is not."""
+        """Return why a request is refused; empty if it is not."""
         host = headers.get("Host", "")
         if self.loopback and not is_loopback(_hostname(host)):
             return f"the host {host[:80]!r} is not this machine's: use localhost or 127.0.0.1"
         return ""
 
     def refusal_of_socket(self, headers: Mapping[str, str], token: str) -> str:
-        """Say why a socket is refused; empty if it is not."""
+        """Return why a socket is refused; empty if it is not."""
         origin, host = headers.get("Origin", ""), headers.get("Host", "")
         if urlsplit(origin).scheme not in ("http", "https") or urlsplit(origin).netloc != host:
             return f"the origin {origin[:80]!r} is another than the page's own, {host[:80]!r}"
         return self.refusal_of_token(token)
 
     def refusal_of_token(self, token: str) -> str:
-        """Say why a token is refused; empty if it is not."""
+        """Return why a token is refused; empty if it is not."""
         if self.token and not hmac.compare_digest(token.encode(), self.token.encode()):
             return "the address needs the token that the simulator printed when it started"
         return ""

@@ -139,13 +139,13 @@ class Client:
     async def serve(self) -> None:
         """Answer until the client goes."""
         await self._outbox.send_json({**self._greeting, "control": self._may_change})
-        telling = asyncio.create_task(self._tell())
+        sending_news = asyncio.create_task(self._send_news())
         self._news.set()
         try:
             await self._listen()
         finally:
             self._end_watch()
-            ending = [telling, *self._running, *self._outbox.tasks]
+            ending = [sending_news, *self._running, *self._outbox.tasks]
             # Again and again: until Python 3.12, wait_for loses a cancellation that meets a result.
             for _ in range(10):
                 for task in ending:
@@ -158,13 +158,13 @@ class Client:
         """Have the scene told when there is time to."""
         self._news.set()
 
-    def tell_stats(self, stats: dict[str, Any]) -> None:
+    def send_stats(self, stats: dict[str, Any]) -> None:
         """Have these numbers told; newer ones take the place of those that wait."""
         self._stats = stats
         self._news.set()
 
     async def close(self) -> None:
-        """Say goodbye."""
+        """Send the closing message."""
         with contextlib.suppress(Exception):
             await self._socket.close(code=WSCloseCode.GOING_AWAY, message=b"the simulator ends")
 
@@ -321,8 +321,8 @@ class Client:
 
     # -- sending ---------------------------------------------------------------------------
 
-    async def _tell(self) -> None:
-        """Tell what is new, the newest alone."""
+    async def _send_news(self) -> None:
+        """Send what is new, the newest alone."""
         while True:
             await self._news.wait()
             self._news.clear()

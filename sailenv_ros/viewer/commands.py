@@ -50,14 +50,14 @@ OBJECT_KEYS = ("name", "category", "scale")
 
 @_commands.looks
 async def probe(context: CommandContext, given: Arguments) -> Any:
-    """Tell the values at a pixel of a frame."""
+    """Return the values at a pixel of a frame."""
     frame = context.frame(given.get("frame"))
     return values_at(frame, context.info, *pixel_of(frame, given.get("u"), given.get("v")))
 
 
 @_commands.looks
 async def objects(context: CommandContext, given: Arguments) -> Any:
-    """Tell what is drawn over a frame of its objects; see `object_overlay`."""
+    """Return what is drawn over a frame of its objects; see `object_overlay`."""
     frame = context.frame(given.get("frame"))
     # Drawing an object alone waits for the simulation.
     return await asyncio.to_thread(
@@ -71,7 +71,7 @@ async def objects(context: CommandContext, given: Arguments) -> Any:
 
 @_commands.looks
 async def get_object(context: CommandContext, given: Arguments) -> Any:
-    """Tell what and where an object is."""
+    """Return what and where an object is."""
     return object_to_json(await context.run(Operations.get_object, given.integer("object")))
 
 

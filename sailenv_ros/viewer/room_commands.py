@@ -24,7 +24,7 @@ ROOM_COMMANDS = CommandTable()
 
 @ROOM_COMMANDS.looks
 async def floor_plan(context: CommandContext, given: Arguments) -> Any:
-    """Tell the room and what stands in it, seen from above [m]; the size is null for no room."""
+    """Return the room and what stands in it, seen from above [m]; the size is null for no room."""
     plan = await context.run(RoomOperations.floor_plan)
     return {
         "size": None if plan.size_m is None else list(plan.size_m),
@@ -52,7 +52,7 @@ async def set_room(context: CommandContext, given: Arguments) -> Any:
 
 @ROOM_COMMANDS.looks
 async def room_kinds(context: CommandContext, given: Arguments) -> Any:
-    """Tell the kinds of rooms that can be generated, each with its title."""
+    """Return the kinds of rooms that can be generated, each with its title."""
     rules = rules_of()
     return [{"kind": kind, "title": rules.kind(kind).title} for kind in sorted(rules.kinds)]
 

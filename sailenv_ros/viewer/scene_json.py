@@ -36,7 +36,7 @@ _LIGHT_NUMBERS = ("intensity", "indirect_multiplier", "range_m")
 
 
 def scene_to_json(info: SceneInfo) -> dict[str, Any]:
-    """Tell what the scene is now."""
+    """Return what the scene is now."""
     surroundings = info.environment
     return {
         "type": "scene",
@@ -99,7 +99,7 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
 
 
 def object_to_json(state: ObjectState) -> dict[str, Any]:
-    """Tell what and where an object is."""
+    """Return what and where an object is."""
     return {
         "id": state.id,
         "name": state.name,
@@ -115,18 +115,18 @@ def object_to_json(state: ObjectState) -> dict[str, Any]:
 
 
 def pose_to_json(pose: Pose) -> dict[str, Any]:
-    """Tell a pose: position [m] and roll, pitch, yaw [deg]."""
+    """Return a pose: position [m] and roll, pitch, yaw [deg]."""
     return {"position": list(pose.position_m), "rpy_deg": list(pose.rpy_deg)}
 
 
 @cache
 def behaviours_to_json() -> list[dict[str, Any]]:
-    """Tell which behaviours there are, with their parameters."""
+    """Return which behaviours there are, with their parameters."""
     return [_behaviour(kind) for kind in behaviour_kinds().values()]
 
 
 def picture_settings_to_json() -> list[dict[str, Any]]:
-    """Tell which settings a picture has: defaults, choices, limits and units."""
+    """Return which settings a picture has: defaults, choices, limits and units."""
     usual, types = PictureSettings(), get_type_hints(PictureSettings)
     unlimited = (None, None, "")
     return [
@@ -142,12 +142,12 @@ def picture_settings_to_json() -> list[dict[str, Any]]:
 
 
 def materials_to_json() -> list[str]:
-    """Tell the names of the materials that are made for rooms."""
+    """Return the names of the materials that are made for rooms."""
     return list(surface_names())
 
 
 def skies_to_json() -> list[str]:
-    """Tell the names of the pictures of skies on this machine; reads folders."""
+    """Return the names of the pictures of skies on this machine; reads folders."""
     return sorted(sky_files(pack.folder for pack in installed_packs()))
 
 

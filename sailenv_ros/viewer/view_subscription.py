@@ -136,7 +136,7 @@ class ViewSubscription:
         return not self.has_turn and time.monotonic() - self._full_since_s >= STALLED_S
 
     def lacks(self, frame: Frame) -> bool:
-        """Say if it may be sent a frame now that came while it had no turn."""
+        """Return whether it may be sent a frame now that came while it had no turn."""
         return self.has_turn and self._missed is frame and {*self._views} <= frame.views.keys()
 
     def deliver(self, messages: FrameMessages) -> None:

@@ -157,7 +157,7 @@ class ViewerServer:
     def _scene_changed(self, _: SceneInfo) -> None:
         """Have everybody told; called by the simulation's thread."""
         with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._thread.loop.call_soon_threadsafe(self._tell_scene)
+            self._thread.loop.call_soon_threadsafe(self._announce_scene)
 
     # -- in the thread ---------------------------------------------------------------------
 
@@ -176,7 +176,7 @@ class ViewerServer:
             except OSError as problem:
                 raise address_error("the viewer", self._host, self._port, problem) from problem
             listening(runner.addresses[0][1])
-            stats = asyncio.create_task(self._tell_stats())
+            stats = asyncio.create_task(self._send_stats_repeatedly())
             await self._thread.stop.wait()
             stats.cancel()
             await asyncio.gather(*(client.close() for client in tuple(self._clients)))
@@ -275,12 +275,12 @@ class ViewerServer:
     def _touch(self) -> None:
         self._touched += 1
 
-    def _tell_scene(self) -> None:
+    def _announce_scene(self) -> None:
         for client in self._clients:
             client.scene_changed()
 
-    async def _tell_stats(self) -> None:
-        """Report how fast simulated time runs, again and again."""
+    async def _send_stats_repeatedly(self) -> None:
+        """Send how fast simulated time runs to all clients, every STATS_S seconds."""
         before = (time.monotonic(), self._simulation.sim_time_ns)
         while True:
             await asyncio.sleep(STATS_S)
@@ -298,7 +298,7 @@ class ViewerServer:
             }
             before = now
             for client in self._clients:
-                client.tell_stats(stats)
+                client.send_stats(stats)
 
     def _file(self, name: str) -> web.Response:
         found = page_file(name)

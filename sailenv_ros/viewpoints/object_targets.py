@@ -149,7 +149,7 @@ def cameras(
 
 
 def stands_in_something(target: Target, eye: NDArray[np.float64]) -> bool:
-    """Say if a camera stands in a wall or in furniture: in a box that is not around both."""
+    """Return whether a camera is inside a wall or furniture: in a box that is not around both."""
     eye_in, middle_in = (_in_boxes(target, point) for point in (eye, target.middle))
     return bool((eye_in & ~middle_in).any())
 

@@ -13,13 +13,14 @@ from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.validation import checked_integer
 from sailenv_ros.viewpoints.free_view import free_view
 from sailenv_ros.viewpoints.object_view import object_view
+from sailenv_ros.viewpoints.room_view import room_view
 from sailenv_ros.viewpoints.scene_coverage import coverage
 from sailenv_ros.viewpoints.view_scene import CameraRule, CameraView, RuleSettings, ViewScene
 
 __all__ = ["MOST_VIEWS", "camera_rules", "checked_rule", "sample_cameras"]
 
 _RULES: Mapping[str, CameraRule] = MappingProxyType(
-    {rule.type: rule for rule in (object_view, free_view, coverage)}
+    {rule.type: rule for rule in (object_view, free_view, coverage, room_view)}
 )
 
 MOST_VIEWS = 10_000

@@ -28,11 +28,16 @@ def wake(client: BulletClient, body: int) -> None:
     client.changeDynamics(body, LINK_OF_BASE, activationState=state)
 
 
-def push(client: BulletClient, body: int, force_n: Sequence[float]) -> None:
+def push(
+    client: BulletClient, body: int, force_n: Sequence[float], *, link: int = LINK_OF_BASE
+) -> None:
     """Push at the centre of mass during the next step [N]."""
-    position, _ = client.getBasePositionAndOrientation(body)
+    if link == LINK_OF_BASE:
+        position, _ = client.getBasePositionAndOrientation(body)
+    else:
+        position = client.getLinkState(body, link, computeForwardKinematics=1)[0]
     frame = client.constants.WORLD_FRAME
-    client.applyExternalForce(body, LINK_OF_BASE, force_n, position, frame)
+    client.applyExternalForce(body, link, force_n, position, frame)
 
 
 def apply_action(client: BulletClient, body: int, action: Action) -> None:

@@ -6,7 +6,6 @@ in which the model's vertices stand.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias
@@ -38,6 +37,9 @@ MAX_WRENCHES = 64
 
 TOUCH_M = 0.02
 """What is nearer may rest on a body."""
+
+NOT_THERE = -1
+"""PyBullet's number of what is not in the engine yet."""
 
 _NO_PLANES = np.zeros((0, 4))
 
@@ -79,7 +81,7 @@ class Body:
         self.mass_kg = 0.0 if placement.static else _mass_kg(placement)
         self._id = self._build()
         self.inertia_kg_m2 = np.ones(3)
-        if not placement.static:
+        if self._id != NOT_THERE and not placement.static:
             self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
         self._static_pose = placement.pose
         self._quat = placement.pose.orientation_xyzw
@@ -91,6 +93,11 @@ class Body:
     def bullet_id(self) -> int:
         """PyBullet's number of this body."""
         return self._id
+
+    @property
+    def link(self) -> int:
+        """PyBullet's number of the link of that body which this one is."""
+        return LINK_OF_BASE
 
     def world_from_body(self) -> NDArray[np.float64]:
         """Return the (4, 4) pose now.
@@ -116,6 +123,9 @@ class Body:
         matrix = self.world_from_body().copy()
         np.clip(matrix[:3, 3], -POSITION_LIMIT_M, POSITION_LIMIT_M, out=matrix[:3, 3])
         return Pose.from_matrix(matrix)
+
+    def require_free(self) -> None:
+        """Refuse to put it elsewhere where a joint alone moves it; here it does nothing."""
 
     def put(self, pose: Pose) -> None:
         """Set the pose and stop the body."""
@@ -253,7 +263,7 @@ class Body:
     def forces(self) -> tuple[RunningBehaviour, ...]:
         """Return all that acts upon it, its behaviours first; forgets wrenches that have ended."""
         if self._wrenches:
-            self._wrenches = tuple(w for w in self._wrenches if w.idle_until_s != math.inf)
+            self._wrenches = tuple(w for w in self._wrenches if not w.is_over)
         return (*self._behaviours, *self._wrenches)
 
     def attach(self, running: RunningBehaviour) -> None:
@@ -262,13 +272,16 @@ class Body:
         Raises
         ------
         InvalidRequest
-            If it is static, or has `MAX_BEHAVIOURS` already.
+            If it is static, has `MAX_BEHAVIOURS` already, or lacks the joint that is moved.
         """
         name = self.placement.name
         if self.placement.static:
             raise InvalidRequest(
                 f"static of {name!r}", True, "false for an object that has behaviours"
             )
+        if running.parameters.needs_joint and self.placement.joint is None:
+            accepted = f"one on a joint for the behaviour {running.kind.type!r}"
+            raise InvalidRequest("object", name, accepted)
         if len(self._behaviours) >= MAX_BEHAVIOURS:
             raise InvalidState(
                 f"object {name!r} has {MAX_BEHAVIOURS} behaviours, which is the most; "
@@ -291,7 +304,7 @@ class Body:
 
     def touching_ids(self) -> frozenset[int]:
         """Return PyBullet's numbers of the bodies whose boxes touch its own, itself among them."""
-        low, high = self._client.getAABB(self._id)
+        low, high = self._client.getAABB(self._id, self.link)
         found = self._client.getOverlappingObjects(
             [edge - TOUCH_M for edge in low], [edge + TOUCH_M for edge in high]
         )

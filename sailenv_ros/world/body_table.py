@@ -18,6 +18,8 @@ from sailenv_ros.model import AssetPart
 from sailenv_ros.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.joint_table import JointTable
+from sailenv_ros.world.jointed_bodies import make_body
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["BodyTable", "LabelledPiece"]
@@ -67,6 +69,7 @@ class BodyTable:
         placements: Iterable[Placement],
     ) -> None:
         self._client = client
+        self.joints = JointTable(client)
         self._bodies: dict[int, Body] = {}
         self._parts: dict[int, tuple[int, ...]] = {}
         self._pieces: tuple[LabelledPiece, ...] | None = None
@@ -75,6 +78,7 @@ class BodyTable:
         self._last_history = 0
         for placement in placements:
             self._add_body(placement)
+        self.joints.arrange(self)
         for body_id in self._bodies:
             self._number_parts(body_id)
         self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
@@ -216,16 +220,25 @@ class BodyTable:
         """
         self._require_ids(1 + len(placement.asset.parts))
         body_id = self._add_body(placement)
+        try:
+            self.joints.arrange(self)
+        except BaseException:
+            self._bodies.pop(body_id).remove()
+            del self._histories[body_id], self._parts[body_id]
+            self._last_id -= 1
+            raise
         self._number_parts(body_id)
         return body_id
 
     def remove(self, instance_id: int) -> None:
         """Take a body out of the engine, and wake what rests upon it."""
         gone = self[instance_id]
+        self._require_nothing_on(gone, "to be removed")
         self.rouse_beside(gone)
         gone.remove()
         del self._bodies[instance_id], self._histories[instance_id], self._parts[instance_id]
         self._pieces = None
+        self.joints.arrange(self)
 
     def rebuild(self, instance_id: int, placement: Placement) -> None:
         """Make of a body what another placement says; it keeps its id, its place, its motion.
@@ -238,10 +251,19 @@ class BodyTable:
         old = self[instance_id]
         if placement.name != old.placement.name:
             self._require_free_name(placement.name)
+            self._require_nothing_on(old, "to be renamed")
+        if not placement.static and placement.joint is None:
+            self._require_nothing_on(old, "that moves freely")
         new = old.rebuilt(placement)
         self.rouse_beside(old)
-        old.remove()
         self._bodies[instance_id] = new
+        try:
+            self.joints.arrange(self)
+        except BaseException:
+            self._bodies[instance_id] = old
+            new.remove()
+            raise
+        old.remove()
         self._pieces = None
 
     def replace_room(self, placements: Iterable[Placement], without: Collection[int] = ()) -> None:
@@ -269,7 +291,7 @@ class BodyTable:
         made: list[Body] = []
         try:
             for placement in wanted:
-                made.append(Body(self._client, placement))
+                made.append(make_body(self._client, placement))
         except BaseException:
             for body in made:
                 body.remove()
@@ -288,6 +310,7 @@ class BodyTable:
         for id_ in leaving:
             del self._bodies[id_], self._histories[id_], self._parts[id_]
         self._pieces = None
+        self.joints.arrange(self)
         self._room_parts = frozenset(placement.name for placement in wanted)
 
     def rouse_beside(self, body: Body) -> None:
@@ -305,7 +328,7 @@ class BodyTable:
     def _add_body(self, placement: Placement) -> int:
         self._require_free_name(placement.name)
         self._require_ids(1)
-        body = Body(self._client, placement)
+        body = make_body(self._client, placement)
         self._last_id += 1
         self._bodies[self._last_id] = body
         self._parts[self._last_id] = ()
@@ -318,6 +341,13 @@ class BodyTable:
         self._parts[body_id] = tuple(range(self._last_id + 1, self._last_id + 1 + count))
         self._last_id += count
         self._pieces = None
+
+    def _require_nothing_on(self, body: Body, what: str) -> None:
+        carried = self.joints.carried_by(body)
+        if carried:
+            one = carried[0].placement.name
+            accepted = f"one that carries nothing on a joint; this one carries {one!r}"
+            raise InvalidRequest(f"object {what}", body.placement.name, accepted)
 
     def _require_free_name(self, name: str) -> None:
         if any(body.placement.name == name for body in self):

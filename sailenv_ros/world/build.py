@@ -22,6 +22,7 @@ from sailenv_ros.model import Asset
 from sailenv_ros.scene.spec import EnvironmentSpec, MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
+from sailenv_ros.world.placement import JointPlacement
 from sailenv_ros.world.world import World
 
 __all__ = ["build_world", "make_environment", "make_placement", "room_placements"]
@@ -182,7 +183,16 @@ def make_placement(
         angular_velocity=(x, y, z),
         behaviours=tuple(behaviours),
         materials=names,
+        joint=_joint(entry),
         entry=entry,
+    )
+
+
+def _joint(entry: ObjectSpec) -> JointPlacement | None:
+    if entry.joint is None:
+        return None
+    return JointPlacement(
+        spec=entry.joint, parent=entry.joint.parent or "", parent_from_rest=entry.pose
     )
 
 

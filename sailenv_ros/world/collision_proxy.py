@@ -73,7 +73,7 @@ class CollisionProxy:
             self._moves = True
 
     def after_step(self, time_ns: int) -> None:
-        """Tell the mover where the step that began at a simulated time [ns] has brought it."""
+        """Report to the mover where the step that began at a simulated time [ns] has brought it."""
         command = self._mover.command_at(time_ns)
         if command is None:
             return

@@ -21,7 +21,10 @@ MAX_WINDOW_S = 1.0
 LISTENS_S = 10.0
 """Simulated time after a question for which each step is kept [s]."""
 
-Point = tuple[int, int, tuple[float, ...], tuple[float, ...], float, float]
+Piece = tuple[int, int]
+"""The engine's number of a body, and that of its link."""
+
+Point = tuple[Piece, Piece, tuple[float, ...], tuple[float, ...], float, float]
 
 
 @dataclass(slots=True)
@@ -55,7 +58,7 @@ class ContactLog:
             self._steps.append((step, self._points()))
 
     def contacts(
-        self, step: int, count: int, ids: Mapping[int, int], movers: Mapping[int, str]
+        self, step: int, count: int, ids: Mapping[Piece, int], movers: Mapping[Piece, str]
     ) -> tuple[Contact, ...]:
         """Return the pairs that touched in the last steps, in the order of their ids.
 
@@ -65,16 +68,16 @@ class ContactLog:
             How many steps there were.
         count : int
             How many of them are looked at, as far as they were kept; the last one always is.
-        ids : mapping of int to int
-            Instance ids by the engine's numbers of bodies.
-        movers : mapping of int to str
-            Names of movers by the engine's numbers of their bodies.
+        ids : mapping of (int, int) to int
+            Instance ids by the engine's numbers of bodies and their links.
+        movers : mapping of (int, int) to str
+            Names of movers by the same of their bodies.
         """
         if not self._steps or self._steps[-1][0] != step:
             self._steps.clear()
             self._steps.append((step, self._points()))
         self._until_step = step + round(LISTENS_S * STEPS_PER_SECOND)
-        touches: dict[tuple[int, int], _Touch] = {}
+        touches: dict[tuple[Piece, Piece], _Touch] = {}
         for at, points in self._steps:
             if at > step - count:
                 for point in points:
@@ -88,13 +91,13 @@ class ContactLog:
 
     def _points(self) -> list[Point]:
         return [
-            (p[1], p[2], p[5], p[7], p[8], p[9] / STEPS_PER_SECOND)
+            ((p[1], p[3]), (p[2], p[4]), p[5], p[7], p[8], p[9] / STEPS_PER_SECOND)
             for p in self._client.getContactPoints()
             if p[9] > 0.0 or p[8] <= 0.0
         ]
 
 
-def _add(touches: dict[tuple[int, int], _Touch], step: int, point: Point) -> None:
+def _add(touches: dict[tuple[Piece, Piece], _Touch], step: int, point: Point) -> None:
     impulse = point[5]
     touch = touches.get(point[:2])
     if touch is None:
@@ -105,7 +108,7 @@ def _add(touches: dict[tuple[int, int], _Touch], step: int, point: Point) -> Non
         touch.strongest_n_s, touch.step, touch.point = impulse, step, point
 
 
-def _contact(touch: _Touch, ids: Mapping[int, int], movers: Mapping[int, str]) -> Contact:
+def _contact(touch: _Touch, ids: Mapping[Piece, int], movers: Mapping[Piece, str]) -> Contact:
     a, b, position, normal, distance_m, _ = touch.point
     sign, first, second = 1.0, ids.get(a, 0), ids.get(b, 0)
     if first > second:

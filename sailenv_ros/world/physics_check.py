@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
+from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
 
@@ -59,12 +60,16 @@ def overlaps(world: World, *, tolerance_m: float = 0.002) -> Iterator[Overlap]:
     The parts of a room stand in one another by construction; those pairs are left out.
     """
     client = world.client
-    bodies = [(body, client.getAABB(body.bullet_id)) for body in world.bodies if body.collides]
+    bodies = [
+        (body, client.getAABB(body.bullet_id, body.link)) for body in world.bodies if body.collides
+    ]
     for (a, box_a), (b, box_b) in itertools.combinations(bodies, 2):
         of_room = all("room" in body.placement.asset.tags for body in (a, b))
-        if of_room or not _may_touch(box_a, box_b):
+        if of_room or _joined(a, b) or not _may_touch(box_a, box_b):
             continue
-        points = client.getClosestPoints(a.bullet_id, b.bullet_id, 0.0)
+        points = client.getClosestPoints(
+            a.bullet_id, b.bullet_id, 0.0, linkIndexA=a.link, linkIndexB=b.link
+        )
         depth = -min((point[8] for point in points), default=0.0)
         if depth > tolerance_m:
             yield Overlap(first=a.placement.name, second=b.placement.name, depth_m=depth)
@@ -118,8 +123,13 @@ def _on_track(world: World, mover: Mover, probe: int, radius_m: float) -> Iterat
 
 
 def _distance(world: World, body: Body, probe: int, within_m: float) -> float:
-    points = world.client.getClosestPoints(body.bullet_id, probe, within_m)
+    points = world.client.getClosestPoints(body.bullet_id, probe, within_m, linkIndexA=body.link)
     return float(min((point[8] for point in points), default=within_m))
+
+
+def _joined(a: Body, b: Body) -> bool:
+    """Return whether one carries the other on a joint: they may stand in one another there."""
+    return any(isinstance(x, JointedBody) and x.parent is y for x, y in ((a, b), (b, a)))
 
 
 def _may_touch(a: tuple[tuple[float, ...], ...], b: tuple[tuple[float, ...], ...]) -> bool:

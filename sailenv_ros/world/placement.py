@@ -8,11 +8,29 @@ from sailenv_ros.behaviours import RunningBehaviour
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.model import Asset, TriangleShape
-from sailenv_ros.scene.spec import ObjectSpec
+from sailenv_ros.scene.spec import JointSpec, ObjectSpec
 
-__all__ = ["Placement"]
+__all__ = ["JointPlacement", "Placement"]
 
 Vector3 = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointPlacement:
+    """What an object is joined to.
+
+    Attributes
+    ----------
+    spec : JointSpec
+    parent : str
+        Name of the object that carries it; empty for the world.
+    parent_from_rest : Pose
+        Where it is, in the parent's frame, while the joint's position is 0.
+    """
+
+    spec: JointSpec
+    parent: str
+    parent_from_rest: Pose
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +61,8 @@ class Placement:
     behaviours : tuple of RunningBehaviour
     materials : tuple of str
         Names of the asset's own materials.
+    joint : JointPlacement or None
+        What it moves on; `pose` is only where it begins then.
     entry : ObjectSpec or None
         What a scene file says of it; None for a part of a room.
     """
@@ -61,6 +81,7 @@ class Placement:
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
     behaviours: tuple[RunningBehaviour, ...] = ()
     materials: tuple[str, ...] = ()
+    joint: JointPlacement | None = None
     entry: ObjectSpec | None = None
 
     def __post_init__(self) -> None:

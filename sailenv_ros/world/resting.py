@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
+from sailenv_ros.world.jointed_bodies import JointedBody
 
 __all__ = ["begin_at_rest"]
 
@@ -55,7 +56,7 @@ def begin_at_rest(client: BulletClient, bodies: Sequence[Body], *, settled: bool
     ]
     for _ in range(TRIAL_STEPS):
         for body, lift in floating:
-            actuation.push(client, body.bullet_id, lift)
+            actuation.push(client, body.bullet_id, lift, link=body.link)
         client.stepSimulation()
     asleep: list[Body] = []
     sunk: dict[int, tuple[list[float], list[float]]] = {}
@@ -65,6 +66,8 @@ def begin_at_rest(client: BulletClient, bodies: Sequence[Body], *, settled: bool
         moved_m, turned_deg = _way(matrix, body.world_from_body())
         if moved_m <= STILL_M and turned_deg <= STILL_DEG:
             asleep.append(body)
+        elif isinstance(body, JointedBody):
+            continue  # a joint begins where it is said to
         elif settled and moved_m < SETTLES_M and turned_deg < SETTLES_DEG:
             asleep.append(body)
             id_ = body.bullet_id
@@ -72,6 +75,10 @@ def begin_at_rest(client: BulletClient, bodies: Sequence[Body], *, settled: bool
     _restore(client, start, sunk)
     states = client.constants
     sleep = states.ACTIVATION_STATE_SLEEP | states.ACTIVATION_STATE_DISABLE_WAKEUP
+    # All that hangs together on joints sleeps, or nothing of it does.
+    still = set(asleep)
+    awake = {body.bullet_id for body in loose if body not in still}
+    asleep = [body for body in asleep if body.bullet_id not in awake]
     for body in asleep:
         client.changeDynamics(body.bullet_id, LINK_OF_BASE, activationState=sleep)
     # The engine looks at who sleeps in the course of a step, in which all move once more.

@@ -58,7 +58,7 @@ class StepActions:
         self._driven = [(body, forces) for body, forces in driven if forces]
         self._floating = [body for body in acting if body.floats]
         self._lifts = [tuple(-body.mass_kg * g for g in client.gravity) for body in self._floating]
-        self._is_wall: dict[int, bool] = {}
+        self._is_wall: dict[tuple[int, int], bool] = {}
 
     def act(self, time_s: float) -> None:
         """Do all for the step that begins at a simulated time [s]."""
@@ -66,7 +66,7 @@ class StepActions:
             careful = self._behave(time_s)
             self._limit_penetration(careful)
         for body, lift in zip(self._floating, self._lifts, strict=True):
-            actuation.push(self._client, body.bullet_id, lift)
+            actuation.push(self._client, body.bullet_id, lift, link=body.link)
 
     def _behave(self, time_s: float) -> list[Body]:
         """Ask the behaviours; return the bodies that may be pressed into walls."""
@@ -80,10 +80,11 @@ class StepActions:
                 acted = True
                 while len(places) <= place:
                     places.append({})
-                kind = running.kind if running.kind.batch is not None else None
+                together = running.kind.batch is not None and body.link == LINK_OF_BASE
+                kind = running.kind if together else None
                 places[place].setdefault(kind, []).append((body, running))
             # What rests is not asked for its speed: that would cost more than all else.
-            if acted or body.is_fast:
+            if body.link == LINK_OF_BASE and (acted or body.is_fast):
                 careful.append(body)
         planes = _once(self._frustum_planes)
         for kinds in places:
@@ -175,7 +176,7 @@ class StepActions:
         x, y, z = velocity
         for point in self._client.getContactPoints(bodyA=body):
             depth_m = -point[8]
-            if depth_m <= 0.0 or not self._wall(point[2]):
+            if depth_m <= 0.0 or not self._wall(point[2], point[4]):
                 continue
             nx, ny, nz = point[7]
             # As fast into the wall as the engine bears, or out of it where it is in too deep.
@@ -185,11 +186,11 @@ class StepActions:
                 x, y, z = x + more * nx, y + more * ny, z + more * nz
         return x, y, z
 
-    def _wall(self, body: int) -> bool:
-        """Say if a body is static."""
-        if body not in self._is_wall:
-            self._is_wall[body] = not self._client.getDynamicsInfo(body, LINK_OF_BASE)[0]
-        return self._is_wall[body]
+    def _wall(self, body: int, link: int) -> bool:
+        """Return whether a body is static."""
+        if (body, link) not in self._is_wall:
+            self._is_wall[body, link] = not self._client.getDynamicsInfo(body, link)[0]
+        return self._is_wall[body, link]
 
 
 def _rows(values: Floats | None) -> list[list[float]]:

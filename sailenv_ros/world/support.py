@@ -69,7 +69,9 @@ def overlap_m(world: World, first: Body, second: Body) -> float:
     """Return how deep physics finds an object within another [m]; 0 where it does not."""
     if not (first.collides and second.collides):
         return 0.0
-    points = world.client.getClosestPoints(first.bullet_id, second.bullet_id, 0.0)
+    points = world.client.getClosestPoints(
+        first.bullet_id, second.bullet_id, 0.0, linkIndexA=first.link, linkIndexB=second.link
+    )
     return max(0.0, -min((float(point[8]) for point in points), default=0.0))
 
 

@@ -17,9 +17,10 @@ import numpy as np
 
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.contacts import Contact
-from sailenv_ros.errors import UnknownName
+from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
+from sailenv_ros.joints import JointState
 from sailenv_ros.labels import PART_MARK, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.objects import ObjectState
@@ -27,9 +28,10 @@ from sailenv_ros.scene.spec import RoomSpec, SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable, LabelledPiece
-from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
+from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.contact_log import ContactLog
+from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
@@ -131,10 +133,13 @@ class World:
             actions.act(self._step / STEPS_PER_SECOND)
             for proxy in self._proxies.values():
                 proxy.before_step(self.sim_time_ns)
+            self._bodies.joints.before_step()
             self._client.stepSimulation()
             for proxy in self._proxies.values():
                 proxy.after_step(self.sim_time_ns)
             self._step += 1
+            if self._bodies.joints.after_step():
+                self._changed_step = self._step
             self._contact_log.after_step(self._step)
         if count:
             self._snapshot = self._states = None
@@ -255,7 +260,7 @@ class World:
         return self._bodies.find(obj)
 
     def object_state(self, instance_id: int) -> ObjectState:
-        """Say what and where an object, or a part of one, is now.
+        """Return what and where an object, or a part of one, is now.
 
         Raises
         ------
@@ -272,8 +277,8 @@ class World:
 
         The first question hears of the last step alone: each step is kept only after it.
         """
-        ids = {body.bullet_id: id_ for id_, body in self._bodies.items()}
-        movers = {proxy.bullet_id: name for name, proxy in self._proxies.items()}
+        ids = {(body.bullet_id, body.link): id_ for id_, body in self._bodies.items()}
+        movers = {(proxy.bullet_id, LINK_OF_BASE): name for name, proxy in self._proxies.items()}
         count = max(1, round(seconds * STEPS_PER_SECOND))
         return self._contact_log.contacts(self._step, count, ids, movers)
 
@@ -369,12 +374,47 @@ class World:
     def put_body(self, instance_id: int, pose: Pose, *, teleport: bool = False) -> None:
         """Move an object and stop it; `teleport` cuts its past off, so flow does not see a jump."""
         moved = self.body(instance_id)
+        moved.require_free()
         self._bodies.rouse_beside(moved)
         moved.put(pose)
+        self._bodies.joints.follow(moved)
+        carried = set(self._bodies.joints.above(moved))
         if moved.placement.static:
             self._changed_step = self._step
         if teleport:
-            self._bodies.cut_off_past(instance_id)
+            for id_, body in self._bodies.items():
+                if id_ == instance_id or body in carried:
+                    self._bodies.cut_off_past(id_)
+        self._snapshot = self._states = None
+
+    def joint(self, instance_id: int) -> JointState | None:
+        """Return the state of an object's joint; None where it has none that moves."""
+        body = self.body(instance_id)
+        return body.described_joint(instance_id) if isinstance(body, JointedBody) else None
+
+    def joints(self) -> tuple[JointState, ...]:
+        """Return the states of all joints that move, in the order of the objects' ids."""
+        states = (self.joint(id_) for id_, _ in self._bodies.items())
+        return tuple(state for state in states if state is not None)
+
+    def set_joint(self, instance_id: int, position: float, seconds: float = 0.0) -> None:
+        """Move the joint of an object to a position [rad] or [m], at once or within a time [s].
+
+        Raises
+        ------
+        InvalidRequest
+            If it has none that moves, the position is beyond its limits, or the time is not
+            accepted; nothing is changed then.
+        """
+        body = self.body(instance_id)
+        if not isinstance(body, JointedBody):
+            names = [state.name for state in self.joints()]
+            accepted = f"one on a joint: {', '.join(names[:20]) or 'this scene has none'}"
+            raise InvalidRequest("object", body.placement.name, accepted)
+        body.set_joint(position, seconds, self._step / STEPS_PER_SECOND)
+        self._bodies.rouse_beside(body)
+        if not seconds:
+            self._changed_step = self._step
         self._snapshot = self._states = None
 
     def drive(
@@ -465,6 +505,8 @@ class World:
     def _parent_of(self, placement: Placement) -> int:
         """Return the id of the object that one is a part of; 0 if there is none (any more)."""
         name = "" if placement.entry is None else placement.entry.part_of
+        if not name and placement.joint is not None:
+            name = placement.joint.parent
         return self._bodies.id_of_name(name) if name else 0
 
     def _drawn(self, piece: LabelledPiece) -> DrawnInstance:
@@ -497,7 +539,12 @@ class World:
                 for point, place in keypoints
             ),
         )
-        return DrawnInstance(instance=instance, model=model, scale=placement.scale)
+        return DrawnInstance(
+            instance=instance,
+            model=model,
+            scale=placement.scale,
+            stands=placement.static or (placement.joint is not None and not placement.behaviours),
+        )
 
 
 def _material_names(placement: Placement) -> tuple[str, ...]:

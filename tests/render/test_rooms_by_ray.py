@@ -58,7 +58,7 @@ def _grown(mask: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
 
 
 def _near_edges(ids: np.ndarray, depth: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
-    """Tell pixels beside another instance, or beside another surface of the same one."""
+    """Return which pixels are beside another instance, or another surface of the same one."""
     kernel = np.ones((3, 3), np.uint8)
     as_float = ids.astype(np.float32)
     other = cv2.dilate(as_float, kernel) != cv2.erode(as_float, kernel)

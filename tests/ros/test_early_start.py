@@ -143,7 +143,7 @@ def test_an_installation_is_broken_off_with_the_simulator(tmp_path: Path) -> Non
 
 
 def still_there(group: int) -> bool:
-    """Tell if any process of a group lives."""
+    """Return whether any process of a group lives."""
     listed = subprocess.run(
         ["ps", "-e", "-o", "pgid=,stat="], capture_output=True, text=True, check=True
     ).stdout

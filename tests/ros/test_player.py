@@ -53,7 +53,7 @@ def heard(probe: Probe) -> dict[str, object]:
 
 
 def all_matched(probe: Probe) -> bool:
-    """Say whether every subscription has found its publisher."""
+    """Return whether every subscription has found its publisher."""
     topics = [f"{NAMESPACE}/eye/{name}" for name in ("rgb", "flow", "camera_info", "frame_info")]
     return all(probe.node.count_publishers(topic) for topic in [*topics, "/clock"])
 

@@ -187,7 +187,7 @@ def test_a_recording_begins_when_it_begins(node: NodeProcess, tmp_path: Path) ->
 
 
 def recorded_messages(process: ToolProcess) -> bool:
-    """Say whether a line of progress tells of bytes."""
+    """Return whether a line of progress tells of bytes."""
     return any(" MB" in line and " 0.0 MB" not in line for line in process.lines) or (
         sum(" frames (" in line for line in process.lines) >= 8
     )

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from sailenv_ros.assets.pack import PackContent
+from sailenv_ros.assets.pack_writer import packed, write_content
 from sailenv_ros.assets.solids import box_mesh
 from sailenv_ros.model import Asset, AssetPart, Material, Mesh, Model, ModelPart
 
@@ -44,3 +48,20 @@ def divided_bed(parts: tuple[AssetPart, ...] | None = None) -> Asset:
         mass_kg=30.0,
         parts=labelled if parts is None else parts,
     )
+
+
+def write_bed_pack(folder: Path) -> None:
+    """Write a pack with the bed and nothing else into a folder."""
+    asset = divided_bed()
+    entry = packed(
+        folder,
+        asset.name,
+        asset.model.parts,
+        (),
+        display_name=asset.display_name,
+        category=asset.category,
+        mass=asset.mass_kg,
+        collision="box",
+        labelled=asset.parts,
+    )
+    write_content(folder, PackContent(version=1, assets=(entry,)))

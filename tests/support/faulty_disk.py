@@ -65,7 +65,7 @@ class FaultyDisk:
             raise OSError(number, os.strerror(number), str(path))
 
     def short(self, what: str) -> bool:
-        """Say whether a write shall take a part alone; those after it then find the disk full."""
+        """Return whether a write takes a part alone; those after it then find the disk full."""
         if self.kind != "short" or what != "write" or self.calls + 1 != self.fail_at:
             return False
         self.calls += 1
@@ -73,7 +73,7 @@ class FaultyDisk:
         return True
 
     def watched(self, path: object) -> bool:
-        """Say whether a path, or an open file's number, is below the folder."""
+        """Return whether a path, or an open file's number, is below the folder."""
         if isinstance(path, int):
             return path in self._paths
         try:

@@ -292,7 +292,7 @@ def _light_samples() -> tuple[bytes, ...]:
 
 
 def _read_light(data: bytes, folder: Path) -> object:
-    """Give the changed bytes a checksum that is right: worse than any accident."""
+    """Return the changed bytes a checksum that is right: worse than any accident."""
     path = light_files.baked_file("b" * 32)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(light_files.MAGIC + light_files._digest(memoryview(data)) + data)

@@ -7,12 +7,10 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import expect
 
-from sailenv_ros.assets.pack import PackContent
-from sailenv_ros.assets.pack_writer import packed, write_content
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium
-from tests.support.divided_bed import LEFT, RIGHT, divided_bed
+from tests.support.divided_bed import LEFT, RIGHT, write_bed_pack
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.slow
@@ -21,19 +19,8 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
     """A simulation whose catalogue has a bed with two pillows."""
-    folder, asset = tmp_path_factory.mktemp("pack"), divided_bed()
-    entry = packed(
-        folder,
-        asset.name,
-        asset.model.parts,
-        (),
-        display_name=asset.display_name,
-        category=asset.category,
-        mass=asset.mass_kg,
-        collision="box",
-        labelled=asset.parts,
-    )
-    write_content(folder, PackContent(version=1, assets=(entry,)))
+    folder = tmp_path_factory.mktemp("pack")
+    write_bed_pack(folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SAILENV_PACKS", str(folder))
         with Simulation("optical") as simulation:

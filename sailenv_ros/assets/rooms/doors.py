@@ -137,7 +137,7 @@ def _frame_boxes(spec: DoorSpec, frame: WallFrame) -> list[Box]:
 
 
 def _hinge_sign(spec: DoorSpec, frame: WallFrame) -> float:
-    """Tell at which end along the wall the hinges are: 1 or -1."""
+    """Return at which end along the wall the hinges are: 1 or -1."""
     (ax, ay, _), (ox, oy, _) = frame.along, frame.outward
     # Seen from inside, the right is outward x up.
     right = (oy * ax) - (ox * ay)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.material_stock import MaterialStock, appearance_key
 from sailenv_ros.assets.rooms.doors import (
     ARCHITRAVE_M,
     door_collision,
@@ -313,23 +313,12 @@ def _surface(spec: SurfaceSpec, stock: MaterialStock) -> Surface:
     """Return what a surface is made of; the same object for equal finishes while they are kept."""
     finish = stock.finish(spec)
     material, tile_m = finish.material, finish.tile_m or (1.0, 1.0)
-    key = _look(material), tile_m, finish.turn_deg
+    key = appearance_key(material), tile_m, finish.turn_deg
     found = _surfaces.get(key)
     if found is None:
         found = Surface(material=material, tile_m=tile_m, turn_deg=finish.turn_deg)
         _surfaces[key] = found
     return found
-
-
-def _look(material: Material) -> tuple[object, ...]:
-    """Return what tells materials of surfaces apart, while their textures live."""
-    textures = (
-        material.base_colour_texture,
-        material.metallic_roughness_texture,
-        material.normal_texture,
-    )
-    numbers = (material.base_colour, material.metallic, material.roughness)
-    return (material.name, *numbers, *(id(texture) for texture in textures))
 
 
 def _part(

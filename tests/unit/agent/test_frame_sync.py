@@ -34,7 +34,7 @@ def deliver(sync: FrameSync, message: Sent) -> Bundle | None:
 
 
 def is_whole(bundle: Bundle) -> bool:
-    """Say whether every part of a bundle is of its own frame."""
+    """Return whether every part of a bundle is of its own frame."""
     return bundle.info == bundle.sequence and dict(bundle.images) == dict.fromkeys(
         VIEWS, bundle.sequence
     )

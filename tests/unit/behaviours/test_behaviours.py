@@ -54,6 +54,7 @@ ALL: dict[str, dict[str, Any]] = {
     "linear_waypoints": {"waypoints": CORNERS},
     "catmull_waypoints": {"waypoints": CORNERS},
     "wrench": {"force": [1, 2, 3], "duration": 1.0},
+    "open_and_close": {"period": 4.0},
 }
 
 
@@ -65,7 +66,8 @@ def at_rest(pose: Pose | None = None, **kwargs: Any) -> BodyState:
 
 def actions(type_: str, seed: int, count: int = 480) -> list[Any]:
     running = start_behaviour(type_, ALL[type_], seed=seed, object_name="thing", place=0)
-    return [running.act(step * STEP_S, at_rest()) for step in range(count)]
+    body = at_rest(joint_limits=(0.0, 1.0))
+    return [running.act(step * STEP_S, body) for step in range(count)]
 
 
 def test_a_step_is_the_engines() -> None:
@@ -136,6 +138,33 @@ def test_a_catmull_track_is_smooth_where_a_linear_one_has_a_corner() -> None:
         expected = (neighbours[1] - neighbours[0]) / 2
         np.testing.assert_allclose((after - here) / h, expected, atol=1e-3)
         np.testing.assert_allclose((here - before) / h, expected, atol=1e-3)
+
+
+def test_a_track_rests_between_its_rounds() -> None:
+    """It runs for 4 s, stands at its beginning for 3 s, and runs again."""
+    track = Waypoints(waypoints=CORNERS, total_time=4.0, rest=3.0)
+    plain = Waypoints(waypoints=CORNERS, total_time=4.0)
+    for pose_of in (linear_pose, catmull_pose):
+        for time_s in (0.0, 0.7, 3.99):
+            for rounds in (0, 1, 5):
+                pose = pose_of(track, time_s + rounds * 7.0)
+                np.testing.assert_allclose(
+                    pose.matrix(), pose_of(plain, time_s).matrix(), atol=1e-9
+                )
+        for time_s in (4.0, 5.5, 6.99, 13.9):
+            pose = pose_of(track, time_s)
+            np.testing.assert_array_equal(pose.position_m, track.poses[0].position_m)
+    running = start_behaviour(
+        "linear_waypoints",
+        {"waypoints": CORNERS, "total_time": 4.0, "rest": 3.0},
+        seed=0, object_name="a", place=0,
+    )  # fmt: skip
+    # At rest in its place it is left alone; pushed away it comes back; still moving it is stopped.
+    assert not running.act(5.0, at_rest(track.poses[0])).acts
+    away = running.act(5.0, at_rest(Pose((0.01, 0.0, 0.0))))
+    np.testing.assert_allclose(away.linear_velocity, (-0.01 / STEP_S, 0.0, 0.0))
+    slow = at_rest(track.poses[0], linear_velocity=np.array([1e-9, 0.0, 0.0]))
+    assert running.act(5.0, slow).linear_velocity == (0.0, 0.0, 0.0)
 
 
 def test_a_single_waypoint_is_a_place_to_be() -> None:

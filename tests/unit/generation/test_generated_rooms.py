@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,10 @@ import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.generation import GeneratedScene, Generator, Rules, room_kinds
+from sailenv_ros.generation.room_agents import standing
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.viewpoints.room_view import outlook
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 from sailenv_ros.world.world import World
 
@@ -34,15 +36,32 @@ def generator() -> Generator:
     return Generator()
 
 
+class Made(Mapping[tuple[str, int], GeneratedScene]):
+    """The rooms, each made when a test asks for it first, so that none waits for all."""
+
+    def __init__(self, generator: Generator) -> None:
+        self._generator = generator
+        self._made: dict[tuple[str, int], GeneratedScene] = {}
+
+    def __getitem__(self, room: tuple[str, int]) -> GeneratedScene:
+        if room not in self._made:
+            self._made[room] = self._generator.generate(*room)
+        return self._made[room]
+
+    def __iter__(self) -> Iterator[tuple[str, int]]:
+        return iter(ROOMS)
+
+    def __len__(self) -> int:
+        return len(ROOMS)
+
+
 @pytest.fixture(scope="module")
-def made(generator: Generator) -> dict[tuple[str, int], GeneratedScene]:
-    return {room: generator.generate(*room) for room in ROOMS}
+def made(generator: Generator) -> Made:
+    return Made(generator)
 
 
 @pytest.fixture(scope="module", params=ROOMS, ids=lambda room: f"{room[0]}-{room[1]}")
-def scene(
-    request: pytest.FixtureRequest, made: dict[tuple[str, int], GeneratedScene]
-) -> GeneratedScene:
+def scene(request: pytest.FixtureRequest, made: Made) -> GeneratedScene:
     return made[request.param]
 
 
@@ -92,13 +111,11 @@ def test_its_text_reads_as_people_write(scene: GeneratedScene) -> None:
 
 
 @pytest.mark.parametrize("room", [("kitchen", 1), ("bathroom", 3)])
-def test_the_same_seed_makes_the_same_bytes(
-    room: tuple[str, int], made: dict[tuple[str, int], GeneratedScene]
-) -> None:
+def test_the_same_seed_makes_the_same_bytes(room: tuple[str, int], made: Made) -> None:
     assert Generator().generate(*room).text == made[room].text
 
 
-def test_seeds_make_different_rooms(made: dict[tuple[str, int], GeneratedScene]) -> None:
+def test_seeds_make_different_rooms(made: Made) -> None:
     texts = [scene.text for scene in made.values()]
     assert len(set(texts)) == len(texts)
     sizes = {scene.spec.room.size for scene in made.values() if scene.spec.room is not None}
@@ -106,7 +123,7 @@ def test_seeds_make_different_rooms(made: dict[tuple[str, int], GeneratedScene])
 
 
 def test_shapes_are_rectangles_ls_and_several_rooms(
-    made: dict[tuple[str, int], GeneratedScene],
+    made: Made,
 ) -> None:
     apartments = [made["apartment", seed].spec for seed in range(2)]
     for spec in apartments:
@@ -124,6 +141,25 @@ def test_every_waypoint_looks_at_something_else_than_itself(scene: GeneratedScen
     for waypoint in scene.spec.mover.waypoints:
         assert waypoint.look_at is not None
         assert float(np.linalg.norm(np.subtract(waypoint.look_at, waypoint.position))) > 0.5
+
+
+def test_its_agents_and_its_way_begin_with_a_view_of_the_room(
+    scene: GeneratedScene, world: World
+) -> None:
+    specs = {entry.name: entry.to_agent_spec() for entry in scene.spec.agents}
+    assert specs["eye"].following
+    assert "view" in specs
+    mover = scene.spec.mover
+    assert mover is not None
+    poses = [spec.pose for spec in specs.values() if spec.pose is not None]
+    with standing(world) as rules:
+        for pose in (mover.waypoint_poses[0], *poses):
+            seen = outlook(rules, pose)
+            assert len(seen.shares) >= 3
+            assert seen.nearest_m > 0.2
+            assert seen.close < 0.5
+    for waypoint in mover.waypoint_poses:
+        assert 1.4 <= waypoint.position_m[2] <= 1.7
 
 
 def test_what_cannot_be_made_is_refused(generator: Generator) -> None:

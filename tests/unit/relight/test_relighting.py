@@ -89,7 +89,7 @@ def test_a_moved_chest_is_lit_as_if_baked_there(
 
 
 def within(points: np.ndarray, radius: float) -> np.ndarray:
-    """Tell which points lie on the floor around the first place of the chest."""
+    """Return which points lie on the floor around the first place of the chest."""
     far = np.linalg.norm(points[:, :2] - HERE.position_m[:2], axis=1)
     return np.asarray((np.abs(points[:, 2]) < 1e-3) & (far < radius))
 

@@ -97,6 +97,17 @@ def test_a_draft_stands_in_until_the_light_is_there(cell: Path) -> None:
         world.close()
 
 
+def test_what_must_not_depend_on_a_bake_takes_no_draft(cell: Path) -> None:
+    """A data set's frames are the same, however far a bake in the same cache has come."""
+    library = SceneLibrary(drafts=False)
+    light = quick_bake(library, cell)
+    store_draft(light)
+    assert contents(library, cell).baked is None
+    assert contents(SceneLibrary(), cell).baked is not None
+    store_baked(light)
+    assert contents(library, cell).baked is not None
+
+
 def test_a_room_without_light_is_told_how_to_get_it(
     cell: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -179,7 +179,7 @@ def test_a_straight_way_is_straight() -> None:
 
 
 def test_corners_are_not_cut() -> None:
-    """Two obstacles that touch at a corner leave no way between them."""
+    """Two obstacles that touch at a corner leave no path between them."""
     cells = np.array([[0, 100], [100, 0]], np.int8)
     space = FreeSpace(cells=cells, origin_m=(0.0, 0.0), body=BODY)
     assert not space.reachable((0.01, 0.01), (0.09, 0.09))

@@ -129,6 +129,24 @@ def test_few_views_show_everything(simulation: Simulation) -> None:
     assert {id_of(simulation, name) for name in ("table", "vase", "ball", "box")} <= shown
 
 
+def test_pictures_of_the_room_show_much_and_nothing_large_in_front(simulation: Simulation) -> None:
+    """The first is worth more than most views from free space; the second shows the rest."""
+    first, second = simulation.sample_cameras("room_view", 2, attempts=80, objects=1)
+    plain = simulation.sample_cameras("free_view", 8, objects=0, nearest_m=0.0)
+
+    def shown(view: CameraView) -> tuple[int, float]:
+        seen = views_from(simulation, view)
+        objects = {id_of(simulation, name) for name in ("table", "vase", "ball", "box")}
+        near = float((np.nan_to_num(seen["depth"], nan=0.0) < 1.1).mean())
+        return len(objects & set(np.unique(seen["instance"]).tolist())), near
+
+    others = sorted(shown(view)[0] for view in plain)
+    assert shown(first)[0] >= others[len(others) // 2]
+    assert shown(first)[1] < 0.1
+    assert views_from(simulation, first)["depth"].min() >= 0.5
+    assert first.pose != second.pose
+
+
 @pytest.mark.parametrize("rule", sorted(camera_rules()))
 def test_poses_come_from_name_and_seed(simulation: Simulation, rule: str) -> None:
     """The same again for the same, whatever was asked between; others for others."""

@@ -9,32 +9,19 @@ import pytest
 import yaml
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.pack import AssetPack, PackContent
-from sailenv_ros.assets.pack_writer import packed, write_content
+from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import AssetError, InvalidRequest, NameTaken, UnknownName
 from sailenv_ros.model import AssetPart
 from sailenv_ros.simulation.recorded_geometry import recorded_geometry
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.simulation import Simulation
-from tests.support.divided_bed import LEFT, RIGHT, divided_bed
+from tests.support.divided_bed import LEFT, RIGHT, divided_bed, write_bed_pack
 
 
 @pytest.fixture
 def pack(tmp_path: Path) -> AssetPack:
-    asset = divided_bed()
-    entry = packed(
-        tmp_path,
-        asset.name,
-        asset.model.parts,
-        (),
-        display_name=asset.display_name,
-        category=asset.category,
-        mass=asset.mass_kg,
-        collision="box",
-        labelled=asset.parts,
-    )
-    write_content(tmp_path, PackContent(version=1, assets=(entry,)))
+    write_bed_pack(tmp_path)
     return AssetPack(tmp_path)
 
 

@@ -132,7 +132,7 @@ class FrameStream:
                 self._frame = None
 
     def end(self, why: str) -> None:
-        """Say that no more frames will come; called by the loop."""
+        """Announce that no more frames will come; called by the loop."""
         with self._ready:
             self._ended = self._ended or why
             self._ready.notify_all()

@@ -1,0 +1,118 @@
+"""The agents of a generated room: one that goes the camera's way, others that look at the room.
+
+A built `World` in, entries of a scene file out. Where they stand is chosen by the camera rule
+`room_view`, and the way begins where its view is best, so the first frame shows something.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
+from sailenv_ros.generation.checks import look_backend
+from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.render.backend import RenderBackend
+from sailenv_ros.space import FreeSpace
+from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.space.grid import map_free_space
+from sailenv_ros.space.outlines import solids_of
+from sailenv_ros.viewpoints import ViewScene, sample_cameras
+from sailenv_ros.viewpoints.room_view import outlook
+from sailenv_ros.world.world import World
+
+__all__ = ["StandingWorld", "agent_entries", "best_first", "standing"]
+
+WALKER = "eye"
+"""Follows the mover."""
+
+VIEWS = "view"
+FOV_DEG = 62.0
+ATTEMPTS = 60
+
+_LOOK_PX = (80, 60)
+
+
+class StandingWorld(ViewScene):
+    """A world that stands still, as rules of cameras see it; a context manager.
+
+    Parameters
+    ----------
+    world : World
+    lens : CameraIntrinsics
+    """
+
+    def __init__(self, world: World, lens: CameraIntrinsics) -> None:
+        super().__init__(world.snapshot(), lens)
+        self._world = world
+        self._backend: RenderBackend = look_backend()
+
+    def __enter__(self) -> StandingWorld:
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        self._backend.close()
+
+    def instances(self, pose: Pose) -> NDArray[np.uint16]:
+        """Return the (H, W) instance view from a pose."""
+        return self._view(pose, "instance")
+
+    def depth_m(self, pose: Pose) -> NDArray[np.float32]:
+        """Return the (H, W) depth view from a pose [m]."""
+        return self._view(pose, "depth")
+
+    def whole_pixels(self, pose: Pose, only: int = 0) -> Mapping[int, int]:
+        """Return how many pixels each object would cover alone; see `ViewScene`."""
+        masks = AloneRenderer().draw(self.snapshot, self.camera(pose), only)
+        return dict(zip(masks.ids.tolist(), masks.whole_pixels.tolist(), strict=True))
+
+    def free_space(self, body: BodySize) -> FreeSpace:
+        """Return where a body can stand."""
+        solids = (
+            solid
+            for each in self._world.bodies
+            for solid in solids_of(
+                each.placement.asset.collision, each.placement.scale, each.world_from_body()
+            )
+        )
+        return map_free_space(solids, body)
+
+    def _view(self, pose: Pose, name: str) -> NDArray[Any]:
+        drawn = self._backend.render(self.snapshot, None, self.camera(pose), (name,))
+        return np.asarray(drawn.views[name])
+
+
+def agent_entries(scene: StandingWorld, count: int, seed: int) -> list[dict[str, Any]]:
+    """Return the agents of a scene file: one on the camera's way, and up to so many that stand."""
+    lens = {"vertical_fov": FOV_DEG, "rate": 0}
+    entries: list[dict[str, Any]] = [{"name": WALKER, **lens}]
+    views = sample_cameras(scene, "room_view", count, seed=seed, settings={"attempts": ATTEMPTS})
+    for number, view in enumerate(views, start=1):
+        position = [round(value, 2) for value in view.pose.position_m]
+        rotation = [round(value) for value in view.pose.rpy_deg]
+        name = VIEWS if number == 1 else f"{VIEWS}_{number}"
+        entries.append(
+            {"name": name, **lens, "following": False, "position": position, "rotation": rotation}
+        )
+    return entries
+
+
+def best_first(scene: StandingWorld, waypoints: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the waypoints of a closed way, beginning where the view is best."""
+    worth = [
+        outlook(scene, look_at(point["position"], point["look_at"])).worth() for point in waypoints
+    ]
+    first = int(np.argmax(worth))
+    return [*waypoints[first:], *waypoints[:first]]
+
+
+def standing(world: World) -> StandingWorld:
+    """Return a world for the choice of cameras."""
+    width, height = _LOOK_PX
+    return StandingWorld(
+        world, CameraIntrinsics(width=width, height=height, vertical_fov_deg=FOV_DEG)
+    )

@@ -1,0 +1,187 @@
+"""The joint of an object of a scene file: on what it turns or slides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from sailenv_ros.scene.field_types import Choice, Number, Several
+from sailenv_ros.scene.fields import Direction, Name, Position, Rule, SceneModel
+from sailenv_ros.scene.messages import shown, shown_number, suggestion
+from sailenv_ros.scene.rules import Faults
+from sailenv_ros.validation import is_finite_number
+
+__all__ = ["JointSpec", "joints_hold", "on_a_joint"]
+
+_JOINTS = ("hinge", "slide", "fixed")
+_Coordinate = Annotated[float, Number(least=-1e4, most=1e4)]
+_FOR_MOVING = ("axis", "limits", "position", "velocity", "damping", "friction", "effort")
+_PLACED_OTHERWISE = ("on", "wall", "velocity", "angular_velocity")
+
+
+def _axis_has_length(entry: Mapping[str, Any]) -> Faults:
+    axis = entry.get("axis")
+    if not isinstance(axis, Sequence) or len(axis) != 3 or not all(map(is_finite_number, axis)):
+        return
+    if math.hypot(*axis) < 1e-9:
+        yield ("axis",), "must be three numbers [x, y, z], not all 0"
+
+
+def _limits_in_order(entry: Mapping[str, Any]) -> Faults:
+    limits, position = entry.get("limits"), entry.get("position")
+    if not isinstance(limits, Sequence) or isinstance(limits, str) or len(limits) != 2:
+        return
+    if not all(map(is_finite_number, limits)):
+        return
+    low, high = limits
+    if low >= high:
+        yield ("limits",), f"must be [low, high] with low below high, got {shown(list(limits))}"
+    elif is_finite_number(position) and not low <= position <= high:
+        yield (
+            ("position",),
+            f"must be within the limits, from {shown_number(low)} to {shown_number(high)}, "
+            f"got {shown_number(position)}",
+        )
+
+
+def _fixed_is_fixed(entry: Mapping[str, Any]) -> Faults:
+    if entry.get("type") == "fixed":
+        for key in _FOR_MOVING:
+            if entry.get(key) is not None:
+                yield (key,), "means something only for a hinge or a slide"
+
+
+class JointSpec(SceneModel):
+    """What an object is joined to, and how it can move on it."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (_axis_has_length, _limits_in_order, _fixed_is_fixed)
+
+    type: Annotated[Literal["hinge", "slide", "fixed"], Choice(_JOINTS)] = Field(
+        description="hinge: turns about the axis (revolute); slide: moves along it (prismatic); "
+        "fixed: goes with its parent"
+    )
+    parent: Name | None = Field(
+        default=None,
+        description="name of the object that carries it, which is static or has a joint itself; "
+        "position and rotation then count from that object's. Left out: the world",
+    )
+    axis: Direction = Field(
+        default=(0.0, 0.0, 1.0), description="direction of the axis in the object's own frame"
+    )
+    origin: Position = Field(
+        default=(0.0, 0.0, 0.0),
+        description="a point of a hinge's axis in the object's own frame, which its scale does "
+        "not change [m]",
+    )
+    limits: (
+        Annotated[
+            tuple[_Coordinate, _Coordinate], Several(2, "two numbers [low, high] in [rad] or [m]")
+        ]
+        | None
+    ) = Field(
+        default=None,
+        description="least and greatest position of the joint: [rad] of a hinge, [m] of a slide; "
+        "left out: it turns or moves without end",
+    )
+    position: _Coordinate | None = Field(
+        default=None,
+        description="at the start [rad] or [m]; 0, where the object's position and rotation put "
+        "it, or the nearest limit, if left out",
+    )
+    velocity: _Coordinate = Field(default=0.0, description="at the start [rad/s] or [m/s]")
+    damping: Annotated[float, Number(least=0.0, most=1e6)] = Field(
+        default=0.0, description="against its speed [N m s/rad] or [N s/m]"
+    )
+    friction: Annotated[float, Number(least=0.0, most=1e6)] = Field(
+        default=1.0,
+        description="torque [N m] or force [N] that must be overcome before it moves: with it a "
+        "door stays where it was left",
+    )
+    effort: Annotated[float, Number(above=0.0, most=1e6)] = Field(
+        default=100.0,
+        description="largest torque [N m] or force [N] with which set_joint_position and "
+        "behaviours move it",
+    )
+
+    @property
+    def moves(self) -> bool:
+        """True unless it is fixed."""
+        return self.type != "fixed"
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Its limits [rad] or [m]; infinite where it has none."""
+        if not self.moves:
+            return 0.0, 0.0
+        return (-math.inf, math.inf) if self.limits is None else self.limits
+
+    @property
+    def start(self) -> float:
+        """Its position at the start [rad] or [m]."""
+        low, high = self.bounds
+        return min(max(0.0, low), high) if self.position is None else self.position
+
+    @property
+    def unit_axis(self) -> tuple[float, float, float]:
+        """The axis with the length 1."""
+        length = math.hypot(*self.axis)
+        x, y, z = (value / length for value in self.axis)
+        return x, y, z
+
+
+def on_a_joint(entry: Mapping[str, Any]) -> Faults:
+    """Refuse what cannot stand beside a joint, and what needs one."""
+    if entry.get("joint") is None:
+        behaviours = entry.get("behaviours")
+        for index, one in enumerate(behaviours if isinstance(behaviours, Sequence) else ()):
+            if isinstance(one, Mapping) and one.get("type") == "open_and_close":
+                yield ("behaviours", index), "needs an object that has a joint"
+        return
+    if entry.get("static") is True:
+        yield ("static",), "cannot stand beside a joint; use a joint of type fixed"
+    for key in _PLACED_OTHERWISE:
+        value = entry.get(key)
+        if isinstance(value, str) or (isinstance(value, Sequence) and any(value)):
+            yield (key,), "cannot be given to an object that has a joint"
+
+
+def joints_hold(scene: Mapping[str, Any]) -> Faults:
+    """Refuse joints to what is not there, to what moves freely, and to themselves in the end."""
+    objects = scene.get("objects")
+    entries = list(objects) if isinstance(objects, list | tuple) else []
+    named = {
+        entry["name"]: entry
+        for entry in entries
+        if isinstance(entry, Mapping) and isinstance(entry.get("name"), str)
+    }
+    parents = {name: _parent_of(entry) for name, entry in named.items()}
+    for index, entry in enumerate(entries):
+        parent = _parent_of(entry) if isinstance(entry, Mapping) else None
+        if parent is None:
+            continue
+        place = ("objects", index, "joint", "parent")
+        if parent not in named:
+            known = suggestion(parent, list(named), listing="its objects")
+            yield place, f"the scene has no object {parent!r}; {known}"
+        elif entry.get("name") in _above(parent, parents):
+            yield place, "must not be an object that this one carries"
+        elif named[parent].get("static") is not True and named[parent].get("joint") is None:
+            yield place, f"must be static or have a joint itself, and {parent!r} moves freely"
+
+
+def _parent_of(entry: Mapping[str, Any]) -> str | None:
+    joint = entry.get("joint")
+    parent = joint.get("parent") if isinstance(joint, Mapping) else None
+    return parent if isinstance(parent, str) else None
+
+
+def _above(name: str | None, parents: Mapping[str, str | None]) -> Iterator[str]:
+    """Yield an object and all that carry it."""
+    seen: set[str] = set()
+    while name is not None and name not in seen:
+        seen.add(name)
+        yield name
+        name = parents.get(name)

@@ -1,0 +1,270 @@
+"""An object on a joint: like other bodies, but its pose follows from its joint's position.
+
+Belongs to a `JointTree`, which `JointTable` makes of all that hangs together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.behaviours import BodyState, JointMotion, RunningBehaviour, running_motion
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import Pose
+from sailenv_ros.joints import JointState
+from sailenv_ros.validation import checked_number
+from sailenv_ros.world import actuation
+from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3
+from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.joint_tree import JointLink, JointTree
+from sailenv_ros.world.kinematics import Twist, composed, link_pose, link_velocity
+from sailenv_ros.world.placement import JointPlacement, Placement
+
+__all__ = ["JointedBody", "make_body"]
+
+LONGEST_S = 1e4
+"""Longest time that a motion to a position may take [s]."""
+
+_STILL: Twist = (np.zeros(3), np.zeros(3))
+
+
+def make_body(client: BulletClient, placement: Placement) -> Body:
+    """Make the body of a placement; one on a joint is in the engine once a tree has it."""
+    return Body(client, placement) if placement.joint is None else JointedBody(client, placement)
+
+
+class JointedBody(Body):
+    """An object on a joint.
+
+    Parameters
+    ----------
+    client : BulletClient
+    placement : Placement
+        With a joint.
+    """
+
+    def __init__(self, client: BulletClient, placement: Placement) -> None:
+        assert placement.joint is not None
+        self.joint: JointPlacement = placement.joint
+        self.tree: JointTree | None = None
+        self.parent: Body | None = None
+        self._number = 0
+        self._at = (placement.joint.spec.start, placement.joint.spec.velocity)
+        self._motion: RunningBehaviour | None = None
+        super().__init__(client, placement)
+
+    # -- where it is -----------------------------------------------------------------------
+
+    def as_link(self, parent: int) -> JointLink:
+        """Return what a tree is made of."""
+        position, velocity = self.joint_state()
+        return JointLink(
+            placement=self.placement,
+            parent=parent,
+            mass_kg=self.mass_kg,
+            centre_m=(self._centre[0], self._centre[1], self._centre[2]),
+            position=position,
+            velocity=velocity,
+        )
+
+    def hang(self, tree: JointTree, number: int, parent: Body | None) -> None:
+        """Become a link of a tree; `parent` carries it, None is the world."""
+        self.tree, self._number, self.parent = tree, number, parent
+        self._id = tree.bullet_id
+        self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, number)[2])
+
+    @property
+    def link(self) -> int:
+        """PyBullet's number of its link."""
+        return self._number
+
+    def joint_state(self) -> tuple[float, float]:
+        """Return position and velocity of its joint [rad, rad/s] or [m, m/s]."""
+        return self._at if self.tree is None else self.tree.state(self._number)
+
+    def rest_pose(self) -> Pose:
+        """Return where it is while its joint's position is 0, and those above stay."""
+        if self.parent is None:
+            return self.joint.parent_from_rest
+        return composed(self.parent.pose(), self.joint.parent_from_rest)
+
+    def pose(self) -> Pose:
+        """Return the pose of the body frame now."""
+        pose = link_pose(self.rest_pose(), self.joint, self.joint_state()[0])
+        self._quat = pose.orientation_xyzw
+        return pose
+
+    def world_from_body(self) -> NDArray[np.float64]:
+        """Return the (4, 4) pose now."""
+        return self.pose().matrix()
+
+    def twist(self) -> Twist:
+        """Return the velocity of its frame's origin [m/s] and the angular one [rad/s]."""
+        if self.parent is None:
+            carrier, carried = np.eye(4), _STILL
+        else:
+            carrier = self.parent.world_from_body()
+            moves = isinstance(self.parent, JointedBody)
+            carried = self.parent.twist() if moves else _STILL  # type: ignore[attr-defined]  # see moves
+        rest, now = self.rest_pose().matrix(), self.world_from_body()
+        return link_velocity(carrier, carried, rest, now, self.joint, self.joint_state()[1])
+
+    def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
+        linear, angular = self.twist()
+        arm = self.world_from_body()[:3, :3] @ np.asarray(self._centre)
+        return linear + np.cross(angular, arm), angular
+
+    def origin_velocity(self, world_from_body: NDArray[np.float64]) -> tuple[Vector3, Vector3]:
+        """Return the velocity of the body frame's origin [m/s] and the angular one [rad/s]."""
+        linear, angular = self.twist()
+        (vx, vy, vz), (wx, wy, wz) = linear.tolist(), angular.tolist()
+        return (vx, vy, vz), (wx, wy, wz)
+
+    def described_joint(self, instance_id: int) -> JointState | None:
+        """Return all that clients may know of its joint; None of one that is fixed."""
+        spec = self.joint.spec
+        if spec.type == "fixed":
+            return None
+        position, velocity = self.joint_state()
+        low, high = spec.bounds
+        return JointState(
+            id=instance_id,
+            name=self.placement.name,
+            type=spec.type,
+            parent=self.joint.parent,
+            position=position,
+            velocity=velocity,
+            low=low,
+            high=high,
+            effort=spec.effort,
+        )
+
+    # -- what moves it ---------------------------------------------------------------------
+
+    def set_joint(self, position: float, seconds: float, now_s: float) -> None:
+        """Move its joint to a position [rad] or [m], at once or within a time [s].
+
+        Raises
+        ------
+        InvalidRequest
+            If it is fixed, the position is beyond its limits, or the time is not accepted;
+            nothing is changed then.
+        """
+        assert self.tree is not None
+        spec, name = self.joint.spec, self.placement.name
+        if not spec.moves:
+            raise InvalidRequest("object", name, "one on a hinge or a slide; this one is fixed")
+        low, high = spec.bounds
+        unit = "rad" if spec.type == "hinge" else "m"
+        what = f"position of {name!r}"
+        if spec.limits is None:
+            low, high = -1e4, 1e4
+        position = checked_number(what, position, low, high, unit=unit)
+        seconds = checked_number("seconds", seconds, 0.0, LONGEST_S, unit="s")
+        if seconds:
+            motion = JointMotion(first=self.joint_state()[0], position=position, seconds=seconds)
+            self._motion = running_motion(motion, now_s)
+            return
+        self.stop()
+        self.tree.set(self._number, position)
+        self.tree.wake()
+
+    def stop(self) -> None:
+        """End a motion to a position; friction holds the joint then."""
+        self._motion = None
+        if self.tree is not None:
+            self.tree.release(self._number)
+
+    def require_free(self) -> None:
+        """Refuse to put it elsewhere.
+
+        Raises
+        ------
+        InvalidRequest
+            Always: its joint alone moves it.
+        """
+        accepted = "one without a joint; set_joint_position moves this one"
+        raise InvalidRequest("object to be moved", self.placement.name, accepted)
+
+    def put(self, pose: Pose) -> None:
+        """Refuse to put it elsewhere; see `require_free`."""
+        self.require_free()
+
+    def wake(self) -> None:
+        """Let physics move it again, if it has come to rest and sleeps."""
+        if self.tree is not None:
+            self.tree.wake()
+
+    def forces(self) -> tuple[RunningBehaviour, ...]:
+        """Return all that acts upon it."""
+        if self._motion is not None and self._motion.is_over:
+            self._motion = None
+        motion = () if self._motion is None else (self._motion,)
+        return (*super().forces(), *motion)
+
+    @property
+    def acts(self) -> bool:
+        """True if something is done to it before steps."""
+        return super().acts or self._motion is not None
+
+    def detach(self) -> None:
+        """Let no behaviour move it any more."""
+        super().detach()
+        self.stop()
+
+    def behave(
+        self, running: RunningBehaviour, time_s: float, frustum_planes: FrustumPlanes
+    ) -> None:
+        """Do what a behaviour asks; velocities count along the joint."""
+        assert self.tree is not None
+        action = running.act(time_s, self._state(running, frustum_planes))
+        if action.acts:
+            self.tree.wake()
+        rate = action.joint_velocity
+        axis = self.rest_pose().matrix()[:3, :3] @ np.asarray(self.joint.spec.unit_axis)
+        slides = self.joint.spec.type == "slide"
+        asked = action.linear_velocity if slides else action.angular_velocity
+        if rate is None and asked is not None:
+            rate = float(axis @ np.asarray(asked))
+        if action.joint_position is not None:
+            self.tree.set(self._number, action.joint_position)
+        if rate is not None and self.joint.spec.moves:
+            self.tree.drive(self._number, rate)
+        if action.force_n is not None:
+            actuation.push(self._client, self._id, action.force_n, link=self._number)
+        if action.torque_nm is not None:
+            frame = self._client.constants.WORLD_FRAME
+            self._client.applyExternalTorque(self._id, self._number, action.torque_nm, frame)
+
+    def rebuilt(self, placement: Placement) -> Body:
+        """Make the body that another placement says, where this one is; no tree has it yet."""
+        if placement.joint is None:
+            accepted = "one that keeps its joint"
+            raise InvalidRequest("change of object", self.placement.name, accepted)
+        new = JointedBody(self._client, placement)
+        new._at = self.joint_state()
+        new._behaviours = self._behaviours
+        new.placement = placement
+        new.arranged = self.arranged
+        new.behaviours_unchanged = self.behaviours_unchanged
+        new._wrenches, new._motion = self._wrenches, self._motion
+        return new
+
+    def remove(self) -> None:
+        """Do nothing: its tree is made anew without it."""
+
+    def _build(self) -> int:
+        return NOT_THERE  # a tree will have it
+
+    def _state(self, running: RunningBehaviour, frustum_planes: FrustumPlanes) -> BodyState:
+        position, velocity = self.joint_state()
+        known = super()._state(running, frustum_planes)
+        return replace(
+            known,
+            joint_position=position,
+            joint_velocity=velocity,
+            joint_limits=self.joint.spec.bounds,
+        )
