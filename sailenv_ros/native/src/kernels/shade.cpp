@@ -12,9 +12,9 @@ namespace {
 
 constexpr int32_t CHUNK = 64;
 constexpr float PI = 3.14159265f;
-// Pictures of colour maps are nearest to the mean over the pixel at half a level finer: measured
+// Pictures of colour maps are nearest to the mean over the pixel a little finer: measured
 // beside 4 x 4 samples a pixel. The same as in shaders/textures.glsl.
-constexpr float PICTURE_BIAS = -0.5f;
+constexpr float PICTURE_BIAS = -0.25f;
 constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's size
 
 struct Chunk {
