@@ -208,6 +208,7 @@ setup(
     ),
     package_data={
         "sailenv_ros": ["py.typed"],
+        "sailenv_ros.dataset": ["preview/*"],
         "sailenv_ros.render": ["shaders/*"],
         "sailenv_ros.viewer": ["page/*"],
         "sailenv_msgs_py": ["py.typed"],

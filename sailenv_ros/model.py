@@ -85,7 +85,10 @@ class Material:
     metallic, roughness : float
         0 to 1; multiply the texture's blue and green channels.
     emission : (3,) tuple of float
-        Linear radiance it emits.
+        Linear radiance it emits, always [W/(m² sr)]; the base colour's texture is its pattern.
+    glow : (3,) tuple of float
+        Linear radiance that it emits besides for each W/sr of the lights that it is lit up by, as
+        the shade of a lamp is [1/m²]; see `DrawnInstance.lit_by`.
     base_colour_texture : (H, W, 4) uint8 or None
         sRGB colour and linear alpha; row 0 is the top.
     metallic_roughness_texture : (H, W, 4) uint8 or None
@@ -104,6 +107,7 @@ class Material:
     metallic: float = 0.0
     roughness: float = 0.6
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    glow: tuple[float, float, float] = (0.0, 0.0, 0.0)
     base_colour_texture: Texture | None = None
     metallic_roughness_texture: Texture | None = None
     normal_texture: Texture | None = None
@@ -155,6 +159,11 @@ class Model:
             result[1] = np.max([part.mesh.positions.max(axis=0) for part in self.parts], axis=0)
         result.flags.writeable = False
         return result
+
+    @cached_property
+    def is_lamp(self) -> bool:
+        """Whether something of it glows by the light of a lamp."""
+        return any(any(part.material.glow) for part in self.parts)
 
     @property
     def triangle_count(self) -> int:

@@ -7,6 +7,7 @@ pure function of two snapshots and the cameras that go with them.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -34,6 +35,8 @@ class DrawnInstance:
         Shared between instances; compared by identity.
     scale : (3,) tuple of float
         Applied to the model in its body frame, before the pose.
+    lit_by : tuple of str
+        Names of the lights whose lamp it is: by these its shade and bulb glow (`Material.glow`).
     stands : bool or None
         True if its light is baked: it never moves, or stands until its joint is moved. None takes
         what the instance says of physics.
@@ -42,7 +45,19 @@ class DrawnInstance:
     instance: Instance
     model: Model
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    lit_by: tuple[str, ...] = ()
     stands: bool | None = None
+
+    def lamp_power(self, lights: Iterable[Light]) -> tuple[float, float, float]:
+        """Return (3,): radiant intensity of the lights whose lamp it is, summed [W/sr]."""
+        if not self.lit_by:
+            return (0.0, 0.0, 0.0)
+        own = [light for light in lights if light.name in self.lit_by]
+        red, green, blue = (
+            float(sum(light.colour[channel] * light.intensity for light in own))
+            for channel in range(3)
+        )
+        return red, green, blue
 
     @property
     def is_baked(self) -> bool:

@@ -10,6 +10,7 @@ a path tracer follows. What lights the traced scene is the sky, the sun and the 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -171,16 +172,32 @@ def world_mesh(
     return positions, normals, mesh.uvs * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
 
 
+Vector3 = tuple[float, float, float]
 _Piece = tuple[Mesh, Floats, tuple[float, float, float]]
 
 
 def _pieces_by_material(snapshot: WorldSnapshot) -> list[tuple[Material, list[_Piece]]]:
-    grouped: dict[int, tuple[Material, list[_Piece]]] = {}
-    for drawn, pose in zip(snapshot.contents.instances, snapshot.world_from_body, strict=True):
+    grouped: dict[tuple[int, Vector3], tuple[Material, list[_Piece]]] = {}
+    contents = snapshot.contents
+    for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
+        power = drawn.lamp_power(contents.lights)
         for part in drawn.model.parts:
-            pieces = grouped.setdefault(id(part.material), (part.material, []))[1]
+            lit = power if any(part.material.glow) else (0.0, 0.0, 0.0)
+            key = id(part.material), lit
+            pieces = grouped.setdefault(key, (_lit(part.material, lit), []))[1]
             pieces.append((part.mesh, pose, drawn.scale))
     return list(grouped.values())
+
+
+def _lit(material: Material, lamp_power: Vector3) -> Material:
+    """Return a material with what it emits by the light of the lamp that it belongs to."""
+    if not any(lamp_power):
+        return material
+    red, green, blue = (
+        own + glow * power
+        for own, glow, power in zip(material.emission, material.glow, lamp_power, strict=True)
+    )
+    return replace(material, emission=(red, green, blue))
 
 
 def _shape(material: Material, pieces: list[_Piece], parts: Parts) -> Dict:

@@ -16,6 +16,7 @@ import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
+from sailenv_ros.assets.gltf_emission import write_strength
 from sailenv_ros.assets.meshes import smooth_mesh
 from sailenv_ros.assets.model_files import read_parts
 from sailenv_ros.model import ConvexShape, Material, Mesh, ModelPart, Texture
@@ -66,7 +67,9 @@ def glb_bytes(parts: Sequence[ModelPart], hulls: Sequence[ConvexShape]) -> bytes
         solid = trimesh.convex.convex_hull(hull.points @ _FILE_FROM_BODY.T)
         solid.visual = trimesh.visual.ColorVisuals()
         _add(scene, f"{COLLISION}{number}", solid)
-    data: bytes = scene.export(file_type="glb", include_normals=True)
+    data: bytes = scene.export(
+        file_type="glb", include_normals=True, tree_postprocessor=write_strength
+    )
     return data
 
 

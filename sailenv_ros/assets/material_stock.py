@@ -83,6 +83,9 @@ class MaterialStock:
             )
             material = replace(material, base_colour=(red, green, blue, material.base_colour[3]))
         material = painted_material(material, None, look.metallic, look.roughness)
+        if look.emission is not None:
+            # What has a light of its own no longer follows a lamp's.
+            material = replace(material, emission=look.emission, glow=(0.0, 0.0, 0.0))
         tile = made.tile_m if made.tile_m is None or look.tile is None else look.tile
         return LaidMaterial(material, tile, made.turn_deg + look.turn)
 
@@ -162,5 +165,8 @@ def appearance_key(material: Material) -> tuple[object, ...]:
         material.metallic_roughness_texture,
         material.normal_texture,
     )
-    numbers = (material.base_colour, material.metallic, material.roughness)
+    numbers = (
+        *(material.base_colour, material.metallic, material.roughness),
+        *(material.emission, material.glow),
+    )
     return (material.name, *numbers, *(id(texture) for texture in textures))

@@ -19,6 +19,7 @@ import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
+from sailenv_ros.assets.gltf_emission import by_glow, description_with_strength, lit_by_picture
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.obj_polygons import with_triangles
 from sailenv_ros.colour import linear_from_srgb
@@ -87,7 +88,25 @@ def _parts(scene: trimesh.Scene) -> Iterator[RawPart]:
         mesh = scene.geometry[geometry]
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             pose = np.asarray(file_from_part, dtype=np.float64)
-            yield dataclasses.replace(_part(str(geometry), mesh, pose), node=str(node))
+            part = dataclasses.replace(_part(str(geometry), mesh, pose), node=str(node))
+            yield from _by_glow(part, getattr(mesh.visual, "material", None))
+
+
+def _by_glow(part: RawPart, given: Any) -> Iterator[RawPart]:
+    """Yield a part, or what of it glows apart from what does not."""
+    picture = texture_of(getattr(given, "emissiveTexture", None))
+    own = part.material.base_colour_texture
+    if picture is None or not any(part.material.emission) or not part.textured:
+        yield part
+        return
+    if own is not None and np.array_equal(own, picture):
+        yield part  # its picture is that of its glow already
+        return
+    for mesh, material in zip(
+        by_glow(part.mesh, picture), lit_by_picture(part.material, picture), strict=True
+    ):
+        if mesh is not None:
+            yield dataclasses.replace(part, mesh=mesh, material=material)
 
 
 def texture_of(picture: Image.Image | None) -> Texture | None:
@@ -107,12 +126,22 @@ def _loaded(path: Path) -> trimesh.Scene:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # authors' oddities that trimesh copes with
-            loaded = (
-                _obj(path) if path.suffix.lower() == ".obj" else trimesh.load(path, process=False)
-            )
+            loaded = _obj(path) if path.suffix.lower() == ".obj" else _gltf(path)
     except Exception as problem:  # whatever a broken file makes the reader stumble over
         raise AssetError(path.name, f"it cannot be read ({_one_line(problem)})") from problem
     return loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
+
+
+def _gltf(path: Path) -> Any:
+    data = description_with_strength(path)
+    if data is None:
+        return trimesh.load(path, process=False)
+    return trimesh.load(
+        io.BytesIO(data),
+        file_type=path.suffix.lower()[1:],
+        resolver=trimesh.resolvers.FilePathResolver(str(path)),
+        process=False,
+    )
 
 
 def _obj(path: Path) -> Any:

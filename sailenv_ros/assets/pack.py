@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import fnmatch
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -46,6 +47,7 @@ PartName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]{0,39}$")]
 Pattern = Annotated[str, Field(min_length=1, max_length=100)]
 KeypointName = Annotated[str, Field(pattern=r"^[^\x00-\x1f]{1,63}$")]
 Coordinate = Annotated[float, Field(ge=-100.0, le=100.0)]
+Amount = Annotated[float, Field(ge=0.0, le=1e3)]
 Metres = Annotated[float, Field(gt=0.0, le=100.0)]
 
 
@@ -89,6 +91,9 @@ class PackEntry(_PackModel):
         Named points in the body frame [m]: ``{left front foot: [0.2, 0.2, 0.0]}``.
     parts : mapping of str to PackPart
         What of it is labelled apart: ``{left pillow: {category: pillow, meshes: [pillow_l*]}}``.
+    glow : mapping of str to (3,) tuple of float
+        Linear radiance that a material emits for each W/sr of a lamp's light [1/m²], by its name:
+        ``{shade: [5.0, 5.0, 4.0]}``; see `Material.glow`.
     file : str
         Of the model, in the pack's folder.
     sha256 : str
@@ -116,6 +121,7 @@ class PackEntry(_PackModel):
         default_factory=dict, max_length=256
     )
     parts: dict[PartName, PackPart] = Field(default_factory=dict, max_length=256)
+    glow: dict[Text, tuple[Amount, Amount, Amount]] = Field(default_factory=dict, max_length=256)
     author: Text = ""
     licence: Text = ""
     source: Text = ""
@@ -196,6 +202,7 @@ class AssetPack:
         if problem:
             raise AssetError(name, f"its file {path} {problem}; {self._remedy(name)}")
         parts, hulls = read_glb(path)
+        parts = _glowing(entry, parts)
         if entry.collision == "hulls" and not hulls:
             raise AssetError(name, f"{path} holds no collision pieces")
         model = Model(name=name, parts=parts)
@@ -259,6 +266,19 @@ class AssetPack:
         if self.folder == own_pack_folder():
             return f"add it anew with: sailenv assets add FILE --name {name} --category CATEGORY"
         return "install the pack anew"
+
+
+def _glowing(entry: PackEntry, meshes: tuple[ModelPart, ...]) -> tuple[ModelPart, ...]:
+    """Return the meshes with what their materials glow by the light of a lamp."""
+    if not entry.glow:
+        return meshes
+    materials = {
+        id(mesh.material): replace(
+            mesh.material, glow=entry.glow.get(mesh.material.name, mesh.material.glow)
+        )
+        for mesh in meshes
+    }
+    return tuple(replace(mesh, material=materials[id(mesh.material)]) for mesh in meshes)
 
 
 def _labelled(entry: PackEntry, meshes: Sequence[ModelPart]) -> tuple[AssetPart, ...]:

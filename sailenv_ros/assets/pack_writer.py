@@ -72,6 +72,7 @@ def packed(
             )
             for part in labelled
         },
+        glow={part.material.name: part.material.glow for part in parts if any(part.material.glow)},
         author=author,
         licence=licence,
         source=source,

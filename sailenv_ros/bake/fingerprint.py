@@ -32,7 +32,7 @@ def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -
     _add_sky(digest, contents.environment)
     for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
         if drawn.is_baked:
-            _add(digest, [drawn.instance.id, list(drawn.scale)])
+            _add(digest, [drawn.instance.id, list(drawn.scale), list(drawn.lit_by)])
             _add_array(digest, pose)
             digest.update(_of_model(drawn.model))
     return digest.hexdigest()
@@ -81,6 +81,7 @@ def _add_material(digest: hashlib.blake2b, material: Material) -> None:
         [
             material.base_colour,
             material.emission,
+            material.glow,
             material.alpha,
             material.alpha_cutoff,
             material.double_sided,

@@ -30,13 +30,13 @@ from sailenv_ros.bake.light_probes import (
 )
 from sailenv_ros.bake.ray_patterns import net
 from sailenv_ros.bake.rays import NEVER, RayScene
-from sailenv_ros.bake.reflectance import albedo_of, emission_of
+from sailenv_ros.bake.reflectance import albedo_of, emission_of, glow_of
 from sailenv_ros.bake.sampling import tile_shift
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.bake.sky import panes
 from sailenv_ros.bake.sky_picture import sky_picture
 from sailenv_ros.bake.solving import Samples, SolvedLight, Solver, Stages
-from sailenv_ros.bake.static_geometry import static_geometry_of
+from sailenv_ros.bake.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.bake.sun_edges import sun_edges
 from sailenv_ros.bake.texels import Texels, rasterised
 from sailenv_ros.bake.visibility import probe_visibility, visible_triangles
@@ -154,9 +154,20 @@ class _Bake:
             points=points,
             patches=patches_of(geometry, texels),
             albedo=albedo_of(geometry, layout, texels),
-            emission=emission_of(geometry, texels),
+            emission=emission_of(geometry, layout, texels),
+            glows=self._glows(geometry, texels),
             texels=texels,
         )
+
+    def _glows(self, geometry: StaticGeometry, texels: Texels) -> dict[str, Floats]:
+        """Return what the shades of lamps emit by each light that is in one."""
+        lamps: dict[str, list[int]] = {}
+        lit_by = {d.instance.id: d.lit_by for d in self._snapshot.contents.instances}
+        for place, instance in enumerate(geometry.instances):
+            for name in lit_by[instance.id]:
+                lamps.setdefault(name, []).append(place)
+        found = {name: glow_of(geometry, texels, places) for name, places in lamps.items()}
+        return {name: glow for name, glow in found.items() if glow.any()}
 
     def _draft(self, samples: Samples) -> BakedLight:
         """Return the light as one texel of each patch gets it, spread over the patch."""
@@ -175,6 +186,7 @@ class _Bake:
             ),
             albedo=samples.patches.means(samples.albedo, np.ones(texels.count, bool)),
             emission=samples.emission[chosen],
+            glows={name: glow[chosen] for name, glow in samples.glows.items()},
         )  # fmt: skip
         solver = Solver(few, self._snapshot.contents.lights, self._settings, self._stages)
         solver.begin()

@@ -6,6 +6,8 @@ everywhere, too: the amount is right, the direction is the mean one. Normal maps
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -15,19 +17,45 @@ from sailenv_ros.bake.returned_light import returned
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 from sailenv_ros.colour import LINEAR_OF_SRGB8
+from sailenv_ros.model import Material
 
-__all__ = ["albedo_of", "emission_of", "returned"]
+__all__ = ["albedo_of", "emission_of", "glow_of", "returned"]
 
 BRIGHTEST = 0.95
 """No surface gives back more: bounces would not end."""
 
 
-def emission_of(geometry: StaticGeometry, texels: Texels) -> NDArray[np.float32]:
-    """Return (N, 3) float32: linear radiance that each texel emits."""
+def emission_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArray[np.float32]:
+    """Return (N, 3) float32: linear radiance that each texel emits, in its texture's pattern."""
+    material = geometry.material[texels.triangle]
+    emission = np.zeros((texels.count, 3), dtype=np.float32)
+    fineness = None
+    for place, look in enumerate(geometry.materials):
+        if not any(look.emission):
+            continue
+        chosen = np.flatnonzero(material == place)
+        if not len(chosen):
+            continue
+        emission[chosen] = look.emission
+        if look.base_colour_texture is not None:
+            fineness = _texture_texels(geometry, layout) if fineness is None else fineness
+            emission[chosen] *= _picture_at(geometry, texels, chosen, look, fineness)
+    return emission
+
+
+def glow_of(geometry: StaticGeometry, texels: Texels, owners: Iterable[int]) -> NDArray[np.float32]:
+    """Return (N, 3) float32: what texels of lamps emit for 1 W/sr of white light.
+
+    Parameters
+    ----------
+    owners : iterable of int
+        Places in `geometry.instances` of the lamps that are on by it.
+    """
     table = np.zeros((len(geometry.materials) + 1, 3), dtype=np.float32)
     for place, material in enumerate(geometry.materials):
-        table[place] = material.emission
-    return table[geometry.material[texels.triangle]]
+        table[place] = material.glow
+    own = np.isin(geometry.owner[texels.triangle], np.fromiter(owners, np.int64))
+    return table[geometry.material[texels.triangle]] * own[:, None]
 
 
 def albedo_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArray[np.float32]:
@@ -46,14 +74,29 @@ def albedo_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArr
         texel = float(np.median(fineness[triangle]))
         base = np.tile(np.asarray(look.base_colour[:3], np.float32), (len(chosen), 1))
         if look.base_colour_texture is not None:
-            colours = np.ascontiguousarray(look.base_colour_texture[..., :3])
-            base *= _sampled(np.asarray(cv2.LUT(colours, _LINEAR), np.float32), at, texel)
+            base *= _picture_at(geometry, texels, chosen, look, fineness)
         finish = np.array([[look.roughness, look.metallic]])
         if look.metallic_roughness_texture is not None:
             shares = look.metallic_roughness_texture[..., 1:3].astype(np.float32) / 255.0
             finish = finish * _sampled(shares, at, texel)
         albedo[chosen] = returned(base, *finish.T[:, :, None])
     return np.clip(albedo, 0.0, BRIGHTEST)
+
+
+def _picture_at(
+    geometry: StaticGeometry,
+    texels: Texels,
+    chosen: NDArray[np.intp],
+    look: Material,
+    fineness: NDArray[np.float64],
+) -> NDArray[np.float32]:
+    """Return (len(chosen), 3) float32: linear colour of a material's picture at texels."""
+    assert look.base_colour_texture is not None
+    triangle = texels.triangle[chosen]
+    at = np.einsum("nc,ncx->nx", texels.weights[chosen], geometry.uvs[triangle])
+    colours = np.ascontiguousarray(look.base_colour_texture[..., :3])
+    linear = np.asarray(cv2.LUT(colours, _LINEAR), np.float32)
+    return _sampled(linear, at, float(np.median(fineness[triangle])))
 
 
 def _texture_texels(geometry: StaticGeometry, layout: Layout) -> NDArray[np.float64]:

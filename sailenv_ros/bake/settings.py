@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 __all__ = ["BAKE_VERSION", "BakeSettings"]
 
-BAKE_VERSION = 8
+BAKE_VERSION = 9
 """Grows whenever the same scene and settings would give another result."""
 
 

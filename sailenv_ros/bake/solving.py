@@ -6,8 +6,8 @@ The points are the texels of a light map, or few of them for a draft. Knows no m
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,6 +88,8 @@ class Samples:
     patches : Patches
         Groups of the points, among which light is handed on.
     albedo, emission : (N, 3) float32
+    glows : mapping of str to (N, 3) float32
+        What points emit besides by a light of intensity 1, by its name: shades of lamps.
     texels : Texels or None
         The points' places in a map; None if neighbours are not near to each other.
     """
@@ -97,6 +99,7 @@ class Samples:
     patches: Patches
     albedo: Floats
     emission: Floats
+    glows: Mapping[str, Floats] = field(default_factory=dict)
     texels: Texels | None = None
 
     @property
@@ -184,7 +187,7 @@ class Solver:
         first = np.concatenate(
             [
                 samples.emission + albedo * sky,
-                *(albedo * light.direct[:, None] for light in self.lights[1:]),
+                *(self._sent_straight(light) for light in self.lights[1:]),
             ],
             axis=1,
         )
@@ -201,6 +204,13 @@ class Solver:
             self.bounced[start:end, :3] += sky[start:end]
 
         self._stages.run(gather, samples.count, settings.pass_rays)
+
+    def _sent_straight(self, solved: SolvedLight) -> Floats:
+        """Return (N, 3): what points send out by what arrives straight, and as the light's lamp."""
+        assert solved.light is not None
+        sent: Floats = self._samples.albedo * solved.direct[:, None]
+        glow = self._samples.glows.get(solved.light.name)
+        return sent if glow is None else sent + glow
 
     def refine(self, report: Callable[[float], None]) -> None:
         """Cast rays once more, between those that were cast before."""

@@ -144,6 +144,7 @@ def _part(told: Mapping[str, Any], reader: _Reader) -> ModelPart:
             metallic=float(given["metallic"]),
             roughness=float(given["roughness"]),
             emission=_numbers(given["emission"], 3),
+            glow=_numbers(given["glow"], 3),
             alpha=alpha,
             alpha_cutoff=float(given["alpha_cutoff"]),
             double_sided=bool(given["double_sided"]),

@@ -49,11 +49,22 @@ def add_parser(subparsers: Any) -> None:
         "--shards", type=int, default=1, metavar="N", help="made anew; default: 1, 0: none"
     )
     verify.add_argument("--seed", type=int, default=0, help="of the choice among shards")
-    show = actions.add_parser("show", help="write a contact sheet of a data set's frames")
+    show = actions.add_parser(
+        "show", help="write a page to look at a data set in a browser, or a contact sheet"
+    )
     show.add_argument("dataset", type=Path, metavar="DIR")
-    show.add_argument("-o", "--output", type=Path, default=Path("dataset.png"), metavar="PNG")
-    show.add_argument("--split", default="", help="only that one")
-    show.add_argument("--frames", type=_positive, default=12, help="how many; default: 12")
+    show.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=Path("dataset.html"),
+        metavar="FILE",
+        help="a page (.html, which is the default) or a sheet (.png, .jpg)",
+    )
+    show.add_argument("--split", default="", help="frames of that one alone")
+    show.add_argument(
+        "--frames", type=_positive, help="how many; default: 36 in a page, 12 in a sheet"
+    )
     actions.add_parser("schema", help="print the JSON Schema of recipes, for editors")
 
 
@@ -114,9 +125,13 @@ def _verify(args: argparse.Namespace) -> int:
 
 
 def _show(args: argparse.Namespace) -> int:
+    from sailenv_ros.dataset.preview_page import save_preview
     from sailenv_ros.dataset.showing import save_sheet
 
-    count = save_sheet(args.dataset, args.output, split=args.split, frames=args.frames)
+    page = args.output.suffix.lower() in (".html", ".htm")
+    frames = args.frames or (36 if page else 12)
+    save = save_preview if page else save_sheet
+    count = save(args.dataset, args.output, split=args.split, frames=frames)
     print(f"{args.output}: {count} frames")
     return 0
 

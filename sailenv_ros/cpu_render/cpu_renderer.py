@@ -43,6 +43,8 @@ class NativeRenderer:
     ----------
     threads : int or None
         How many threads draw; None for `library.thread_count`. Frames do not depend on it.
+    table : PartTable or None
+        With stores of meshes and textures that outlive this renderer; None for its own.
 
     Raises
     ------
@@ -50,10 +52,10 @@ class NativeRenderer:
         If there is no native library.
     """
 
-    def __init__(self, *, threads: int | None = None) -> None:
+    def __init__(self, *, threads: int | None = None, table: PartTable | None = None) -> None:
         self._threads = thread_count() if threads is None else threads
         self._drawing = Drawing(self._threads)
-        self._table = PartTable()
+        self._table = PartTable() if table is None else table
         self._light = FrameLight(self._drawing, self._threads)
         self._finisher = Finisher(self._threads)
         self._mirrors = FlatMirrors()
@@ -217,7 +219,7 @@ class NativeRenderer:
         glows: bool,
     ) -> NDArray[np.float32]:
         """Draw linear radiance of some instances, without glass, as an array (H, W, 3)."""
-        parts = self._table.opaque
+        parts = self._table.unlit
         if not glows:
             parts = parts.copy()
             parts["emission"] = 0.0

@@ -126,7 +126,7 @@ class FrameLight:
             partial(blur_directions, threads=threads), partial(sum_texels, threads=threads)
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
-        self._sky: tuple[SkyMap, NDArray[np.float16]] | None = None
+        self._sky: tuple[tuple[SkyMap, float], NDArray[np.float16]] | None = None
         self._lamps = np.zeros(MAX_LIGHTS, LAMP)
         self._warned_of: Sequence[Light] | None = None
         self._light = np.zeros(1, LIGHT)
@@ -200,11 +200,10 @@ class FrameLight:
             light["main_colour"][0] = lamp_power(main)
             light["main_towards"][0] = -np.asarray(main.direction)
         if environment.sky is not None:
-            if self._sky is None or self._sky[0] is not environment.sky:
-                self._sky = environment.sky, _sky_texels(environment.sky)
-            texels = self._sky[1]
-            light["sky_map_at"] = address(texels)
-            light["sky_height"], light["sky_width"] = len(texels), texels.shape[1] - 1
+            wanted = environment.sky, environment.exposure
+            if self._sky is None or self._sky[0] != wanted:
+                self._sky = wanted, _sky_texels(*wanted)
+            _set_sky(light, self._sky[1])
         return light
 
     def _set_shadows(self, light: NDArray[np.void], shadow: ShadowMap, static: ShadowMap) -> None:
@@ -260,7 +259,10 @@ class FrameLight:
         # Nothing that moves casts a shadow into what is mirrored.
         unshadowed = _empty_map()
         light["shadow_at"] = address(unshadowed)
-        lamp = np.zeros(1, LAMP)
+        lamp, sky = np.zeros(1, LAMP), contents.environment.sky
+        if alone is None and sky is not None:
+            texels = _sky_texels(sky, None)
+            _set_sky(light, texels)
         if alone is None:
             composited = composite_lightmap(contents.baked, (), contents.environment)
         else:
@@ -310,10 +312,16 @@ def _describe(row: np.void, lamp: Light) -> None:
     row["outer_cosine"] = np.cos(np.radians(lamp.outer_cone_deg))
 
 
-def _sky_texels(sky: SkyMap) -> NDArray[np.float16]:
-    """Return (H, W + 1, 4): the first column is repeated behind the last."""
-    height, width, _ = sky.radiance.shape
+def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16]) -> None:
+    light["sky_map_at"] = address(texels)
+    light["sky_height"], light["sky_width"] = len(texels), texels.shape[1] - 1
+
+
+def _sky_texels(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
+    """Return (H, W + 1, 4) of `seen_sky`: the first column is repeated behind the last."""
+    seen = seen_sky(sky, exposure)
+    height, width, _ = seen.shape
     texels = np.zeros((height, width + 1, 4), np.float16)
-    texels[:, :width, :3] = seen_sky(sky)
+    texels[:, :width, :3] = seen
     texels[:, width] = texels[:, 0]
     return texels

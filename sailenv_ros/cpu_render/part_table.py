@@ -45,19 +45,31 @@ class _ModelParts:
 class PartTable:
     """The parts of the contents that are shown.
 
+    Parameters
+    ----------
+    meshes : MeshStore or None
+    textures : TextureStore or None
+        Shared with tables of scenes that are shown before and after, which must not be at the same
+        time; None for its own.
+
     Attributes
     ----------
     contents : SceneContents or None
     opaque, glass, casters : (N,) PART
         What covers what lies behind it; what does not; what casts shadows.
+    unlit : (N,) PART
+        The same as `opaque`, with no lamp on.
     """
 
-    def __init__(self) -> None:
-        self._meshes = MeshStore()
-        self._textures = TextureStore()
+    def __init__(
+        self, meshes: MeshStore | None = None, textures: TextureStore | None = None
+    ) -> None:
+        self._meshes = MeshStore() if meshes is None else meshes
+        self._textures = TextureStore() if textures is None else textures
         self._models: dict[tuple[int, int], _ModelParts] = {}
         self.contents: SceneContents | None = None
         self.opaque = self.glass = self.casters = np.zeros(0, PART)
+        self.unlit = self._unlit_glass = self.opaque
         self._scales = np.zeros((0, 3))
         self._baked_poses = np.zeros((0, 4, 4))
         self._keys: list[tuple[object, ...]] = []
@@ -67,6 +79,31 @@ class PartTable:
         """Bring the tables up to date."""
         if contents is self.contents:
             return
+        self._show(contents)
+        self._light_lamps(contents)
+
+    def _light_lamps(self, contents: SceneContents) -> None:
+        """Let the lamps that are on glow."""
+        lit = [
+            (row, drawn.model, power)
+            for row, drawn in enumerate(contents.instances)
+            if any(power := drawn.lamp_power(contents.lights))
+        ]
+        self.opaque, self.glass = self.unlit, self._unlit_glass
+        if not lit:
+            return
+        self.opaque, self.glass = self.opaque.copy(), self.glass.copy()
+        for row, model, power in lit:
+            for table, see_through in ((self.opaque, False), (self.glass, True)):
+                parts = [p for p in model.parts if (p.material.alpha == "blend") == see_through]
+                places = np.flatnonzero(table["instance"] == row)
+                for place, part in zip(places, parts, strict=True):
+                    if any(part.material.glow):
+                        factors = material_factors(part.material, power)
+                        table["colour"][place] = factors.colour
+                        table["emission"][place] = factors.emission
+
+    def _show(self, contents: SceneContents) -> None:
         before, self.contents = self.contents, contents
         same_bake = before is not None and before.baked is contents.baked
         if before is not None and same_bake and before.instances is contents.instances:
@@ -114,7 +151,7 @@ class PartTable:
         table["chart"] = charts[rows]
         table["has_chart"] = charts[rows].any(axis=1)
         casting = np.repeat(np.array([cast for _, _, cast in shown], bool), counts)
-        self.opaque, self.glass = table[~glass], table[glass]
+        self.unlit, self._unlit_glass = table[~glass], table[glass]
         self.casters = table[~glass & casting]
         if trim:
             self._meshes.trim(mesh for made in models.values() for mesh in made.meshes)

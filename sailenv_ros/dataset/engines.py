@@ -13,7 +13,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -72,7 +72,6 @@ class ProcessEngine:
     """Makes shards in so many processes of this machine, each with its share of the processors."""
 
     workers: int
-    attempts: Counter[int] = field(default_factory=Counter)
 
     def run(
         self, job: Job, where: str, shards: Sequence[int], on_frames: OnFrames
@@ -80,7 +79,8 @@ class ProcessEngine:
         """Yield the summary of each shard."""
         # Ours, so that it goes however the workers end.
         with TemporaryDirectory(prefix="sailenv-dataset-") as scratch:
-            yield from self._run_pools(job, where, scratch, deque(shards), on_frames)
+            waiting = deque(dealt(shards, self.workers))
+            yield from self._run_pools(job, where, scratch, waiting, on_frames)
 
     def _run_pools(
         self, job: Job, where: str, scratch: str, waiting: deque[int], on_frames: OnFrames
@@ -90,6 +90,7 @@ class ProcessEngine:
         frames = context.Value("q", 0)
         threads = max(1, (os.cpu_count() or 1) // self.workers)
         arguments = (job, where, scratch, frames, threads, os.getpid())
+        attempts: Counter[int] = Counter()
         while waiting:
             pool = ProcessPoolExecutor(
                 min(self.workers, len(waiting)), context, _begin_worker, arguments
@@ -101,8 +102,8 @@ class ProcessEngine:
             except BrokenProcessPool:
                 # All that were running are tried again, by new workers.
                 for shard in sorted(running.values(), reverse=True):
-                    self.attempts[shard] += 1
-                    if self.attempts[shard] >= ATTEMPTS:
+                    attempts[shard] += 1
+                    if attempts[shard] >= ATTEMPTS:
                         raise RecordingError(
                             f"the worker of shard {shard} was killed {ATTEMPTS} times; it may "
                             "need more memory than there is: use fewer workers"
@@ -143,6 +144,16 @@ def engine_of(workers: int, ray_address: str | None) -> Engine:
 
         return RayEngine(ray_address)
     return ProcessEngine(workers) if workers > 1 else HereEngine()
+
+
+def dealt(shards: Sequence[int], workers: int) -> list[int]:
+    """Return shards in an order in which each of so many workers gets neighbours.
+
+    Neighbours are often of the same scene, which a worker has loaded then. Who is quick takes more.
+    """
+    length = -(-len(shards) // workers)
+    runs = [shards[begin : begin + length] for begin in range(0, len(shards), length or 1)]
+    return [run[place] for place in range(length) for run in runs if place < len(run)]
 
 
 _maker: ShardMaker | None = None

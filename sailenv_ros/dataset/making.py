@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -215,15 +216,14 @@ def _made(manifest: Mapping[str, Any]) -> MadeDataset:
     )
 
 
-def _sum(parts: Any) -> dict[str, int]:
-    total: dict[str, int] = {}
+def _sum(parts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    total: Counter[str] = Counter()
     for part in parts:
-        for name, count in part.items():
-            total[name] = total.get(name, 0) + count
+        total.update(part)
     return dict(sorted(total.items()))
 
 
-def _sums(parts: Any) -> dict[str, dict[str, int]]:
+def _sums(parts: Iterable[Mapping[str, Mapping[str, int]]]) -> dict[str, dict[str, int]]:
     listed = list(parts)
     names = dict.fromkeys(name for part in listed for name in part)
     return {name: _sum(part.get(name, {}) for part in listed) for name in names}

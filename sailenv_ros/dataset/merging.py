@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import accumulate, islice
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.stores import Store
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record
 from sailenv_ros.recording.export.formats import format_class
 
-__all__ = ["RECORDS_FOLDER", "merges", "finish_formats", "frame_records"]
+__all__ = ["RECORDS_FOLDER", "ShardRecords", "finish_formats", "frame_records", "merges"]
 
 
 RECORDS_FOLDER = "records"
@@ -44,16 +47,54 @@ def frame_records(store: Store, shards: Iterable[int]) -> Iterator[dict[str, Any
             raise RecordingError(f"{path} in {store.shown} cannot be read: {problem}") from None
 
 
+class ShardRecords(Sequence[Record]):
+    """What one format keeps of each frame: read shard by shard, never in memory as a whole.
+
+    Parameters
+    ----------
+    store : Store
+    shards : mapping of int to ShardSummary
+    name : str
+        Of the format.
+    """
+
+    def __init__(self, store: Store, shards: Mapping[int, ShardSummary], name: str) -> None:
+        self._store = store
+        self._name = name
+        self._numbers = list(shards)
+        self._ends = list(accumulate(shards[number].frames for number in self._numbers))
+
+    def __len__(self) -> int:
+        return self._ends[-1] if self._ends else 0
+
+    def __iter__(self) -> Iterator[Record]:
+        return self._of(self._numbers)
+
+    @overload
+    def __getitem__(self, index: int) -> Record: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Record]: ...
+    def __getitem__(self, index: int | slice) -> Record | list[Record]:
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(len(self)))]
+        place = index + len(self) if index < 0 else index
+        if not 0 <= place < len(self):
+            raise IndexError(f"there are {len(self)} records, none of number {index}")
+        shard = bisect_right(self._ends, place)
+        before = self._ends[shard - 1] if shard else 0
+        return next(islice(self._of([self._numbers[shard]]), place - before, None))
+
+    def _of(self, shards: Iterable[int]) -> Iterator[Record]:
+        for line in frame_records(self._store, shards):
+            value = line["records"].get(self._name)
+            yield Record(number=line["number"], split=line["split"], value=value)
+
+
 def finish_formats(
-    recipe: DatasetRecipe, store: Store, shards: Iterable[int], folder: Path
+    recipe: DatasetRecipe, store: Store, shards: Mapping[int, ShardSummary], folder: Path
 ) -> None:
     """Write into a folder what the formats of a recipe write at their end."""
-    kinds = {name: format_class(name) for name in recipe.formats}
-    kinds = {name: kind for name, kind in kinds.items() if merges(kind)}
-    records: dict[str, list[Record]] = {name: [] for name in kinds}
-    for line in frame_records(store, shards) if kinds else ():
-        for name in kinds:
-            value = line["records"].get(name)
-            records[name].append(Record(number=line["number"], split=line["split"], value=value))
-    for name, kind in kinds.items():
-        kind(folder / name).finish(records[name])
+    for name in recipe.formats:
+        kind = format_class(name)
+        if merges(kind):
+            kind(folder / name).finish(ShardRecords(store, shards, name))

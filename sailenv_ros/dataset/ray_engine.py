@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import socket
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from sailenv_ros.dataset.engines import ATTEMPTS, OnFrames
+from sailenv_ros.dataset.engines import ATTEMPTS, OnFrames, dealt
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.shard_maker import ShardMaker
 from sailenv_ros.dataset.stores import open_store
 from sailenv_ros.errors import RecordingError, SailenvError
 from sailenv_ros.extras import need
+from sailenv_ros.native.library import THREADS_VARIABLE
+from sailenv_ros.system.memory import keep_freed_memory
 
 __all__ = ["RayEngine"]
 
@@ -50,7 +53,10 @@ class RayEngine:
         try:
             task = ray.remote(num_cpus=1, max_retries=ATTEMPTS)(_make_shard)
             shared = ray.put(job)
-            running = {task.remote(shared, where, shard): shard for shard in shards}
+            processors = max(1, int(ray.cluster_resources().get("CPU", 1)))
+            running = {
+                task.remote(shared, where, shard): shard for shard in dealt(shards, processors)
+            }
             while running:
                 done, _ = ray.wait(list(running), num_returns=1, timeout=LOOK_INTERVAL_S)
                 for reference in done:
@@ -93,6 +99,9 @@ def _make_shard(job: Job, where: str, number: int) -> ShardSummary:
         for other in list(_makers):
             _makers.pop(other).close()
         job.check_machine()
+        # Each processor has a task of its own.
+        os.environ.setdefault(THREADS_VARIABLE, "1")
+        keep_freed_memory()
         _makers[key] = ShardMaker(job, open_store(where))
     made: ShardSummary = _makers[key].make(number)
     return made

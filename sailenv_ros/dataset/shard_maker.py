@@ -19,10 +19,13 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.agents import AgentSpec
-from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import load_baked, store_baked
+from sailenv_ros.bake.light_files import light_folder, load_baked, store_baked
 from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.cpu_render.mesh_store import MeshStore
+from sailenv_ros.cpu_render.part_table import PartTable
+from sailenv_ros.cpu_render.texture_store import TextureStore
 from sailenv_ros.dataset.camera_tracks import NoPlace, Track, track_of, turning
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
@@ -39,10 +42,14 @@ from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.space.free_space import named_generator
+from sailenv_ros.system.files import file_lock
 from sailenv_ros.viewpoints import sample_cameras
 from sailenv_ros.world.world import World
 
 __all__ = ["ShardMaker"]
+
+BAKE_TIMEOUT_S = 3600.0
+"""How long to wait for another process that bakes the same room [s]."""
 
 
 class ShardMaker:
@@ -71,7 +78,11 @@ class ShardMaker:
         self._plan = ShardPlan(job.recipe)
         self._store = store
         self._on_frame = on_frame
+        self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
+        # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
+        # of it may depend on what was seen before.
+        self._stores = MeshStore(), TextureStore()
         self._folder = TemporaryDirectory(prefix="sailenv-scenes-", dir=scratch)
         self._baked = self._recipe.light == "baked"
         self._library = SceneLibrary(baked_light=self._baked, drafts=False)
@@ -171,11 +182,10 @@ class ShardMaker:
         recipe = self._recipe
         for camera in recipe.cameras:
             core.register_agent(self._agent(camera, core))
-        due = due_steps(recipe.clip.rate, recipe.clip.frames)
         frames = 0
-        for number, step in enumerate(due):
+        for number, step in enumerate(self._due):
             if number:
-                core.step(step - due[number - 1])
+                core.step(step - self._due[number - 1])
             for camera in recipe.cameras:
                 track = tracks[camera.name]
                 if track is not None:
@@ -223,8 +233,7 @@ class ShardMaker:
         """Return a camera's poses in a clip; None if an agent's mover has it."""
         if isinstance(camera, AgentCamera):
             return None
-        steps = due_steps(self._recipe.clip.rate, self._recipe.clip.frames)
-        times_s = np.array(steps) / STEPS_PER_S
+        times_s = np.array(self._due) / STEPS_PER_S
         random = named_generator(self._recipe.seed, "camera", camera.name, str(clip.number))
         if not isinstance(camera, RuleCamera):
             return track_of(camera, core, times_s, random)
@@ -259,7 +268,7 @@ class ShardMaker:
         core = SimulationCore(
             self._library,
             self._path(first.scene),
-            make_backend("native", None),
+            NativeRenderer(table=PartTable(*self._stores)),
             mode="lockstep",
             real_time_factor=1.0,
             seed=int(random.integers(2**31)),
@@ -303,8 +312,12 @@ def _bake_missing(world: World) -> None:
     if world.described.room is None:
         return
     snapshot = world.snapshot()
-    baked = load_baked(fingerprint(snapshot))
-    if baked is None:
-        baked = bake(snapshot)
-        store_baked(baked)
+    name = fingerprint(snapshot)
+    # Another worker may be baking it: then its light is waited for.
+    lock = light_folder() / f".baking-{name[0]}.lock"
+    with file_lock(lock, "baked light", timeout_s=BAKE_TIMEOUT_S):
+        baked = load_baked(name)
+        if baked is None:
+            baked = bake(snapshot)
+            store_baked(baked)
     world.set_baked(baked)

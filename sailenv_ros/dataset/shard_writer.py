@@ -24,7 +24,7 @@ from sailenv_ros.recording.export.data_files import write_bytes
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.recording.export.formats import format_class
 
-__all__ = ["PICTURES_FOLDER", "RECORDS_FOLDER", "ShardWriter"]
+__all__ = ["PICTURES_FOLDER", "ShardWriter"]
 
 PICTURES_FOLDER = "pictures"
 """Folder with a small picture of each shard's first frames, for the data set's card."""
@@ -35,9 +35,10 @@ PICTURE_WIDTH = 320
 
 @dataclass(eq=False, slots=True)
 class _Sequence:
-    """One camera's frames of the clip that is being written."""
+    """One camera's frames of the clip that is being written; sequences are numbered from 0."""
 
     name: str
+    number: int
     formats: dict[str, DatasetFormat]
     records: dict[str, list[Record]]
     count: int = 0
@@ -81,9 +82,10 @@ class ShardWriter:
     def begin_clip(self, clip: Clip) -> None:
         """Begin with the frames of a clip."""
         self._clip = clip
-        for camera in self._recipe.cameras:
+        cameras = len(self._recipe.cameras)
+        for place, camera in enumerate(self._recipe.cameras):
             name = f"{clip.number:06d}"
-            if len(self._recipe.cameras) > 1:
+            if cameras > 1:
                 name += f"_{camera.name}"
             formats = {}
             for entry in self._recipe.formats:
@@ -93,7 +95,9 @@ class ShardWriter:
                 else:
                     formats[entry] = kind(self._folder / entry / clip.split / name)
                     formats[entry].flow = self._recipe.flow
-            self._sequences[camera.name] = _Sequence(name, formats, {one: [] for one in formats})
+            self._sequences[camera.name] = _Sequence(
+                name, clip.number * cameras + place, formats, {one: [] for one in formats}
+            )
 
     def add(self, camera: str, frame: Frame) -> None:
         """Write one frame of a camera, or the one before, if it has waited for this one."""
@@ -132,17 +136,14 @@ class ShardWriter:
         self, sequence: _Sequence, camera: str, frame: Frame, following: Frame | None
     ) -> None:
         assert self._clip is not None
-        cameras = [one.name for one in self._recipe.cameras]
-        per_clip = self._recipe.clip.frames
-        first = (self._clip.number * len(cameras) + cameras.index(camera)) * per_clip
         sample = Sample(
-            number=first + sequence.count,
+            number=sequence.number * self._recipe.clip.frames + sequence.count,
             frame=frame,
             split=self._clip.split,
             previous=sequence.before,
             following=following,
             sequence=sequence.name,
-            sequence_number=self._clip.number * len(cameras) + cameras.index(camera) + 1,
+            sequence_number=sequence.number + 1,
         )
         kept: dict[str, Any] = {}
         for name, made in sequence.formats.items():

@@ -38,9 +38,10 @@ class MaterialOperations(Caller):
             Name of one of the object's materials, which `info.instances` tell; empty for all of
             it, which ends what was said of single ones.
         **changes
-            ``material``, ``picture``, ``colour``, ``tint``, ``roughness``, ``metallic``, ``tile``,
-            ``turn``, ``seed``, ``mapping``, as in a scene file. What is not given stays as it is;
-            None takes the asset's own. No changes at all: all is the asset's own again.
+            ``material``, ``picture``, ``colour``, ``tint``, ``roughness``, ``metallic``,
+            ``emission``, ``tile``, ``turn``, ``seed``, ``mapping``, as in a scene file. What is not
+            given stays as it is; None takes the asset's own. No changes at all: all is the
+            asset's own again.
 
         Raises
         ------

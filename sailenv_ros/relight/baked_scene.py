@@ -153,33 +153,43 @@ class BakedScene:
         painted : mapping of int to Model
             Models of the same shape with other materials, by instance id.
         """
-        albedo = self.patches.albedo.copy()
+        return self.looks_with(painted)[0]
+
+    def looks_with(self, painted: Mapping[int, Model]) -> tuple[Floats, Floats]:
+        """Return albedo and emission, (P, 3) float32 each, of the patches; see `albedo_with`."""
+        albedo, emission = self.patches.albedo.copy(), self.patches.emission.copy()
         for id_, model in painted.items():
             own = self.patches.owners == id_
             looks = {
-                id(before.material): _look(after.material)[0]
+                id(before.material): _look(after.material)
                 for before, after in zip(self.drawn[id_].model.parts, model.parts, strict=True)
             }
             for place in np.unique(self.patches.materials[own]):
                 chosen = own & (self.patches.materials == place)
-                albedo[chosen] = looks[id(self.materials[place])]
-        return albedo
+                albedo[chosen], emission[chosen] = looks[id(self.materials[place])]
+        return albedo, emission
 
-    def radiance(self, irradiance: Floats, direct: Floats, albedo: Floats | None = None) -> Floats:
+    def radiance(
+        self,
+        irradiance: Floats,
+        direct: Floats,
+        albedo: Floats | None = None,
+        emission: Floats | None = None,
+    ) -> Floats:
         """Return (P, C) float32: what patches send out by what arrives there.
 
         Parameters
         ----------
         irradiance : (P, C) float32
         direct : (P, L) float32
-        albedo : (P, 3) float32 or None
+        albedo, emission : (P, 3) float32 or None
             None takes that of the bake.
         """
         albedo = self.patches.albedo if albedo is None else albedo
         layers = direct.shape[1]
         light = irradiance.reshape(-1, layers, 3) + direct[:, :, None]
         radiance = light * albedo[:, None, :]
-        radiance[:, 0] += self.patches.emission
+        radiance[:, 0] += self.patches.emission if emission is None else emission
         return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
 
     def _lay_out(self, geometry: StaticGeometry) -> None:
@@ -309,12 +319,16 @@ def _look(material: Material) -> tuple[Floats, Floats]:
         colours = LINEAR_OF_SRGB8[texels[..., :3]].reshape(-1, 3)
         weight = texels[..., 3].reshape(-1, 1) / 255.0 if material.alpha == "mask" else 1.0
         weight = np.broadcast_to(weight, (len(colours), 1))
-        base = base * (colours * weight).sum(axis=0) / max(float(weight.sum()), 1e-6)
+        pattern = (colours * weight).sum(axis=0) / max(float(weight.sum()), 1e-6)
+        base = base * pattern
     finish = np.array([[material.roughness, material.metallic]])
     if material.metallic_roughness_texture is not None:
         finish = finish * material.metallic_roughness_texture[..., 1:3].mean(axis=(0, 1)) / 255.0
     albedo = returned(base[None], finish[:, :1], finish[:, 1:])[0]
-    return np.clip(albedo, 0.0, 0.95).astype(np.float32), np.asarray(material.emission, np.float32)
+    emission = np.asarray(material.emission, np.float32)
+    if texture is not None and emission.any():
+        emission = (emission * pattern).astype(np.float32)
+    return np.clip(albedo, 0.0, 0.95).astype(np.float32), emission
 
 
 def _panes(geometry: StaticGeometry) -> Panes | None:

@@ -81,9 +81,9 @@ class _Relighting:
         self._area, self._area_lights = [n for n, _ in area], [light for _, light in area]
         self._move()
         self._bounces = quality.bounces if painted else 0
-        self._albedo = scene.albedo_with(painted)
+        self._albedo, self._emission = scene.looks_with(painted)
         self._before = scene.radiance(scene.irradiance, scene.direct)
-        self._after = scene.radiance(scene.irradiance, scene.direct, self._albedo)
+        self._after = scene.radiance(scene.irradiance, scene.direct, self._albedo, self._emission)
         self._world = ray_world(scene, changes, self._before, self._after, self._radiance_of_new)
         self._rays = self._world.record
 
@@ -112,7 +112,9 @@ class _Relighting:
         return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
 
     def _send_out(self, irradiance: Floats, direct: Floats) -> None:
-        self._after[:] = self._scene.radiance(np.maximum(irradiance, 0.0), direct, self._albedo)
+        self._after[:] = self._scene.radiance(
+            np.maximum(irradiance, 0.0), direct, self._albedo, self._emission
+        )
 
     def _bounced(
         self, found: NDArray[np.uint8], change: Floats, direct: Floats

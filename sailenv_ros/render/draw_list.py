@@ -30,7 +30,7 @@ a place that each of them brings along it reads for one after the other. So ever
 call of its own, with uniforms.
 """
 
-_MATERIAL, _NORMAL, _CHART = 4, 8, 11
+_MATERIAL, _GLOW, _NORMAL, _CHART = 4, 6, 8, 11
 """Where things lie in the block; before them the columns of the matrix to clip space."""
 
 
@@ -114,6 +114,14 @@ class DrawList:
         for block, (_, row, part, _) in zip(self.uniforms, parts, strict=True):
             block[_MATERIAL:_NORMAL] = materials.vectors(part.material)
             block[_MATERIAL, 0] = contents.instance_ids[row]
+        powers = [drawn.lamp_power(contents.lights) for drawn in contents.instances]
+        self._lamps = [
+            (number, self.uniforms[number, _GLOW:_NORMAL].copy(), lit[_GLOW - _MATERIAL :])
+            for number, (_, row, part, _) in enumerate(parts)
+            if any(powers[row]) and any(part.material.glow)
+            for lit in (materials.lit_vectors(part.material, powers[row]),)
+        ]
+        self.show_lamps(True)
         slices = [geometry.slice(mesh) for *_, mesh in parts]
         self.lies = [(mesh.first_index, mesh.index_count) for mesh in slices]
         self._ranges = np.array(
@@ -171,6 +179,11 @@ class DrawList:
                 self._visible &= only[self._instance_rows]
             for batch in self.batches:
                 batch.choose(self._visible, self._distance)
+
+    def show_lamps(self, lit: bool) -> None:
+        """Let the lamps that are on glow, or not."""
+        for part, off, on in self._lamps:
+            self.uniforms[part, _GLOW:_NORMAL] = on if lit else off
 
     def seen_indices(
         self, by_corner: Callable[[BatchKind], bool]

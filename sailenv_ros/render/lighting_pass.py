@@ -71,6 +71,8 @@ class Illumination:
     reflections : ReflectionTexture or None
     glows : bool
         Whether what emits light does so.
+    blended : bool
+        Whether the sky is blended with the room, as for people to see; see `seen_sky`.
     """
 
     main: Light | None
@@ -83,6 +85,7 @@ class Illumination:
     main_transmittance: float = 1.0
     reflections: ReflectionTexture | None = None
     glows: bool = True
+    blended: bool = True
 
 
 class LightingPass:
@@ -92,7 +95,7 @@ class LightingPass:
         self._context = context
         self._programs = programs
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
-        self._sky_shown: SkyMap | None = None
+        self._sky_shown: tuple[SkyMap, float | None] | None = None
         self._sky_texture: moderngl.Texture | None = None
         self._warned_of: Sequence[Light] | None = None
         self._lights = context.buffer(reserve=MAX_LIGHTS * ROW.itemsize, dynamic=True)
@@ -108,7 +111,8 @@ class LightingPass:
         for program in (light, sky):
             set_camera(program, camera, environment)
         if environment.sky is not None:
-            self._show_sky(environment.sky, sky)
+            exposure = environment.exposure if illumination.blended else None
+            self._show_sky(environment.sky, exposure, sky)
         self._set_lights(light, camera, illumination)
         _set_textures(light, targets, illumination)
         # The covering triangle lies at the far end: in front of it are surfaces, on it is sky.
@@ -151,17 +155,19 @@ class LightingPass:
             self._arrays[program] = self._context.vertex_array(program, [])
         return self._arrays[program]
 
-    def _show_sky(self, sky: SkyMap, program: moderngl.Program) -> None:
+    def _show_sky(self, sky: SkyMap, exposure: float | None, program: moderngl.Program) -> None:
         """Make a sky's picture readable; it is uploaded where it is another than before."""
-        if self._sky_texture is None or sky is not self._sky_shown:
+        if self._sky_texture is None or (sky, exposure) != self._sky_shown:
             if self._sky_texture is not None:
                 self._sky_texture.release()
-            height, width, _ = sky.radiance.shape
-            data = seen_sky(sky).tobytes()
-            self._sky_texture = self._context.texture((width, height), 3, data, dtype="f2")
+            seen = seen_sky(sky, exposure)
+            height, width, _ = seen.shape
+            self._sky_texture = self._context.texture(
+                (width, height), 3, seen.tobytes(), dtype="f2"
+            )
             self._sky_texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._sky_texture.repeat_y = False
-            self._sky_shown = sky
+            self._sky_shown = sky, exposure
         self._sky_texture.use(SKY_UNIT)
         set_uniform(program, "sky_map", SKY_UNIT)
 

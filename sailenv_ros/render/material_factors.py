@@ -19,6 +19,10 @@ EMISSION_SCALE = 16.0
 """Radiance, in units of the base colour, that the G-buffer's 8 bits can hold."""
 
 
+DARKEST = 0.1
+"""Brightness that the colour of what glows has at least: 8 bits hold few shades of black."""
+
+
 @dataclass(frozen=True, slots=True)
 class MaterialFactors:
     """The numbers of one material.
@@ -47,14 +51,26 @@ class MaterialFactors:
     least_cutoff: float
 
 
-def material_factors(material: Material) -> MaterialFactors:
-    """Return the numbers of a material."""
+def material_factors(
+    material: Material, lamp_power: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> MaterialFactors:
+    """Return the numbers of a material.
+
+    Parameters
+    ----------
+    lamp_power : (3,) tuple of float
+        Colour times intensity of the lights by which it glows; see `DrawnInstance.lamp_power`.
+    """
     base = np.asarray(material.base_colour, dtype=np.float64)
     root_red, root_green, root_blue = (float(number) for number in np.sqrt(base[:3]))
-    glow = float(max(material.emission))
+    emission = np.asarray(material.emission) + np.multiply(material.glow, lamp_power)
+    glow = float(emission.max())
     if glow > 0.0:
-        # The G-buffer holds one colour and one strength: what glows has the glow's colour.
-        base[:3] = np.asarray(material.emission) / glow
+        # The G-buffer holds one colour and one strength: what glows has the glow's colour, about
+        # as bright as its own, so that it gives back as much light.
+        bright = float(min(1.0, max(base[:3].max(), DARKEST, glow / EMISSION_SCALE)))
+        base[:3] = emission / glow * bright
+        glow /= bright
     red, green, blue = (float(number) for number in np.sqrt(base[:3]))
     edge = SIZES_PX[array_of(material.base_colour_texture)]
     fall, least = cutoff_by_level(material, edge)

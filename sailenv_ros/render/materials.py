@@ -79,6 +79,12 @@ class MaterialBuffers:
         """Return (4, 4) float32: how `draw.glsl` has a material that is shown."""
         return self._vectors[id(material)]
 
+    def lit_vectors(
+        self, material: Material, lamp_power: tuple[float, float, float]
+    ) -> NDArray[np.float32]:
+        """Return the same for a material of a lamp that is on; see `material_factors`."""
+        return self._described(material, lamp_power)
+
     def kind(self, material: Material) -> BatchKind:
         """Classify a material that is shown."""
         colour, fine = (array_of(texture) for texture in self._maps(material))
@@ -98,8 +104,10 @@ class MaterialBuffers:
         """Free everything on the GPU."""
         self._textures.close()
 
-    def _described(self, material: Material) -> NDArray[np.float32]:
-        factors = material_factors(material)
+    def _described(
+        self, material: Material, lamp_power: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> NDArray[np.float32]:
+        factors = material_factors(material, lamp_power)
         return np.array(
             [
                 [0.0, factors.cutoff_fall, factors.least_cutoff, factors.base[0]],

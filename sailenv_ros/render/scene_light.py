@@ -80,7 +80,10 @@ class SceneLight:
             # Nothing that moves casts a shadow into what is mirrored.
             nothing = np.zeros_like(still)
             static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, nothing)
+            # What is mirrored is kept for each light apart, and none is the lamps' glow.
+            draws.show_lamps(False)
             self._reflect(snapshot, main, static_shadow, radiance, still)
+            draws.show_lamps(True)
             self._reflected = composited
         static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, ~still)
         self._reflections.write_table(self._room.points.table(snapshot))
@@ -170,5 +173,6 @@ class SceneLight:
             main_baked=composited.main_baked,
             main_transmittance=composited.main_transmittance,
             glows=alone is None,
+            blended=False,
         )
         return [radiance(camera, illumination, still) for camera in cameras]

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Final, TypeAlias
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Choice, Number, Several, Text
-from sailenv_ros.scene.fields import Fraction, LinearColour, Rule, SceneModel
+from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
 from sailenv_ros.scene.rules import at_most_one
 
 __all__ = ["ALL_PARTS", "MAPPINGS", "LookSpec", "MaterialName", "MaterialSpec", "PictureName"]
@@ -56,6 +56,11 @@ class LookSpec(SceneModel):
     roughness: Fraction | None = Field(default=None, description="0 for a mirror, 1 for chalk")
     metallic: Fraction | None = Field(
         default=None, description="0 for paint, plastic, wood; 1 for bare metal"
+    )
+    emission: Radiance | None = Field(
+        default=None,
+        description="light that it emits of itself: radiance [W/(m2 sr)], in the pattern of its "
+        "colour; 0 for a screen that is off",
     )
     tile: (
         Annotated[

@@ -192,6 +192,7 @@ def _look(part: RawPart) -> tuple[object, ...]:
     texture = material.base_colour_texture
     return (
         *(material.base_colour, material.metallic, material.roughness, material.alpha),
+        material.emission,
         None if texture is None else zlib.crc32(texture.tobytes()),
         # To a tenth of a millimetre: places are sums of single precision.
         (mesh.positions.round(4) + 0.0).tobytes(),

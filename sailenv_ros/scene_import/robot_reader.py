@@ -72,6 +72,7 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
     if model.nkey:
         mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
     mujoco.mj_camlight(model, data)
     if int(model.nmeshface) > MOST_TRIANGLES:
         raise ValueError(f"it has {model.nmeshface} triangles, and {MOST_TRIANGLES} are accepted")
@@ -93,8 +94,10 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
             "quat_wxyz": data.xquat[number].tolist(),
             "mass": float(model.body_mass[number]),
             "parent": int(model.body_parentid[number]),
+            "rest_position": model.body_pos[number].tolist(),
+            "rest_quat_wxyz": model.body_quat[number].tolist(),
             "joints": [
-                {"name": name(names.mjOBJ_JOINT, j), "type": int(model.jnt_type[j])}
+                _joint(mujoco, model, data, number, j)
                 for j in range(
                     int(model.body_jntadr[number]),
                     int(model.body_jntadr[number]) + int(model.body_jntnum[number]),
@@ -144,6 +147,34 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
         for number in range(model.ncam)
     ]
     return {"bodies": bodies, "geoms": geoms, "lights": lights, "cameras": cameras}, arrays
+
+
+def _joint(mujoco: Any, model: Any, data: Any, body: int, joint: int) -> dict[str, Any]:
+    """Return a joint: its kind, axis and point in the body's axes, limits, and what moves it."""
+    name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint) or ""
+    kind, at, dof = (int(a[joint]) for a in (model.jnt_type, model.jnt_qposadr, model.jnt_dofadr))
+    # The torque or force of the weight of all that hangs on it, at most.
+    axis, turns = data.xaxis[joint], kind == mujoco.mjtJoint.mjJNT_HINGE
+    lever = 1.0
+    if turns:
+        arm = data.subtree_com[body] - data.xanchor[joint]
+        lever = float(np.linalg.norm(arm - axis * (axis @ arm)))
+    share = float(np.hypot(axis[0], axis[1])) if turns else abs(float(axis[2]))
+    limited = bool(model.jnt_actfrclimited[joint])
+    return {
+        "name": name,
+        "type": kind,
+        "axis": model.jnt_axis[joint].tolist(),
+        "origin": model.jnt_pos[joint].tolist(),
+        "limited": bool(model.jnt_limited[joint]),
+        "range": model.jnt_range[joint].tolist(),
+        "reference": float(model.qpos0[at]),
+        "start": float(data.qpos[at] - model.qpos0[at]),
+        "damping": float(model.dof_damping[dof]),
+        "friction": float(model.dof_frictionloss[dof]),
+        "weight": float(model.body_subtreemass[body]) * 9.81 * lever * share,
+        "effort": float(max(np.abs(model.jnt_actfrcrange[joint]))) if limited else 0.0,
+    }
 
 
 if __name__ == "__main__":

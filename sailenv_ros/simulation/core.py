@@ -363,10 +363,9 @@ class SimulationCore(WorldOperations):
             ),
         )
 
-    def look(self, camera: Camera, view: str) -> NDArray[Any]:
-        """Render one view of the scene as it stands now, through a camera that is no agent's."""
-        rendered = self._renderer.render(self.world.snapshot(), None, camera, (view,))
-        return rendered.views[view]
+    def look(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
+        """Render views of the scene as it stands now, through a camera that is no agent's."""
+        return self._renderer.render(self.world.snapshot(), None, camera, views).views
 
     def view_scene(self, lens: CameraIntrinsics) -> PresentScene:
         """Return the scene as it stands now, for rules of cameras."""

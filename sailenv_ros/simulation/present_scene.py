@@ -6,7 +6,7 @@ No agent takes part, so nobody's next frame has another flow for it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,14 +35,15 @@ class PresentScene(ViewScene):
     def __init__(self, core: SimulationCore, lens: CameraIntrinsics) -> None:
         super().__init__(core.world.snapshot(), lens)
         self._core = core
+        self._last: tuple[Pose, Mapping[str, NDArray[Any]]] | None = None
 
     def instances(self, pose: Pose) -> NDArray[np.uint16]:
         """Return the (H, W) instance view from a pose."""
-        return self._core.look(self.camera(pose), "instance")
+        return self._surfaces(pose)["instance"]
 
     def depth_m(self, pose: Pose) -> NDArray[np.float32]:
         """Return the (H, W) depth view from a pose [m]."""
-        return self._core.look(self.camera(pose), "depth")
+        return self._surfaces(pose)["depth"]
 
     def whole_pixels(self, pose: Pose, only: int = 0) -> Mapping[int, int]:
         """Return how many pixels each object would cover alone; see `ViewScene`."""
@@ -52,3 +53,9 @@ class PresentScene(ViewScene):
     def free_space(self, body: BodySize) -> FreeSpace:
         """Return where a body can stand."""
         return self._core.space.free_space(body)
+
+    def _surfaces(self, pose: Pose) -> Mapping[str, NDArray[Any]]:
+        """Return depth and ids; rules ask for both, and what they cost is to draw the surfaces."""
+        if self._last is None or self._last[0] is not pose:
+            self._last = pose, self._core.look(self.camera(pose), "depth", "instance")
+        return self._last[1]

@@ -25,6 +25,7 @@ from sailenv_ros.errors import DeadlineExceeded, StorageError
 
 __all__ = [
     "UNFINISHED",
+    "begin_write_back",
     "file_lock",
     "make_folder",
     "remove_unfinished",
@@ -43,6 +44,8 @@ LOOK_AGAIN_S = 0.02
 
 _NO_REPLACE, _EXCHANGE = 1, 2
 """`RENAME_NOREPLACE`, `RENAME_EXCHANGE` of renameat2(2)."""
+
+_SYNC_FILE_RANGE_WRITE = 2
 
 _UNSUPPORTED = (errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
 
@@ -191,6 +194,15 @@ def sync_file_system(folder: Path) -> None:
             raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()), str(folder))
     finally:
         os.close(fd)
+
+
+def begin_write_back(fd: int) -> None:
+    """Have the system begin to bring what was written to a file to the disk, and wait for nothing.
+
+    Otherwise it may keep all of a large file until somebody syncs, and does nothing else then.
+    A file system that knows no such thing goes on as before.
+    """
+    _libc.sync_file_range(fd, ctypes.c_int64(0), ctypes.c_int64(0), _SYNC_FILE_RANGE_WRITE)
 
 
 @contextmanager

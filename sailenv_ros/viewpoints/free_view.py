@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from sailenv_ros.errors import InvalidRequest
@@ -81,9 +82,15 @@ def free_view(
 ) -> list[CameraView]:
     """Look from free space at a height, nothing too near, several objects in view."""
     chosen: list[CameraView] = []
+    forwards: list[NDArray[np.float64]] = []
     poses = poses_in_free_space(scene, settings, random)
     for _, pose in zip(range(settings.attempts * count), poses, strict=False):
-        if any(_alike(pose, other.pose, settings) for other in chosen):
+        forward = pose.matrix()[:3, 0]
+        if any(
+            math.dist(pose.position_m, other.pose.position_m) < settings.apart_m
+            and _angle_deg(forward, other_forward) < settings.apart_deg
+            for other, other_forward in zip(chosen, forwards, strict=True)
+        ):
             continue
         depth = scene.depth_m(pose)
         # NaN is nearer than the near plane.
@@ -92,14 +99,12 @@ def free_view(
         if len(scene.seen(pose, settings.cover)) < settings.objects:
             continue
         chosen.append(CameraView(pose=pose))
+        forwards.append(forward)
         if len(chosen) == count:
             break
     return chosen
 
 
-def _alike(first: Pose, second: Pose, settings: FreeView) -> bool:
-    if math.dist(first.position_m, second.position_m) >= settings.apart_m:
-        return False
-    forwards = [pose.matrix()[:3, 0] for pose in (first, second)]
-    cosine = float(np.clip(forwards[0] @ forwards[1], -1.0, 1.0))
-    return math.degrees(math.acos(cosine)) < settings.apart_deg
+def _angle_deg(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """Return the angle between two unit vectors [deg]."""
+    return math.degrees(math.acos(min(1.0, max(-1.0, float(first @ second)))))

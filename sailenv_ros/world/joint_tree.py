@@ -22,6 +22,13 @@ __all__ = ["JointTree", "JointLink"]
 HELD = 1e-9
 """What moves by less in a step, [rad] or [m], is held by its friction and does not move."""
 
+STUCK = 0.02
+"""Slower than this, [rad/s] or [m/s], and with torque to spare, friction has stopped a joint: the
+engine's solver leaves such speeds where joints hang on one another."""
+
+SPARE = 0.99
+"""Share of the friction's torque below which there is torque to spare."""
+
 UNLIMITED = (1.0, -1.0)
 """The engine takes limits in the wrong order for none."""
 
@@ -154,7 +161,7 @@ class JointTree:
             if position == before and velocity == speed:
                 continue
             low, high = link.joint.spec.bounds
-            if number not in self._driven and abs(position - before) < HELD:
+            if number not in self._driven and self._is_held(number, position - before, velocity):
                 position, velocity = before, 0.0
                 self.set(number, position)
             elif not low <= position <= high:
@@ -164,6 +171,15 @@ class JointTree:
             self._last[number] = (position, velocity)
         self._was_driven, self._driven = self._driven, set()
         return moved
+
+    def _is_held(self, number: int, moved: float, velocity: float) -> bool:
+        """Return whether friction holds a joint that nobody drives."""
+        if abs(moved) < HELD:
+            return True
+        if abs(velocity) > STUCK:
+            return False
+        torque = float(self._client.getJointState(self.bullet_id, number)[3])
+        return abs(torque) < SPARE * self._links[number].joint.spec.friction
 
     def ignore(self, other: int) -> None:
         """Let nothing of it collide with the base of another body of the engine."""

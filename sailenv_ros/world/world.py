@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.contacts import Contact
@@ -32,6 +33,7 @@ from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClien
 from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.jointed_bodies import JointedBody
+from sailenv_ros.world.lit_lamps import lit_by
 from sailenv_ros.world.mover import Mover, MoverCommand
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
@@ -103,6 +105,7 @@ class World:
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
         self._changed_step = 0
+        self._lit_by: Mapping[int, tuple[str, ...]] = {}
         self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
@@ -210,11 +213,13 @@ class World:
     def snapshot(self) -> WorldSnapshot:
         """Copy the poses; the same object until something changes."""
         if self._snapshot is None:
+            poses = self._bodies.world_from_body()
+            self._light_lamps(poses)
             self._snapshot = WorldSnapshot(
                 sim_time_ns=self.sim_time_ns,
                 step=self._step,
                 contents=self._contents,
-                world_from_body=self._bodies.world_from_body(),
+                world_from_body=poses,
                 histories=self._bodies.histories(),
             )
         return self._snapshot
@@ -490,12 +495,22 @@ class World:
         self._contents = self._make_contents()
         self._snapshot = self._states = None
 
+    def _light_lamps(self, poses: NDArray[np.float64]) -> None:
+        """Find the lights that are in lamps now, some of which may have been moved."""
+        found = lit_by(self._bodies.pieces, poses, self._lights)
+        if found != self._lit_by:
+            self._lit_by = found
+            drawn = tuple(self._drawn(piece) for piece in self._bodies.pieces)
+            self._contents = replace(self._contents, instances=drawn)
+
     def _make_contents(self) -> SceneContents:
+        pieces = self._bodies.pieces
+        self._lit_by = lit_by(pieces, self._bodies.world_from_body(), self._lights)
         return SceneContents(
             scene=self.scene,
             epoch=self.epoch,
             revision=self._next_revision(),
-            instances=tuple(self._drawn(piece) for piece in self._bodies.pieces),
+            instances=tuple(self._drawn(piece) for piece in pieces),
             categories=self.categories,
             lights=self._lights,
             environment=self._environment,
@@ -543,6 +558,7 @@ class World:
             instance=instance,
             model=model,
             scale=placement.scale,
+            lit_by=self._lit_by.get(piece.body_id, ()),
             stands=placement.static or (placement.joint is not None and not placement.behaviours),
         )
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from sailenv_ros.assets import load_categories
 from sailenv_ros.assets.primitives import Primitives
@@ -17,6 +19,7 @@ from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import Environment, SkyMap
 from sailenv_ros.render.backend import RenderBackend
+from sailenv_ros.render.seen_sky import FINER, seen_sky
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
@@ -104,3 +107,52 @@ def test_a_sky_is_turned_counter_clockwise(tmp_path: Path) -> None:
     assert load_sky("spot", files, 90.0) is turned is load_sky("spot", files, -270.0)
     assert load_sky("spot", files, 360.0) is load_sky("spot", files)
     assert turned.horizon == load_sky("spot", files).horizon
+
+
+def _even(luminance: float) -> NDArray[np.float16]:
+    return np.full((64, 128, 3), luminance, np.float16)
+
+
+def _sky(radiance: NDArray[np.float16]) -> SkyMap:
+    return SkyMap(radiance=radiance, zenith=GREY, horizon=GREY, ground=GREY)
+
+
+@pytest.mark.parametrize("exposure", [0.0, 1.0])
+def test_only_what_is_bright_is_blended(exposure: float) -> None:
+    """Below the knee a sky is as it is; broad brightness ends at the shoulder."""
+    for exposed, low, high in (
+        (0.1, 0.1, 0.1),
+        (0.4, 0.3, 0.4),
+        (5.0, 0.6, 0.63),
+        (80.0, 0.6, 0.63),
+    ):
+        seen = seen_sky(_sky(_even(exposed / 2.0**exposure)), exposure).astype(np.float64)
+        assert seen.shape == (64 * FINER, 128 * FINER, 3)
+        assert low * 0.99 <= seen.min() * 2.0**exposure
+        assert seen.max() * 2.0**exposure <= high * 1.01
+    ramp = _even(1.0) * np.geomspace(0.01, 50.0, 128)[None, :, None].astype(np.float16)
+    assert seen_sky(_sky(ramp.astype(np.float16)), exposure).max() * 2.0**exposure < 1.0
+
+
+def test_fine_differences_of_what_is_bright_stay() -> None:
+    """Twigs that take a fifth of a white sky's light stay as dark against it."""
+    radiance = _even(4.0)
+    radiance[:, ::8] = radiance[:, 1::8] = 3.2
+    seen = seen_sky(_sky(radiance), 1.0).astype(np.float64)[32, 32:-32, 1]
+    assert seen.max() / seen.min() > 4.0 / 3.2
+    unchanged = seen_sky(_sky(radiance), None).astype(np.float64)
+    assert unchanged.mean() == pytest.approx(float(radiance.mean(dtype=np.float64)), rel=0.01)
+
+
+def test_a_bright_sky_is_not_white(world: World, renderer: RenderBackend) -> None:
+    """Not even of a hundred times the brightness that is white at this exposure."""
+    snapshot = world.snapshot()
+    environment = Environment(sky=_sky(_even(100.0)), sky_map="glaring", exposure=1.0)
+    contents = replace(snapshot.contents, environment=environment)
+    camera = Camera(
+        intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=60.0),
+        pose=look_at((0, 0, 0), (1.0, 0.0, 0.0)),
+    )
+    shown = renderer.render(replace(snapshot, contents=contents), None, camera, ("rgb",))
+    assert shown.views["rgb"].min() > 150
+    assert shown.views["rgb"].max() < 240

@@ -106,6 +106,7 @@ class Thing:
     pose: Pose = field(default_factory=Pose)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     category_id: int = 1
+    lit_by: tuple[str, ...] = ()
 
 
 SUN = Light(name="sun", type="directional", direction=(0.6, -0.3, -0.75), intensity=2.5)
@@ -127,6 +128,7 @@ def contents_of(
             ),
             model=thing.model,
             scale=thing.scale,
+            lit_by=thing.lit_by,
         )
         for row, thing in enumerate(things)
     )

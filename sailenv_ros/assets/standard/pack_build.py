@@ -53,6 +53,7 @@ Progress = Callable[[str, int, int], None]
 
 _TOOLS = (
     "glb",
+    "gltf_emission",
     "hulls",
     "meshes",
     "model_files",

@@ -31,6 +31,8 @@ from sailenv_ros.assets.standard.catalogues import CatalogueEntry, Catalogues
 from sailenv_ros.assets.standard.dividing import LabelledMesh, divided
 from sailenv_ros.assets.standard.finishes import FINISHES, finish_of, finished
 from sailenv_ros.assets.standard.handmade import HANDMADE
+from sailenv_ros.assets.standard.handmade.devices import SCREEN_BLACK, desktop_picture
+from sailenv_ros.assets.standard.handmade.paintings import landscape_picture
 from sailenv_ros.assets.standard.patterns import PATTERNS
 from sailenv_ros.assets.standard.recipe import MaterialRule, RecipeEntry
 from sailenv_ros.colour import linear_from_srgb
@@ -196,13 +198,32 @@ def _with_finish(part: RawPart, rule: MaterialRule) -> RawPart:
         metallic=rule.metallic,
         pattern=rule.pattern,
     )
+    material = dataclasses.replace(
+        material, emission=rule.emission or material.emission, glow=rule.glow or material.glow
+    )
     mesh = outward(part.mesh)
+    if rule.shows is not None:
+        mesh, material = _showing(mesh, material, rule.shows)
     pattern = _pattern_of(part.material, material, rule.pattern, kind)
     if pattern:
         mesh = box_uvs(mesh, PATTERNS[pattern].tile_m)
     if is_open(mesh):
         material = dataclasses.replace(material, double_sided=True)
     return dataclasses.replace(part, mesh=mesh, material=material)
+
+
+def _showing(mesh: RawMesh, material: Material, what: str) -> tuple[RawMesh, Material]:
+    """Return a screen with a picture across it, upright for who looks at its front."""
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    size = np.maximum(high - low, 1e-9)
+    # Who looks against x has y to the right.
+    places = ((mesh.positions - low) / size)[:, 1:]
+    ratio = float(size[1] / np.hypot(size[0], size[2]))
+    picture = desktop_picture(0, ratio) if what == "desktop" else landscape_picture(5, ratio)
+    shown = dataclasses.replace(
+        material, base_colour=(*SCREEN_BLACK, 1.0), base_colour_texture=picture
+    )
+    return dataclasses.replace(mesh, uvs=places), shown
 
 
 def _pattern_of(before: Material, after: Material, given: str | None, kind: str | None) -> str:

@@ -25,6 +25,8 @@ __all__ = [
 
 Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
+Amount = Annotated[float, Field(ge=0.0, le=100.0)]
+Power = tuple[Amount, Amount, Amount]
 
 
 class _RecipeModel(BaseModel):
@@ -35,13 +37,26 @@ RECIPE_FILES = ("standard_pack.yaml", "standard_pack_rooms.yaml")
 
 
 class MaterialRule(_RecipeModel):
-    """What the recipe says of materials whose name fits a pattern."""
+    """What the recipe says of materials whose name fits a pattern.
+
+    Attributes
+    ----------
+    emission : (3,) tuple of float or None
+        Linear radiance that it emits: fire, screens [W/(m² sr)].
+    glow : (3,) tuple of float or None
+        Linear radiance for each W/sr of the lamp's light: shades and bulbs [1/m²].
+    shows : {'desktop', 'landscape'} or None
+        A picture across the whole of it, seen from the front: that of a screen.
+    """
 
     finish: str | None = None
     colour: Colour | None = None
     roughness: Share | None = None
     metallic: Share | None = None
     pattern: str | None = None
+    emission: Power | None = None
+    glow: Power | None = None
+    shows: Literal["desktop", "landscape"] | None = None
     drop: bool = False
 
 

@@ -8,9 +8,9 @@ are in millimetres; depth is stored in steps of `DEPTH_STEP_MM`.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,9 @@ DEPTH_STEP_MM = 0.2
 """So 16 bits reach 13 m; what is farther is 0, as what is not known."""
 
 UNSPLIT = "train"
+
+Numbers: TypeAlias = Mapping[tuple[str, tuple[float, ...]], int]
+"""The number of each object, by its asset and scale."""
 
 
 class BopExport(DatasetFormat):
@@ -67,8 +70,8 @@ class BopExport(DatasetFormat):
                 continue
             mask_name = f"{sample.stem}_{len(truths):06d}.png"
             seen = frame["instance"] == instance_id
-            _write_mask(scene / "mask" / mask_name, found.masks.mask(instance_id))
-            _write_mask(scene / "mask_visib" / mask_name, seen)
+            write_png(scene / "mask" / mask_name, found.masks.mask(instance_id))
+            write_png(scene / "mask_visib" / mask_name, seen)
             pose = table.camera_from_object[row]
             truths.append(
                 {
@@ -104,42 +107,24 @@ class BopExport(DatasetFormat):
     def finish(self, records: Sequence[Record]) -> None:
         """Write tables of poses, for which all objects must be known, and the models."""
         numbers = self._write_models(records)
-        scenes: dict[tuple[str, int], list[Record]] = {}
+        # All records may be more than fits into memory: a scene is written with its last one.
+        left = Counter((record.split, record.value["scene"]) for record in records)
+        splits = dict.fromkeys(split for split, _ in left)
+        begun: dict[tuple[str, int], list[Record]] = {}
         for record in records:
-            scenes.setdefault((record.split, record.value["scene"]), []).append(record)
-        targets: dict[str, list[dict[str, int]]] = {}
-        for (split, scene), own in scenes.items():
-            folder = self._scene(split, scene)
-            cameras, truths, infos = {}, {}, {}
-            for record in own:
-                image, value = str(record.number), record.value
-                cameras[image] = value["camera"]
-                truths[image] = [
-                    {
-                        "cam_R_m2c": truth["cam_R_m2c"],
-                        "cam_t_m2c": truth["cam_t_m2c"],
-                        "obj_id": numbers[_key(truth)],
-                        "instance_id": truth["instance_id"],
-                        "parent_id": truth["parent_id"],
-                    }
-                    for truth in value["truths"]
-                ]
-                infos[image] = value["infos"]
-                counts = Counter(truth["obj_id"] for truth in truths[image])
-                targets.setdefault(split or UNSPLIT, []).extend(
-                    {
-                        "im_id": record.number,
-                        "inst_count": count,
-                        "obj_id": obj_id,
-                        "scene_id": scene,
-                    }
-                    for obj_id, count in sorted(counts.items())
-                )
-            write_json(folder / "scene_camera.json", cameras)
-            write_json(folder / "scene_gt.json", truths)
-            write_json(folder / "scene_gt_info.json", infos)
-        for split, listed in targets.items():
-            write_json(self.folder / f"{split}_targets_bop19.json", listed)
+            key = record.split, record.value["scene"]
+            begun.setdefault(key, []).append(record)
+            left[key] -= 1
+            if not left[key]:
+                self._write_scene(*key, begun.pop(key), numbers)
+        for split in splits:
+            listed = (
+                target
+                for record in records
+                if record.split == split
+                for target in _targets(record, numbers)
+            )
+            write_json(self.folder / f"{split or UNSPLIT}_targets_bop19.json", listed)
         if records:
             first = records[0].value
             k = first["camera"]["cam_K"]
@@ -149,7 +134,30 @@ class BopExport(DatasetFormat):
             }  # fmt: skip
             write_json(self.folder / "camera.json", camera)
 
-    def _write_models(self, records: Sequence[Record]) -> dict[tuple[str, tuple[float, ...]], int]:
+    def _write_scene(
+        self, split: str, scene: int, records: Sequence[Record], numbers: Numbers
+    ) -> None:
+        folder = self._scene(split, scene)
+        cameras, truths, infos = {}, {}, {}
+        for record in records:
+            image, value = str(record.number), record.value
+            cameras[image] = value["camera"]
+            truths[image] = [
+                {
+                    "cam_R_m2c": truth["cam_R_m2c"],
+                    "cam_t_m2c": truth["cam_t_m2c"],
+                    "obj_id": numbers[_key(truth)],
+                    "instance_id": truth["instance_id"],
+                    "parent_id": truth["parent_id"],
+                }
+                for truth in value["truths"]
+            ]
+            infos[image] = value["infos"]
+        write_json(folder / "scene_camera.json", cameras)
+        write_json(folder / "scene_gt.json", truths)
+        write_json(folder / "scene_gt_info.json", infos)
+
+    def _write_models(self, records: Sequence[Record]) -> Numbers:
         """Write a model for each asset and scale; return their numbers."""
         keys = sorted({_key(truth) for record in records for truth in record.value["truths"]})
         infos: dict[str, dict[str, Any]] = {}
@@ -187,15 +195,23 @@ def _key(truth: Mapping[str, Any]) -> tuple[str, tuple[float, ...]]:
     return truth["asset"], tuple(round(float(side), 9) for side in truth["scale"])
 
 
+def _targets(record: Record, numbers: Numbers) -> Iterator[dict[str, int]]:
+    """Yield how often each object is in a picture."""
+    counts = Counter(numbers[_key(truth)] for truth in record.value["truths"])
+    for obj_id, count in sorted(counts.items()):
+        yield {
+            "im_id": record.number,
+            "inst_count": count,
+            "obj_id": obj_id,
+            "scene_id": record.value["scene"],
+        }
+
+
 def _depth_steps(depth_m: NDArray[np.float32]) -> NDArray[np.uint16]:
     with np.errstate(invalid="ignore"):
         steps = np.rint(depth_m.astype(np.float64) * (MM_PER_M / DEPTH_STEP_MM))
         fits = (steps >= 1) & (steps <= 65535)
     return np.where(fits, steps, 0.0).astype(np.uint16)
-
-
-def _write_mask(path: Any, mask: NDArray[np.bool_]) -> None:
-    write_png(path, mask.astype(np.uint8) * np.uint8(255))
 
 
 def _truth_info(

@@ -8,7 +8,8 @@ and area, and `occlusion` (the share of the object that is hidden) are added.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -78,8 +79,15 @@ class CocoExport(DatasetFormat):
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write the annotations of each split; ids of annotations count on over all of them."""
-        count = 0
-        categories = merged_categories(record.value["categories"] for record in records)
+        splits: set[str] = set()
+
+        def tables() -> Iterator[Mapping[str, str]]:
+            for record in records:
+                splits.add(record.split)
+                yield record.value["categories"]
+
+        categories = merged_categories(tables())
+        ids = itertools.count(1)
         others = {scheme: names_in(scheme) for scheme in NAMING_SCHEMES}
         listed = [
             {
@@ -90,20 +98,23 @@ class CocoExport(DatasetFormat):
             }
             for id_, name in categories.items()
         ]
-        for split in sorted({record.split for record in records}):
-            own = [record.value for record in records if record.split == split]
-            annotations = []
-            for value in own:
-                for annotation in value["annotations"]:
-                    count += 1
-                    annotations.append({"id": count, **annotation})
+        # All records may be more than fits into memory: each list is read and written as it goes.
+        for split in sorted(splits):
             table = {
                 "info": {"description": "recorded by sailenv_ros"},
-                "images": [value["image"] for value in own],
-                "annotations": annotations,
+                "images": (value["image"] for value in _of_split(records, split)),
+                "annotations": (
+                    {"id": next(ids), **annotation}
+                    for value in _of_split(records, split)
+                    for annotation in value["annotations"]
+                ),
                 "categories": listed,
             }
             write_json(self.folder / split / "annotations.json", table)
+
+
+def _of_split(records: Iterable[Record], split: str) -> Iterator[Any]:
+    return (record.value for record in records if record.split == split)
 
 
 def _segmentation(

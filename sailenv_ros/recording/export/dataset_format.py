@@ -153,7 +153,8 @@ class DatasetFormat(ABC):
         Parameters
         ----------
         records : sequence of Record
-            One for each frame, in the order of their numbers.
+            One for each frame, in the order of their numbers. They may be read anew each time they
+            are asked for, so that large data sets need not fit into memory.
         """
 
     def close(self) -> None:  # noqa: B027 - often nothing is open

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.frame import Frame
 from sailenv_ros.motion import Motion, motion
@@ -122,12 +121,8 @@ class SintelExport(DatasetFormat):
                 "invalid": ~moved.valid,
             }
             for mask, values in masks.items():
-                write_png(self.folder / f"{mask}{end}" / scene / f"{stem}.png", _mask(values))
+                write_png(self.folder / f"{mask}{end}" / scene / f"{stem}.png", values)
         return Made(written={"pictures": 1, "flow fields": len(motions)}, left_out=left_out)
-
-
-def _mask(values: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    return values.astype(np.uint8) * np.uint8(255)
 
 
 def _have_one_past(frame: Frame, other: Frame) -> bool:

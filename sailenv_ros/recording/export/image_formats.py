@@ -70,8 +70,6 @@ def _png(view: str, values: NDArray[Any]) -> NDArray[Any]:
     spec = view_spec(view)
     if spec.png_per_unit is not None:
         return scaled_depth(values, spec.png_per_unit)
-    if spec.dtype == np.bool_:
-        return values.astype(np.uint8) * np.uint8(255)
     if np.issubdtype(spec.dtype, np.floating):
         return view_picture(view, values, table=CategoryTable([]))
     return values

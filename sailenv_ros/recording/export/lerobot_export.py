@@ -28,13 +28,12 @@ from sailenv_ros.recording.export.data_files import (
     write_json,
 )
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.system.files import make_folder, written_file
+from sailenv_ros.recording.export.row_tables import RowTable
 
 __all__ = ["LeRobotExport"]
 
 VERSION = "v3.0"
 FILES_PER_CHUNK = 1000
-ROWS_PER_GROUP = 32
 TASK = "look around"
 IMAGE, DEPTH, STATE, ACTION = (
     "observation.images.camera", "observation.depth", "observation.state", "action"
@@ -61,9 +60,7 @@ class LeRobotExport(DatasetFormat):
         self._arrow: Any = need("pyarrow", "the format lerobot")
         self._parquet: Any = need("pyarrow.parquet", "the format lerobot")
         self._open = ExitStack()
-        self._writer: Any = None
-        self._schema: Any = None
-        self._rows: list[dict[str, Any]] = []
+        self._table: RowTable | None = None
         self._epochs: list[int] = []
 
     def add(self, sample: Sample) -> Made:
@@ -88,26 +85,23 @@ class LeRobotExport(DatasetFormat):
         if "depth" in frame.views:
             row[DEPTH] = list(frame["depth"])
         self._count(row)
-        if self._writer is None:
-            self._begin(frame)
-        self._rows.append(row)
-        if len(self._rows) == ROWS_PER_GROUP:
-            self._flush()
+        if self._table is None:
+            self._table = self._begun(frame)
+        self._table.append(row)
         return Made(record=self._record(sample, episode, now, then), written={"frames": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the table, and write what is known of all episodes."""
-        if self._writer is not None:
-            self._flush()
-            self._writer.close()
-            self._writer = None
+        if self._table is not None:
+            self._table.finish()
+            self._table = None
         self._open.close()
         if records:
             self._write_meta(records)
 
     def close(self) -> None:
         """Remove what is not complete."""
-        self._writer = None
+        self._table = None
         discard_drafts(self._open)
 
     # -- the tables of frames ----------------------------------------------------------------
@@ -128,7 +122,7 @@ class LeRobotExport(DatasetFormat):
         row["frame_index"] = self._frame_index
         row["timestamp"] = (row["timestamp"] - self._first_ns) * 1e-9
 
-    def _begin(self, frame: Frame) -> None:
+    def _begun(self, frame: Frame) -> RowTable:
         pa = self._arrow
         columns = {
             IMAGE: pa.struct({"bytes": pa.binary(), "path": pa.string()}),
@@ -139,22 +133,8 @@ class LeRobotExport(DatasetFormat):
         }
         if "depth" in frame.views:
             columns[DEPTH] = pa.list_(pa.list_(pa.float32()))
-        self._schema = pa.schema(list(columns.items()))
         path = self.folder / "data" / f"{_file_of(self.part)}.parquet"
-        try:
-            make_folder(path.parent)
-            file = self._open.enter_context(written_file(path, durable=False))
-        except OSError as problem:
-            raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
-        self._writer = self._parquet.ParquetWriter(file, self._schema, compression="zstd")
-
-    def _flush(self) -> None:
-        rows, self._rows = self._rows, []
-        if rows:
-            try:
-                self._writer.write_table(self._arrow.Table.from_pylist(rows, schema=self._schema))
-            except OSError as problem:
-                raise RecordingError(f"the Parquet file cannot be written: {problem}") from None
+        return RowTable(self._open, path, pa.schema(list(columns.items())))
 
     # -- what is known of all ----------------------------------------------------------------
 

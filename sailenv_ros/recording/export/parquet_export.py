@@ -15,18 +15,15 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RecordingError
 from sailenv_ros.extras import need
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
 from sailenv_ros.recording.export.data_files import discard_drafts, png_bytes
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.recording.export.image_formats import frame_record
 from sailenv_ros.recording.export.object_records import object_record
-from sailenv_ros.system.files import make_folder, written_file
+from sailenv_ros.recording.export.row_tables import RowTable
 
 __all__ = ["ParquetExport"]
-
-ROWS_PER_GROUP = 32
 
 
 class ParquetExport(DatasetFormat):
@@ -38,66 +35,43 @@ class ParquetExport(DatasetFormat):
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
         self._arrow: Any = need("pyarrow", "the format parquet")
-        self._parquet: Any = need("pyarrow.parquet", "the format parquet")
         self._open = ExitStack()
-        self._writers: dict[str, Any] = {}
-        self._rows: dict[str, list[dict[str, Any]]] = {}
-        self._schemas: dict[str, Any] = {}
+        self._tables: dict[str, RowTable] = {}
 
     def add(self, sample: Sample) -> Made:
         """Append a frame."""
-        split = sample.split or "train"
         frame = sample.frame
-        row = {"sequence": sample.sequence, **frame_record(sample.number, frame)}
-        row["frame"] = row.pop("sequence")
-        row["sequence"] = sample.sequence
-        row["K"] = np.ravel(row["K"]).tolist()
-        row["world_from_camera"] = np.ravel(row["world_from_camera"]).tolist()
+        told = frame_record(sample.number, frame)
         found = annotated_objects(sample, "Parquet")
-        row["objects"] = [object_record(found.table, index) for index in range(len(found.table))]
-        for view, values in frame.views.items():
-            row[view] = _cell(values)
-        if split not in self._writers:
-            self._begin(split, frame.views)
-        self._rows[split].append(row)
-        if len(self._rows[split]) == ROWS_PER_GROUP:
-            self._flush(split)
+        row = {
+            **told,
+            "frame": told["sequence"],
+            "sequence": sample.sequence,
+            "K": np.ravel(told["K"]).tolist(),
+            "world_from_camera": np.ravel(told["world_from_camera"]).tolist(),
+            "objects": [object_record(found.table, index) for index in range(len(found.table))],
+            **{view: _cell(values) for view, values in frame.views.items()},
+        }
+        self._table(sample.split or "train", frame.views).append(row)
         return Made(written={"rows": 1}, left_out=found.left_out)
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write what is left and close the files."""
-        for split, writer in self._writers.items():
-            self._flush(split)
-            writer.close()
+        for table in self._tables.values():
+            table.finish()
+        self._tables.clear()
         self._open.close()
-        self._writers.clear()
 
     def close(self) -> None:
         """Remove what is not complete."""
-        self._writers.clear()
+        self._tables.clear()
         discard_drafts(self._open)
 
-    def _begin(self, split: str, views: Mapping[str, NDArray[Any]]) -> None:
-        path = self.folder / "data" / f"{split}-{self.part:05d}.parquet"
-        try:
-            make_folder(path.parent)
-            file = self._open.enter_context(written_file(path, durable=False))
-        except OSError as problem:
-            raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
-        self._schemas[split] = _schema(self._arrow, views)
-        self._rows[split] = []
-        self._writers[split] = self._parquet.ParquetWriter(
-            file, self._schemas[split], compression="zstd"
-        )
-
-    def _flush(self, split: str) -> None:
-        rows, self._rows[split] = self._rows[split], []
-        if rows:
-            table = self._arrow.Table.from_pylist(rows, schema=self._schemas[split])
-            try:
-                self._writers[split].write_table(table)
-            except OSError as problem:
-                raise RecordingError(f"the Parquet file cannot be written: {problem}") from None
+    def _table(self, split: str, views: Mapping[str, NDArray[Any]]) -> RowTable:
+        if split not in self._tables:
+            path = self.folder / "data" / f"{split}-{self.part:05d}.parquet"
+            self._tables[split] = RowTable(self._open, path, _schema(self._arrow, views))
+        return self._tables[split]
 
 
 def _is_image(values: NDArray[Any]) -> bool:
@@ -105,8 +79,6 @@ def _is_image(values: NDArray[Any]) -> bool:
 
 
 def _cell(values: NDArray[Any]) -> Any:
-    if values.dtype == np.bool_:
-        values = values.astype(np.uint8) * np.uint8(255)
     if _is_image(values):
         return {"bytes": png_bytes(values), "path": None}
     return [row if row.ndim == 1 else list(row) for row in values]

@@ -10,23 +10,21 @@ from __future__ import annotations
 
 import io
 import json
-import tarfile
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, BinaryIO, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
-from sailenv_ros.recording.export.data_files import discard_drafts, png_bytes
+from sailenv_ros.recording.export.data_files import discard_drafts, open_draft, png_bytes
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.recording.export.image_formats import frame_record
 from sailenv_ros.recording.export.object_records import object_record
-from sailenv_ros.system.files import make_folder, written_file
+from sailenv_ros.recording.export.tar_files import Content, TarWriter
 
 __all__ = ["WebDatasetExport"]
 
@@ -40,7 +38,7 @@ class WebDatasetExport(DatasetFormat):
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
         self._open = ExitStack()
-        self._tars: dict[str, tarfile.TarFile] = {}
+        self._tars: dict[str, TarWriter] = {}
 
     def add(self, sample: Sample) -> Made:
         """Append a frame."""
@@ -48,8 +46,8 @@ class WebDatasetExport(DatasetFormat):
         frame = sample.frame
         name = f"{sample.number:08d}"
         for view, values in frame.views.items():
-            ending, data = encoded(values)
-            _append(tar, f"{name}.{view}.{ending}", data)
+            ending, contents = encoded(values)
+            tar.append(f"{name}.{view}.{ending}", contents)
         record: dict[str, Any] = frame_record(sample.number, frame)
         lens, pose = frame.camera.intrinsics, frame.camera.pose
         record |= {
@@ -67,25 +65,20 @@ class WebDatasetExport(DatasetFormat):
             found = annotated_objects(sample, "WebDataset")
             record["objects"] = [object_record(found.table, row) for row in range(len(found.table))]
             left_out = dict(found.left_out)
-        _append(tar, f"{name}.json", json.dumps(record).encode())
+        tar.append(f"{name}.json", [json.dumps(record).encode()])
         return Made(written={"samples": 1}, left_out=left_out)
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the files."""
-        self._open.close()
+        for tar in self._tars.values():
+            tar.finish()
         self._tars.clear()
+        self._open.close()
 
-    def _tar(self, split: str) -> tarfile.TarFile:
+    def _tar(self, split: str) -> TarWriter:
         if split not in self._tars:
             path = self.folder / f"{split}-{self.part:05d}.tar"
-            try:
-                make_folder(self.folder)
-                file: BinaryIO = self._open.enter_context(written_file(path, durable=False))
-            except OSError as problem:
-                raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
-            self._tars[split] = self._open.enter_context(
-                tarfile.TarFile(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT)
-            )
+            self._tars[split] = TarWriter(open_draft(self._open, path), path)
         return self._tars[split]
 
     def close(self) -> None:
@@ -94,22 +87,11 @@ class WebDatasetExport(DatasetFormat):
         discard_drafts(self._open)
 
 
-def encoded(values: NDArray[Any]) -> tuple[str, bytes]:
+def encoded(values: NDArray[Any]) -> tuple[str, Sequence[Content]]:
     """Return the ending and the content of the member that keeps a view's values exactly."""
-    if values.dtype == np.bool_:
-        return "png", png_bytes(values.astype(np.uint8) * np.uint8(255))
-    if values.dtype in (np.uint8, np.uint16):
-        return "png", png_bytes(values)
-    data = io.BytesIO()
-    np.save(data, np.ascontiguousarray(values), allow_pickle=False)
-    return "npy", data.getvalue()
-
-
-def _append(tar: tarfile.TarFile, name: str, data: bytes) -> None:
-    # Nothing of this machine or moment: the same frames are the same bytes.
-    member = tarfile.TarInfo(name)
-    member.size, member.mtime, member.mode = len(data), 0, 0o644
-    try:
-        tar.addfile(member, io.BytesIO(data))
-    except OSError as problem:
-        raise RecordingError(f"the tar file cannot be written: {problem.strerror}") from None
+    if values.dtype in (np.bool_, np.uint8, np.uint16):
+        return "png", [png_bytes(values)]
+    values = np.ascontiguousarray(values)
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(header, np.lib.format.header_data_from_array_1_0(values))
+    return "npy", [header.getvalue(), values]

@@ -17,6 +17,7 @@ from sailenv_ros.assets.material_stock import MaterialStock
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES, Pictures, checked_picture
 from sailenv_ros.errors import AssetError, InvalidRequest, InvalidState, UnknownName
+from sailenv_ros.model import Material
 from sailenv_ros.scene.spec_materials import LookSpec, MaterialSpec
 
 
@@ -178,3 +179,12 @@ class TestFinishing:
         model = AssetLibrary().get("cube").model
         with pytest.raises(UnknownName):
             finished(model, [MaterialSpec(part="lid")], stock(), (1.0, 1.0, 1.0))
+
+
+def test_emission_takes_the_place_of_a_lamps_glow() -> None:
+    """What is given a light of its own no longer follows the lamp's; None leaves both."""
+    shade = Material(name="shade", glow=(5.0, 5.0, 4.0))
+    given = stock().finish(LookSpec(emission=(0.3, 0.2, 0.1)), shade).material
+    assert (given.emission, given.glow) == ((0.3, 0.2, 0.1), (0.0, 0.0, 0.0))
+    kept = stock().finish(LookSpec(roughness=0.2), shade).material
+    assert (kept.emission, kept.glow) == ((0.0, 0.0, 0.0), (5.0, 5.0, 4.0))

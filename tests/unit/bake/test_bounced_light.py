@@ -90,6 +90,36 @@ def test_a_furnace_glows_alike_everywhere(albedo: float) -> None:
     assert np.abs(probes[..., 1:, :]).max() < 0.05 * expected.max()
 
 
+def test_what_emits_does_so_in_the_pattern_of_its_picture() -> None:
+    """Walls of which a quarter of the picture is white light a black box with a quarter."""
+    picture = np.zeros((64, 64, 4), np.uint8)
+    picture[..., 3] = 255
+    picture[:32, 32:, :3] = 255
+    look = {"emission": (2.0, 1.0, 0.0), "base_colour_texture": picture, "roughness": 1.0}
+    snapshot = still([Thing(hollow((2.0, 2.0, 2.0), **look))], lights=())
+    baked = bake(snapshot, settings=COARSE)
+    _, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=30)
+    # A quarter of the surface is white, and gives back what it gets.
+    share = 0.25 / (1.0 - 0.25 * (GLOSS[10] + BELOW))
+    np.testing.assert_allclose(bounced.mean(axis=0), share * np.array([2, 1, 0]), rtol=0.06)
+
+
+def test_a_lamp_that_glows_lights_with_its_own_light_alone() -> None:
+    """In a box that is a lamp's shade, the layer of its light has the glow, and no other has."""
+    shade = hollow((2.0, 3.0, 2.5), **sending(grey(0.0)), glow=(3.0, 2.0, 1.0))
+    lights = tuple(
+        Light(name=name, type="point", position_m=(0.0, 0.0, height))
+        for name, height in (("its own", 0.3), ("another", -0.3))
+    )
+    for lit_by, expected in (((), (0, 0, 0)), (("its own",), (3, 2, 1))):
+        snapshot = still([Thing(shade, lit_by=lit_by)], lights=lights)
+        baked = bake(snapshot, settings=COARSE)
+        _, own = read(baked, 1, snapshot, baked.layers[1].bounced)
+        np.testing.assert_allclose(own.mean(axis=0), expected, rtol=0.02, atol=1e-6)
+        for other in (0, 2):
+            assert not baked.layers[other].bounced.any()
+
+
 def test_no_energy_is_won_or_lost() -> None:
     """In a closed box the walls swallow what the lamp sends out: 4 pi I."""
     albedo, size = 0.6, np.array([2.0, 3.0, 2.5])

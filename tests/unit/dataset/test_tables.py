@@ -11,6 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from sailenv_ros.dataset import RecipeError, engine_of, load_job, make_dataset, open_dataset
+from sailenv_ros.dataset.manifest import done_shards
+from sailenv_ros.dataset.merging import ShardRecords
+from sailenv_ros.dataset.stores import FolderStore
 from tests.unit.dataset.conftest import SMALL, written_recipe
 
 CLIPS, FRAMES = {"train": 3, "val": 1}, 3
@@ -94,3 +97,17 @@ def test_lerobot_takes_one_camera(tmp_path: Path) -> None:
     """Its episodes follow one another; two cameras are refused before anything is made."""
     with pytest.raises(RecipeError, match="lerobot takes one camera, got 2"):
         load_job(written_recipe(tmp_path, formats=["lerobot"]))
+
+
+def test_records_are_read_shard_by_shard(folder: Path) -> None:
+    """Each is found by its place, and all come in order as often as they are asked for."""
+    store = FolderStore(folder)
+    shards = done_shards(store)
+    records = ShardRecords(store, shards, "lerobot")
+    assert len(shards) > 1
+    assert [one.number for one in records] == [*range(sum(CLIPS.values()) * FRAMES)]
+    assert list(records) == [records[place] for place in range(len(records))] == records[:]
+    assert records[-1] == list(records)[-1]
+    assert all(one.value["sums"] for one in records)
+    with pytest.raises(IndexError, match="none of number 12"):
+        records[12]

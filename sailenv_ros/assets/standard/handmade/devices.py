@@ -12,7 +12,23 @@ from sailenv_ros.assets.solids import cylinder_mesh, sphere_mesh
 from sailenv_ros.assets.standard.handmade.shapes import Vector3, box, part, raw_mesh, rod
 from sailenv_ros.model import Texture
 
-__all__ = ["computer", "keyboard", "monitor", "mouse", "stove", "whiteboard"]
+__all__ = [
+    "SCREEN_BLACK",
+    "SCREEN_WHITE",
+    "computer",
+    "desktop_picture",
+    "keyboard",
+    "monitor",
+    "mouse",
+    "stove",
+    "whiteboard",
+]
+
+SCREEN_BLACK = (0.02, 0.02, 0.022)
+"""What the white of its picture gives back of other light."""
+
+SCREEN_WHITE = (0.45, 0.47, 0.5)
+"""Radiance of the white of a screen that is on: about that of a white wall in daylight."""
 
 _BLACK = {"base_colour": (0.012, 0.012, 0.013, 1.0)}
 
@@ -60,15 +76,16 @@ def monitor(wide: float, tall: float, number: int) -> list[RawPart]:
     low, deep = 0.10, 0.024
     dark = {"base_colour": (0.02, 0.02, 0.022, 1.0), "roughness": 0.45}
     shown = _face(wide - 0.02, tall - 0.026, (deep / 2 + 0.0012, 0.0, low + tall / 2 + 0.004))
-    picture = _desktop(number, wide / tall)
+    picture = desktop_picture(number, wide / tall)
     return [
         part("case plastic", box((deep, wide, tall), (0, 0, low + tall / 2)), **dark),
         part(
             "display",
             shown,
-            base_colour=(1, 1, 1, 1),
+            base_colour=(*SCREEN_BLACK, 1.0),
             base_colour_texture=picture,
             roughness=0.25,
+            emission=SCREEN_WHITE,
         ),
         part("back plastic", box((0.03, wide / 2, tall / 2), (-0.026, 0, low + tall / 2)), **dark),
         part("stem brushed", box((0.02, 0.06, tall / 2 + low), (-0.05, 0, (tall / 2 + low) / 2))),
@@ -230,7 +247,7 @@ def _texture(picture: NDArray[np.uint8]) -> Texture:
     return pixels
 
 
-def _desktop(number: int, ratio: float) -> Texture:
+def desktop_picture(number: int, ratio: float) -> Texture:
     """Return what a screen shows: windows with lines of text, a chart."""
     generator = np.random.default_rng(700 + number)
     tall = 360

@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.standard.handmade.devices import SCREEN_BLACK, SCREEN_WHITE
 from sailenv_ros.assets.standard.handmade.forms import (
     circle,
     curve,
@@ -19,7 +20,7 @@ from sailenv_ros.assets.standard.handmade.forms import (
     tube,
 )
 from sailenv_ros.assets.standard.handmade.prints import Sheet
-from sailenv_ros.assets.standard.handmade.shapes import box, painted_part, printed_part
+from sailenv_ros.assets.standard.handmade.shapes import box, painted_part, part
 
 __all__ = ["cable", "game_controller", "headphones", "power_strip", "speaker", "tablet"]
 
@@ -192,6 +193,13 @@ def tablet() -> list[RawPart]:
                 "#08080a",
                 roughness=0.08,
             ),
-            printed_part("display", panel(0.154, 0.230, 0.0073), screen.texture(), roughness=0.08),
+            part(
+                "display",
+                panel(0.154, 0.230, 0.0073),
+                base_colour_texture=screen.texture(),
+                base_colour=(*SCREEN_BLACK, 1.0),
+                roughness=0.08,
+                emission=SCREEN_WHITE,
+            ),
         ]
     )

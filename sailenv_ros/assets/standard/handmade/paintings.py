@@ -13,7 +13,7 @@ from sailenv_ros.assets.model_files import RawPart
 from sailenv_ros.assets.standard.handmade.shapes import Vector3, box, part
 from sailenv_ros.model import Texture
 
-__all__ = ["painting"]
+__all__ = ["landscape_picture", "painting"]
 
 Field = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def _canvas_noise(
     return np.asarray(cv2.resize(coarse, shape[::-1], interpolation=cv2.INTER_CUBIC))
 
 
-def _landscape(number: int, aspect: float) -> Texture:
+def landscape_picture(number: int, aspect: float) -> Texture:
     """Hills behind hills under an evening sky."""
     generator = np.random.default_rng(number)
     rows, columns = 384, int(384 * aspect)
@@ -139,4 +139,4 @@ def _flowers(number: int, aspect: float) -> Texture:
     return _texture(picture.astype(np.float64))
 
 
-ARTS: tuple[Callable[[int, float], Texture], ...] = (_landscape, _blocks, _washes, _flowers)
+ARTS: tuple[Callable[[int, float], Texture], ...] = (landscape_picture, _blocks, _washes, _flowers)
