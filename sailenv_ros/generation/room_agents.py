@@ -26,8 +26,8 @@ from sailenv_ros.world.world import World
 
 __all__ = ["StandingWorld", "agent_entries", "best_first"]
 
-WALKER = "eye"
-"""Follows the mover."""
+WALKER = "walker"
+"""Follows the mover. A name that programs seldom have for agents of their own."""
 
 VIEWS = "view"
 FOV_DEG = 62.0

@@ -149,7 +149,7 @@ def test_its_agents_and_its_way_begin_with_a_view_of_the_room(
     scene: GeneratedScene, world: World
 ) -> None:
     specs = {entry.name: entry.to_agent_spec() for entry in scene.spec.agents}
-    assert specs["eye"].following
+    assert specs["walker"].following
     assert "view" in specs
     mover = scene.spec.mover
     assert mover is not None
