@@ -1,27 +1,106 @@
 """Generates rooms by many seeds and checks each file anew: how many have a fault, the times.
 
-    python -m benchmarks.generated_rooms --seeds 0 1000
+    python -m benchmarks.generated_rooms --seeds 0 1000 --results rooms.jsonl --workers 2
 
 A fault is a room that cannot be made, a file that is read as another scene, or one in which
 something overlaps by more than 2 mm, is in the camera's way, or moves by more than 5 mm in two
-seconds of physics. The kind is the one that the seed stands for, unless one is named.
+seconds of physics. The kind is the one that the seed stands for, unless one is named. With
+`--results` each room becomes a line of a file, and rooms that are in it are not made again as long
+as rules, furniture and generator are the same, but for those with a fault.
 """
 
 from __future__ import annotations
 
 import argparse
 import itertools
+import json
+import multiprocessing
 import sys
 import tempfile
 import time
-from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from statistics import median
+from typing import Any
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.generation import GeneratedScene, Generator, drawn_kind
+from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
+
+Row = dict[str, Any]
+"""One room: kind, seed, wall_s, cpu_s, objects, attempts, taken_out, checked, faults, state."""
+
+
+class Judge:
+    """Generates rooms and checks them; keeps what it has loaded.
+
+    Parameters
+    ----------
+    kind : str or None
+        Of all rooms; None takes the seeds' own.
+    every : int
+        The files of every so many seeds are checked anew.
+    """
+
+    def __init__(self, kind: str | None, every: int) -> None:
+        self._kind, self._every = kind, every
+        self._generator, self._library = Generator(), SceneLibrary()
+        self._state = generation_state()
+
+    def row(self, seed: int) -> Row:
+        """Make one room and return what was found."""
+        kind = self._kind or drawn_kind(seed, self._generator.rules)
+        row: Row = {"kind": kind, "seed": seed, "state": self._state, "checked": False}
+        wall, cpu = time.perf_counter(), time.process_time()
+        try:
+            made = self._generator.generate(kind, seed)
+        except SailenvError as problem:
+            return {**row, "faults": [str(problem)]}
+        row["wall_s"] = round(time.perf_counter() - wall, 3)
+        row["cpu_s"] = round(time.process_time() - cpu, 3)
+        row["objects"], row["attempts"] = len(made.spec.objects), made.attempts
+        row["taken_out"] = [fault.why for fault in made.taken_out]
+        row["checked"] = seed % self._every == 0
+        try:
+            row["faults"] = list(self._faults(made)) if row["checked"] else []
+        except SailenvError as problem:
+            row["faults"] = [str(problem)]
+        return row
+
+    def _faults(self, made: GeneratedScene) -> Iterator[str]:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / f"{made.kind}_{made.seed}.yaml"
+            file.write_text(made.text, encoding="utf-8")
+            if self._library.load(file) != made.spec:
+                yield "the file is read as another scene"
+            revisions = itertools.count(1).__next__
+            world = self._library.build(file, seed=0, epoch=1, next_revision=revisions)
+        try:
+            for overlap in overlaps(world):
+                depth = 1000.0 * overlap.depth_m
+                yield f"{overlap.first!r} and {overlap.second!r} overlap by {depth:.1f} mm"
+            for way in obstructions(world):
+                yield f"{way.name!r} is in the camera's way"
+            for shift in shifts(world, distance_m=0.005):
+                yield f"{shift.name!r} moves by {1000.0 * shift.distance_m:.1f} mm"
+        finally:
+            world.close()
+
+
+_judge: Judge | None = None
+"""Of a worker process."""
+
+
+def _begin(kind: str | None, every: int) -> None:
+    global _judge
+    _judge = Judge(kind, every)
+
+
+def _row(seed: int) -> Row:
+    assert _judge is not None
+    return _judge.row(seed)
 
 
 def main() -> int:
@@ -30,57 +109,68 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, nargs=2, default=(0, 1000), metavar=("FIRST", "END"))
     parser.add_argument("--kind", help="of all rooms; the seeds' own if left out")
     parser.add_argument("--every", type=int, default=1, help="check the files of every so many")
+    parser.add_argument("--results", type=Path, help="file of lines of JSON, to go on with")
+    parser.add_argument("--workers", type=int, default=1)
     args = parser.parse_args()
-    generator, library = Generator(), SceneLibrary()
-    times: dict[str, list[float]] = defaultdict(list)
-    attempts: dict[str, list[int]] = defaultdict(list)
-    objects: dict[str, list[int]] = defaultdict(list)
-    faulty = 0
-    with tempfile.TemporaryDirectory() as folder:
-        for seed in range(*args.seeds):
-            kind = args.kind or drawn_kind(seed, generator.rules)
-            start = time.perf_counter()
-            try:
-                made = generator.generate(kind, seed)
-                times[kind].append(time.perf_counter() - start)
-                attempts[kind].append(made.attempts)
-                objects[kind].append(len(made.spec.objects))
-                check = seed % args.every == 0
-                faults = list(_faults(made, library, Path(folder))) if check else []
-            except SailenvError as problem:
-                faults = [str(problem)]
-            for fault in faults:
-                print(f"{kind} {seed}: {fault}", flush=True)
-            faulty += bool(faults)
-            if sum(map(len, times.values())) % 10 == 0:
-                print(f"{seed + 1 - args.seeds[0]} rooms, {faulty} with a fault", file=sys.stderr)
-    print(f"{sum(map(len, times.values()))} rooms, {faulty} with a fault")
-    print(f"{'kind':<12} rooms  mean [s]  slowest [s]  objects  drawn")
-    for kind, values in sorted(times.items()):
-        print(
-            f"{kind:<12} {len(values):5d} {sum(values) / len(values):9.1f} {max(values):12.1f} "
-            f"{sum(objects[kind]) / len(values):8.0f} {sum(attempts[kind]) / len(values):6.2f}"
-        )
+    known = _known(args.results, args.kind)
+    wanted = range(*args.seeds)
+    rows = [known[seed] for seed in wanted if seed in known]
+    waiting = [seed for seed in wanted if seed not in known]
+    with multiprocessing.get_context("spawn").Pool(
+        args.workers, _begin, (args.kind, args.every)
+    ) as pool:
+        for row in pool.imap_unordered(_row, waiting):
+            rows.append(row)
+            _keep(args.results, row)
+            for fault in row["faults"]:
+                print(f"{row['kind']} {row['seed']}: {fault}", flush=True)
+            if len(rows) % 10 == 0:
+                faulty = sum(bool(each["faults"]) for each in rows)
+                print(f"{len(rows)} of {len(wanted)} rooms, {faulty} with a fault", file=sys.stderr)
+    return _report(rows)
+
+
+def _known(results: Path | None, kind: str | None) -> dict[int, Row]:
+    """Return the rooms of a file that are as they would be made now, and have no fault."""
+    if results is None or not results.is_file():
+        return {}
+    state, wanted = generation_state(), kind
+    found = map(json.loads, results.read_text(encoding="utf-8").splitlines())
+    return {
+        row["seed"]: row
+        for row in found
+        if row["state"] == state and not row["faults"] and wanted in (None, row["kind"])
+    }
+
+
+def _keep(results: Path | None, row: Row) -> None:
+    if results is not None:
+        with results.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(row) + "\n")
+
+
+def _report(rows: list[Row]) -> int:
+    faulty = sum(bool(row["faults"]) for row in rows)
+    checked = sum(row["checked"] for row in rows)
+    print(f"{len(rows)} rooms, {checked} checked anew, {faulty} with a fault")
+    print(f"{'kind':<12} rooms  median [s]  slowest [s]  processor [s]  objects  drawn")
+    for kind in (*sorted({row["kind"] for row in rows}), "all"):
+        made = [r for r in rows if kind in (r["kind"], "all") and "wall_s" in r]
+        if made:
+            print(
+                f"{kind:<12} {len(made):5d} {_middle(made, 'wall_s'):11.1f} "
+                f"{max(r['wall_s'] for r in made):12.1f} {_middle(made, 'cpu_s'):14.1f} "
+                f"{_middle(made, 'objects'):8.0f} {sum(_of(made, 'attempts')) / len(made):6.2f}"
+            )
     return int(faulty > 0)
 
 
-def _faults(made: GeneratedScene, library: SceneLibrary, folder: Path) -> Iterator[str]:
-    file = folder / f"{made.kind}_{made.seed}.yaml"
-    file.write_text(made.text, encoding="utf-8")
-    if library.load(file) != made.spec:
-        yield "the file is read as another scene"
-    world = library.build(file, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
-    try:
-        for overlap in overlaps(world):
-            depth = 1000.0 * overlap.depth_m
-            yield f"{overlap.first!r} and {overlap.second!r} overlap by {depth:.1f} mm"
-        for way in obstructions(world):
-            yield f"{way.name!r} is in the camera's way"
-        for shift in shifts(world, distance_m=0.005):
-            yield f"{shift.name!r} moves by {1000.0 * shift.distance_m:.1f} mm"
-    finally:
-        world.close()
-        file.unlink()
+def _of(rows: Iterable[Row], key: str) -> list[float]:
+    return [row[key] for row in rows]
+
+
+def _middle(rows: Iterable[Row], key: str) -> float:
+    return float(median(_of(rows, key)))
 
 
 if __name__ == "__main__":

@@ -1,13 +1,11 @@
 """Has a data set by recipe read by the loaders that others wrote: counts agree, and so do values.
 
-    sailenv dataset make recipe.yaml -o set      # formats: [webdataset, parquet, lerobot, coco]
+    sailenv dataset make benchmarks/judge_shards.yaml -o set
     python -m venv judges
-    judges/bin/pip install webdataset datasets pillow pycocotools torch lerobot
+    judges/bin/pip install webdataset datasets pillow pycocotools torch torchvision lerobot
     judges/bin/python benchmarks/judge_shards.py set
 
-Needs neither sailenv_ros nor ROS. What is not installed is passed over, and said. LeRobot imports
-torchvision for one class; where there is no torchvision for the installed PyTorch, that class is
-stood in for here, and nothing else.
+Needs neither sailenv_ros nor ROS. What is not installed is passed over, and said.
 """
 
 from __future__ import annotations
@@ -16,7 +14,6 @@ import importlib
 import json
 import os
 import sys
-import types
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -64,10 +61,7 @@ def judge_datasets(folder: Path, manifest: dict[str, Any]) -> str:
 
 def judge_lerobot(folder: Path, manifest: dict[str, Any]) -> str:
     """Load all episodes by LeRobot itself, and compare pictures and depth."""
-    try:
-        importlib.import_module("torchvision")
-    except Exception:  # missing, or made for another PyTorch
-        _stand_in_for_torchvision()
+    _import_torchvision()
     os.environ["HF_HUB_OFFLINE"] = "1"
     kind = importlib.import_module("lerobot.datasets.lerobot_dataset").LeRobotDataset
     loaded = kind("local/judged", root=folder / "lerobot")
@@ -100,22 +94,26 @@ def judge_pycocotools(folder: Path, manifest: dict[str, Any]) -> str:
     return f"{images} images, {annotations} masks of the areas that are told"
 
 
-def _stand_in_for_torchvision() -> None:
+def _import_torchvision() -> None:
+    """Import torchvision, which LeRobot does; also one that is made for PyTorch with CUDA.
+
+    Such a one cannot load its operators beside a PyTorch without, and then misses two by their
+    names. LeRobot needs none of them here.
+    """
     torch = importlib.import_module("torch")
-
-    class ToTensor:
-        """As torchvision's: (C, H, W) from 0 to 1."""
-
-        def __call__(self, picture: Any) -> Any:
-            values = np.atleast_3d(np.asarray(picture)).transpose(2, 0, 1)
-            return torch.from_numpy(values.astype(np.float32) / 255.0)
-
-    package, transforms = types.ModuleType("torchvision"), types.ModuleType("transforms")
-    transforms.ToTensor = ToTensor  # type: ignore[attr-defined]
-    package.transforms = transforms  # type: ignore[attr-defined]
-    sys.modules.update({"torchvision": package, "torchvision.transforms": transforms})
+    try:
+        importlib.import_module("torchvision")
+    except RuntimeError:
+        for name in [name for name in sys.modules if name.startswith("torchvision")]:
+            del sys.modules[name]
+        OPERATORS.append(torch.library.Library("torchvision", "DEF"))
+        for name in ("nms", "qnms"):
+            arguments = "(Tensor dets, Tensor scores, float iou_threshold) -> Tensor"
+            OPERATORS[-1].define(name + arguments)
+        importlib.import_module("torchvision")
 
 
+OPERATORS: list[Any] = []
 DEPTHS: dict[int, Any] = {}
 PICTURES: dict[int, Any] = {}
 

@@ -45,6 +45,13 @@ def add_parser(subparsers: Any) -> None:
     accuracy.add_argument("--size", default="640x480", metavar="WxH")
     accuracy.add_argument("--scenario", nargs="+", metavar="NAME", help="default: all")
     _add_networks(accuracy)
+    streams = actions.add_parser(
+        "streams", help="flow, templates and Horn-Schunck on the streams of `sailenv stream`"
+    )
+    add_common(streams)
+    streams.add_argument("--pairs", type=int, default=100, metavar="N", help="of each stream")
+    streams.add_argument("--stream", nargs="+", metavar="NAME", help="default: all six")
+    streams.add_argument("--seed", type=int, default=0, help="default: %(default)s")
     through = actions.add_parser(
         "throughput",
         help="frames per second by size, views, agents, scene, transport; other renderers",
@@ -74,6 +81,10 @@ def _add_networks(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Do one of them; 0 if all is well."""
+    if args.action == "streams":
+        from sailenv_ros.cli.bench_streams import streams
+
+        return streams(args)
     if args.action == "throughput":
         from sailenv_ros.cli.bench_throughput import throughput
 

@@ -24,6 +24,10 @@ from sailenv_ros.validation import checked_integer, checked_number
 __all__ = ["add_arguments", "render_scene"]
 
 STEPS_PER_S = 240
+
+CAMERA = "scene_render_camera"
+"""Its agent; the scene may have agents of its own."""
+
 DEFAULT_EYE_M = (0.0, 0.0, 1.5)
 """Where the camera stands if only what it faces is given [m]."""
 
@@ -112,7 +116,7 @@ def _eye(args: argparse.Namespace) -> AgentSpec:
             pose = look_at(pose.position_m, args.look_at)
     intrinsics = CameraIntrinsics(width=args.width, height=args.height, vertical_fov_deg=args.fov)
     return AgentSpec(
-        name="eye", intrinsics=intrinsics, rate_hz=0.0, following=pose is None, pose=pose
+        name=CAMERA, intrinsics=intrinsics, rate_hz=0.0, following=pose is None, pose=pose
     )
 
 
@@ -122,9 +126,9 @@ def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
     now = simulation.sim_time_ns * STEPS_PER_S // 10**9
     if step - FLOW_STEPS > now:
         simulation.step(step - FLOW_STEPS - now)
-    simulation.capture(views, agent="eye")
+    simulation.capture(views, agent=CAMERA)
     simulation.step(FLOW_STEPS)
-    return simulation.capture(views, agent="eye")
+    return simulation.capture(views, agent=CAMERA)
 
 
 def _pictures(frame: Frame, table: CategoryTable) -> dict[str, np.ndarray[Any, Any]]:

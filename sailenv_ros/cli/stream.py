@@ -36,6 +36,14 @@ def add_parser(subparsers: Any) -> None:
         length.add_argument("--laps", type=int, default=1, metavar="N", help="default: 1")
         length.add_argument("--frames", type=int, metavar="N", help="instead of whole laps")
         _add_common(one)
+    colof = actions.add_parser(
+        "colof",
+        help="a, b, c of continual optical flow: 90,000 pictures at 25 Hz",
+        description=_DESCRIPTION,
+    )
+    colof.add_argument("--which", choices=("a", "b", "c"), required=True, help="which of them")
+    colof.add_argument("--frames", type=int, metavar="N", help="default: 90,000")
+    _add_common(colof)
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
@@ -52,9 +60,11 @@ def run(args: argparse.Namespace) -> int:
     """Make the stream; 0 if all is well."""
     from sailenv_ros.streams import StreamJob, make_stream, stream_named
 
-    kind = stream_named(args.stream)
+    kind = stream_named(f"colof_{args.which}" if args.stream == "colof" else args.stream)
     frames = args.frames
-    if frames is None:
+    if frames is None and not kind.laps:
+        frames = kind.lap_frames
+    elif frames is None:
         if args.laps < 1:
             raise InvalidRequest("--laps", args.laps, "1 or more")
         frames = args.laps * kind.lap_frames

@@ -264,11 +264,35 @@ def _baselines(canvas: _Canvas, data: Data) -> None:
     canvas.label(axes, x="median time ÷ that of sailenv_ros, picture + depth + instance")
 
 
+def _streams(canvas: _Canvas, data: Data) -> None:
+    streams = data["streams"]
+    axes = canvas.axes("What is left of the difference of two pictures after warping", height=3.8)
+    kinds = [
+        ("flow of sailenv_ros", ACCENT, [entry["left"]["ours"] for entry in streams]),
+        ("DIS", COLOURS[0], [entry["left"]["dis"] for entry in streams]),
+    ]
+    published = [(entry.get("published") or {}).get("left_stored") for entry in streams]
+    kinds.append(("flow of the published stream", canvas.theme["quiet"], published))
+    for place, (label, colour, values) in enumerate(kinds):
+        axes.bar(
+            [number + 0.27 * (place - 1) for number in range(len(streams))],
+            [value or 0.0 for value in values],
+            width=0.25,
+            color=colour,
+            label=label,
+        )
+    axes.set_xticks(range(len(streams)), [entry["label"] for entry in streams])
+    axes.grid(False, axis="x")
+    canvas.label(axes, y="share of the difference, 1 = no warp")
+    canvas.legend(axes)
+
+
 _PLOTS: Mapping[str, Mapping[str, Callable[[_Canvas, Data], None]]] = MappingProxyType(
     {
         "flow_speed": {"flow_speed": _flow_speed},
         "flow_accuracy": {"flow_accuracy": _flow_accuracy},
         "detection": {"detection": _detection},
         "throughput": {"throughput": _transports, "renderers": _baselines},
+        "streams": {"streams": _streams},
     }
 )

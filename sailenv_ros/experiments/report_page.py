@@ -48,6 +48,12 @@ HEADINGS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
             "on the same geometry.",
             "sailenv bench throughput",
         ),
+        "streams": (
+            "Streams of continual learning",
+            "The published streams, made here: whether flow explains the pictures, beside what was "
+            "measured on the published files, and what a classifier of raw pixels makes of them.",
+            "sailenv bench streams",
+        ),
     }
 )
 """Title, purpose and command of each experiment."""

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sailenv_ros.experiments.detection_tables import detection_tables
+from sailenv_ros.experiments.stream_tables import stream_tables
 from sailenv_ros.experiments.tables import Table, accuracy_tables, speed_tables
 from sailenv_ros.experiments.throughput_tables import throughput_tables
 
@@ -18,6 +19,7 @@ _TABLES: Mapping[str, Callable[[Mapping[str, Any]], list[Table]]] = MappingProxy
         "flow_accuracy": accuracy_tables,
         "detection": detection_tables,
         "throughput": throughput_tables,
+        "streams": stream_tables,
     }
 )
 

@@ -66,13 +66,18 @@ def faults(world: World) -> Iterator[Fault]:
         yield Fault(names=(shift.name,), why=why, rests_at=rests)
 
 
-def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator[Fault]:
+def unseen(
+    world: World, eyes: Sequence[tuple[float, float, float]], backend: RenderBackend
+) -> Iterator[Fault]:
     """Yield the objects that are seen from none of some places.
 
     Parameters
     ----------
+    world : World
     eyes : sequence of (3,) tuple of float
         Where one looks around, in all directions [m].
+    backend : RenderBackend
+        See `look_backend`.
     """
     snapshot = world.snapshot()
     bodies = {
@@ -83,7 +88,6 @@ def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator
     # An object is seen where a part of it is.
     wholes = {drawn.instance.id: drawn.instance.parent for drawn in snapshot.contents.instances}
     missing = set(bodies)
-    backend = look_backend()
 
     def look(eye: tuple[float, float, float], at: tuple[float, ...], angle_deg: float) -> None:
         lens = CameraIntrinsics(width=_LOOK_PX[0], height=_LOOK_PX[1], vertical_fov_deg=angle_deg)
@@ -93,22 +97,19 @@ def unseen(world: World, eyes: Sequence[tuple[float, float, float]]) -> Iterator
         seen = found[counts >= LEAST_PIXELS].tolist()
         missing.difference_update(seen, (wholes.get(number, 0) for number in seen))
 
-    try:
-        for eye in eyes:
-            for turn in range(4):
-                yaw = math.radians(90.0 * turn + 20.0)
-                if missing:
-                    look(eye, (eye[0] + math.cos(yaw), eye[1] + math.sin(yaw), eye[2] - 0.1), 100.0)
-        for number in sorted(missing):
-            # Small things are seen by who looks at them.
-            matrix = bodies[number].world_from_body()
-            middle = bodies[number].placement.asset.model.middle
-            at = tuple((matrix[:3, :3] @ middle + matrix[:3, 3]).tolist())
-            for eye in sorted(eyes, key=lambda each: math.dist(each, at))[:_LOOKS]:
-                if number in missing and math.dist(eye, at) > 0.1:
-                    look(eye, at, 30.0)
-    finally:
-        backend.close()
+    for eye in eyes:
+        for turn in range(4):
+            yaw = math.radians(90.0 * turn + 20.0)
+            if missing:
+                look(eye, (eye[0] + math.cos(yaw), eye[1] + math.sin(yaw), eye[2] - 0.1), 100.0)
+    for number in sorted(missing):
+        # Small things are seen by who looks at them.
+        matrix = bodies[number].world_from_body()
+        middle = bodies[number].placement.asset.model.middle
+        at = tuple((matrix[:3, :3] @ middle + matrix[:3, 3]).tolist())
+        for eye in sorted(eyes, key=lambda each: math.dist(each, at))[:_LOOKS]:
+            if number in missing and math.dist(eye, at) > 0.1:
+                look(eye, at, 30.0)
     for number in sorted(missing):
         yield Fault(names=(bodies[number].placement.name,), why="is seen from nowhere")
 

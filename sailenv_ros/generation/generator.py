@@ -7,9 +7,9 @@ taken out, or the room is drawn again, so what comes out has passed them all.
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from contextlib import closing
+from dataclasses import dataclass
 from typing import Any
 
 from sailenv_ros.assets.arranging import arranged
@@ -17,24 +17,27 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.generation.checks import Fault, faults, unseen
+from sailenv_ros.generation.checks import Fault, faults, look_backend, unseen
+from sailenv_ros.generation.draft import Draft
 from sailenv_ros.generation.furnishing import Furnisher
 from sailenv_ros.generation.items import Item, Namer
 from sailenv_ros.generation.lighting import environment_entry, light_entries
 from sailenv_ros.generation.names import MAX_SEED
 from sailenv_ros.generation.plan import RoomPlan
 from sailenv_ros.generation.randomness import Dice
-from sailenv_ros.generation.room_agents import agent_entries, best_first, standing
+from sailenv_ros.generation.room_agents import StandingWorld, agent_entries, best_first
 from sailenv_ros.generation.route import mover_entry
 from sailenv_ros.generation.rule_files import Rules, rules_of
 from sailenv_ros.generation.rule_models import KindFile
 from sailenv_ros.generation.scene_text import scene_text
-from sailenv_ros.generation.shells import Shell, shell_of
+from sailenv_ros.generation.shells import shell_of
 from sailenv_ros.generation.stock import Stock
 from sailenv_ros.generation.things import lay_things
 from sailenv_ros.labels import CategoryTable
-from sailenv_ros.scene.room_rules import room_part_names
+from sailenv_ros.render.backend import RenderBackend
+from sailenv_ros.scene.room_rules import WALLS, room_part_names
 from sailenv_ros.scene.spec import EnvironmentSpec, SceneSpec
+from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
 from sailenv_ros.validation import checked_integer
 from sailenv_ros.world.build import build_world
 from sailenv_ros.world.world import World
@@ -127,13 +130,14 @@ class Generator:
         """
         file = self._rules.kind(kind)
         seed = checked_integer("seed", seed, 0, MAX_SEED)
-        for attempt in range(MAX_ATTEMPTS):
-            draft = self._drafted(kind, file, seed, attempt)
-            if draft is None:
-                continue
-            made = self._checked(draft)
-            if made is not None:
-                return made
+        with closing(look_backend()) as backend:
+            for attempt in range(MAX_ATTEMPTS):
+                draft = self._drafted(kind, file, seed, attempt)
+                if draft is None:
+                    continue
+                made = self._checked(draft, backend)
+                if made is not None:
+                    return made
         raise InvalidState(
             f"{MAX_ATTEMPTS} rooms of kind {kind!r} with the seed {seed} have failed the checks; "
             "the rules leave too little space"
@@ -141,7 +145,7 @@ class Generator:
 
     # -- inside ----------------------------------------------------------------------------
 
-    def _drafted(self, kind: str, file: KindFile, seed: int, attempt: int) -> _Draft | None:
+    def _drafted(self, kind: str, file: KindFile, seed: int, attempt: int) -> Draft | None:
         """Draw a room and furnish it; None if something that is needed has no place."""
 
         def dice(purpose: str) -> Dice:
@@ -170,7 +174,7 @@ class Generator:
             furniture += furnisher.items
         self._lift_from_rugs(furniture)
         laid = lay_things(furniture, self._rules, self._stock, dice("things"), namer)
-        return _Draft(
+        return Draft(
             kind=kind, file=file, seed=seed, attempt=attempt, shell=shell, plan=plan,
             items=_beside_their_carriers(furniture, laid),
         )  # fmt: skip
@@ -187,18 +191,16 @@ class Generator:
                 x, y, _ = item.entry["position"]
                 item.entry["position"] = [x, y, round(top + RUG_GAP_M, 4)]
 
-    def _checked(self, draft: _Draft) -> GeneratedScene | None:
+    def _checked(self, draft: Draft, backend: RenderBackend) -> GeneratedScene | None:
         """Take out what fails a check; None if that is something the room needs."""
         taken_out: list[Fault] = []
         for _ in range(MAX_ROUNDS):
             data = self._described(draft)
             world = self._built(draft.spec_of(data))
             try:
-                found = list(faults(world))
+                found = [*faults(world), *unseen(world, draft.eyes(), backend)]
                 if not found:
-                    found = list(unseen(world, draft.eyes()))
-                if not found:
-                    _with_cameras(data, world, draft)
+                    _with_cameras(data, StandingWorld(world, backend), draft)
             finally:
                 world.close()
             if not found:
@@ -216,7 +218,7 @@ class Generator:
                 taken_out.append(fault)
         return None
 
-    def _described(self, draft: _Draft) -> dict[str, Any]:
+    def _described(self, draft: Draft) -> dict[str, Any]:
         """Return a draft as a scene file has it, without agents."""
 
         def dice(purpose: str) -> Dice:
@@ -236,7 +238,9 @@ class Generator:
         stock = {entry.name: self._stock.asset(entry.asset) for entry in standing.objects}
         poses = arranged(standing.objects, stock, standing.room)
         heights = {name: pose.position_m[2] for name, pose in poses.items()}
-        lamps = light_entries(rule, draft.shell.windows, draft.items, heights, dice("lights"))
+        lamps = light_entries(
+            rule, draft.shell.windows, draft.items, heights, draft.shell.areas, dice("lights")
+        )
         data["lights"] = list(lamps)
         mover = mover_entry(draft.plan, draft.items, dice("way"), draft.file.speed)
         data["mover"] = mover
@@ -244,8 +248,10 @@ class Generator:
         return data
 
     def _built(self, spec: SceneSpec) -> World:
-        # No check looks at the sky, which takes time to read.
-        plain = spec.model_copy(update={"environment": EnvironmentSpec()})
+        # No check looks at the sky or at materials, which take time to make.
+        plain = spec.model_copy(
+            update={"environment": EnvironmentSpec(), "room": _without_looks(spec.room)}
+        )
         return build_world(
             plain,
             assets=self._stock.assets,
@@ -256,78 +262,29 @@ class Generator:
         )
 
 
-@dataclass(slots=True, kw_only=True)
-class _Draft:
-    """A room that has not passed the checks yet."""
-
-    kind: str
-    file: KindFile
-    seed: int
-    attempt: int
-    shell: Shell
-    plan: RoomPlan
-    items: list[Item]
-    waypoints: Sequence[tuple[float, ...]] = ()
-
-    def spec_of(self, data: dict[str, Any]) -> SceneSpec:
-        """Return what a scene file says, checked."""
-        return SceneSpec.model_validate({"name": f"{self.kind}_{self.seed}", **data})
-
-    def settle(self, fault: Fault) -> bool:
-        """Let a thing lie where it came to rest, once; say if it may."""
-        item = next((i for i in self.items if i.name in fault.names), None)
-        if item is None or fault.rests_at is None or item.name in self._settled:
-            return False
-        self._settled.add(item.name)
-        kept = {key: item.entry[key] for key in ("scale",) if key in item.entry}
-        position = [round(value, 4) for value in fault.rests_at.position_m]
-        rotation = [round(value, 2) for value in fault.rests_at.rpy_deg]
-        item.entry = {"position": position, "rotation": rotation, **kept}
-        return True
-
-    def take_out(self, names: Sequence[str]) -> bool:
-        """Take out the least of some objects with what lies on it; say if that can be done."""
-        present = [item for item in self.items if item.name in names]
-        if not present:
-            # Taken out already, with what carried it, or a part of the room alone.
-            known = any(name in names for name in self._gone)
-            return known
-        loose = [item for item in present if not item.needed]
-        if not loose:
-            return False
-        # Things go before furniture, the last placed first.
-        victim = max(loose, key=lambda item: (item.rule is None, self.items.index(item)))
-        gone = {victim.name}
-        while True:
-            more = {i.name for i in self.items if i.entry.get("on") in gone} - gone
-            if not more:
-                break
-            gone |= more
-        self.items = [item for item in self.items if item.name not in gone]
-        self._gone |= gone
-        return True
-
-    _gone: set[str] = field(default_factory=set)
-    _settled: set[str] = field(default_factory=set)
-
-    def eyes(self) -> list[tuple[float, float, float]]:
-        """Return the places from which objects have to be seen: those that the camera comes by."""
-        corners = [(x, y, 1.5) for x, y, *_ in self.waypoints]
-        between = [
-            ((a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0, 1.5)
-            for a, b in zip(corners, [*corners[1:], *corners[:1]], strict=True)
-            if math.dist(a, b) > 1.0
-        ]
-        return [*corners, *between]
-
-
-def _with_cameras(data: dict[str, Any], world: World, draft: _Draft) -> None:
+def _with_cameras(data: dict[str, Any], scene: StandingWorld, draft: Draft) -> None:
     """Add agents to a scene, and begin the camera's way where its view is best."""
-    with standing(world) as scene:
-        mover = data["mover"]
-        mover["waypoints"] = best_first(scene, mover["waypoints"])
-        rooms = len(draft.shell.areas)
-        data["agents"] = agent_entries(scene, max(2, rooms), draft.seed)
+    mover = data["mover"]
+    mover["waypoints"] = best_first(scene, mover["waypoints"])
+    data["agents"] = agent_entries(scene, max(2, len(draft.shell.areas)), draft.seed)
+
+
+def _without_looks(room: RoomSpec | None) -> RoomSpec | None:
+    """Return a room of the same shape that is all of one material."""
+    if room is None:
+        return None
+    one = SurfaceSpec()
+    bare: dict[str, None] = dict.fromkeys(WALLS)
+    return room.model_copy(
+        update={
+            "walls": one,
+            "wall_materials": WallMaterialsSpec(),
+            "floor": one,
+            "ceiling": None if room.ceiling is None else one,
+            "partitions": tuple(each.model_copy(update=bare) for each in room.partitions),
+            "floors": tuple(each.model_copy(update={"surface": one}) for each in room.floors),
+        }
+    )
 
 
 def _lies_under(rug: Item, item: Item) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from sailenv_ros.generation.items import Item
-from sailenv_ros.generation.plan import WallGap, WallSide
+from sailenv_ros.generation.plan import Area, WallGap, WallSide
 from sailenv_ros.generation.randomness import Dice
 from sailenv_ros.generation.rule_models import LightRule
 
@@ -15,6 +15,11 @@ __all__ = ["environment_entry", "light_entries"]
 
 MAX_LAMPS = 6
 """Lamps that shine, so that baking their light takes no longer than that of the rest."""
+
+FLOOR_M2 = 14.0
+"""Of the room that the rules' ceiling lamps are for; in others they shine in proportion."""
+
+_LEAST_SHARE, _MOST_SHARE = 0.4, 1.3
 
 _IN_FRONT_M = 0.2
 _BELOW_CEILING_M = 0.3
@@ -41,14 +46,21 @@ def light_entries(
     windows: Sequence[tuple[WallSide, WallGap]],
     items: Sequence[Item],
     heights: dict[str, float],
+    areas: Sequence[Area],
     dice: Dice,
 ) -> Iterator[dict[str, Any]]:
     """Yield the lights: sun, windows, lamps.
 
     Parameters
     ----------
+    rule : LightRule
+    windows : sequence of (WallSide, WallGap)
+    items : sequence of Item
     heights : dict of str to float
         Of the origin of each lamp that has a light, by its name [m].
+    areas : sequence of Area
+        The rooms.
+    dice : Dice
     """
     if rule.sun is not None and windows:
         side, _ = max(windows, key=lambda w: (w[1].along[1] - w[1].along[0], w[0].wall))
@@ -65,7 +77,7 @@ def light_entries(
             "colour": list(rule.window_colour),
             "intensity": round(dice.between(rule.window), 2),
         }
-    yield from _lamps(rule, items, heights, dice)
+    yield from _lamps(rule, items, heights, areas, dice)
 
 
 def _sun(rule: LightRule, side: WallSide, dice: Dice) -> dict[str, Any]:
@@ -83,7 +95,11 @@ def _sun(rule: LightRule, side: WallSide, dice: Dice) -> dict[str, Any]:
 
 
 def _lamps(
-    rule: LightRule, items: Sequence[Item], heights: dict[str, float], dice: Dice
+    rule: LightRule,
+    items: Sequence[Item],
+    heights: dict[str, float],
+    areas: Sequence[Area],
+    dice: Dice,
 ) -> Iterator[dict[str, Any]]:
     count = 0
     for item in items:
@@ -98,7 +114,8 @@ def _lamps(
         if ceiling:
             z -= 0.05
             small = item.block.high - item.block.low < 0.2
-            strength = round(dice.between(rule.ceiling), 2) if small else strength
+            if small:
+                strength = round(dice.between(rule.ceiling) * _share(item, areas), 2)
             z -= _BELOW_CEILING_M - 0.05 if small else 0.0
         yield {
             "name": f"light of {item.name}",
@@ -109,6 +126,12 @@ def _lamps(
             "colour": list(rule.lamp_colour),
             "intensity": strength,
         }
+
+
+def _share(item: Item, areas: Sequence[Area]) -> float:
+    """Return how much light a ceiling lamp's room needs, against that of the rules."""
+    floor_m2 = next((a.floor_m2 for a in areas if a.holds(item.block)), FLOOR_M2)
+    return min(_MOST_SHARE, max(_LEAST_SHARE, floor_m2 / FLOOR_M2))
 
 
 def _rounded(*values: float) -> list[float]:

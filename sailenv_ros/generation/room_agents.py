@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
-from sailenv_ros.generation.checks import look_backend
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.space import FreeSpace
@@ -25,10 +24,10 @@ from sailenv_ros.viewpoints import ViewScene, sample_cameras
 from sailenv_ros.viewpoints.room_view import outlook
 from sailenv_ros.world.world import World
 
-__all__ = ["StandingWorld", "agent_entries", "best_first", "standing"]
+__all__ = ["StandingWorld", "agent_entries", "best_first"]
 
-WALKER = "eye"
-"""Follows the mover."""
+WALKER = "walker"
+"""Follows the mover. A name that programs seldom have for agents of their own."""
 
 VIEWS = "view"
 FOV_DEG = 62.0
@@ -38,32 +37,29 @@ _LOOK_PX = (80, 60)
 
 
 class StandingWorld(ViewScene):
-    """A world that stands still, as rules of cameras see it; a context manager.
+    """A world that stands still, as rules of cameras see it.
 
     Parameters
     ----------
     world : World
-    lens : CameraIntrinsics
+    backend : RenderBackend
     """
 
-    def __init__(self, world: World, lens: CameraIntrinsics) -> None:
+    def __init__(self, world: World, backend: RenderBackend) -> None:
+        width, height = _LOOK_PX
+        lens = CameraIntrinsics(width=width, height=height, vertical_fov_deg=FOV_DEG)
         super().__init__(world.snapshot(), lens)
         self._world = world
-        self._backend: RenderBackend = look_backend()
-
-    def __enter__(self) -> StandingWorld:
-        return self
-
-    def __exit__(self, *reason: object) -> None:
-        self._backend.close()
+        self._backend = backend
+        self._last: tuple[Pose, Mapping[str, NDArray[Any]]] | None = None
 
     def instances(self, pose: Pose) -> NDArray[np.uint16]:
         """Return the (H, W) instance view from a pose."""
-        return self._view(pose, "instance")
+        return self._surfaces(pose)["instance"]
 
     def depth_m(self, pose: Pose) -> NDArray[np.float32]:
         """Return the (H, W) depth view from a pose [m]."""
-        return self._view(pose, "depth")
+        return self._surfaces(pose)["depth"]
 
     def whole_pixels(self, pose: Pose, only: int = 0) -> Mapping[int, int]:
         """Return how many pixels each object would cover alone; see `ViewScene`."""
@@ -81,9 +77,12 @@ class StandingWorld(ViewScene):
         )
         return map_free_space(solids, body)
 
-    def _view(self, pose: Pose, name: str) -> NDArray[Any]:
-        drawn = self._backend.render(self.snapshot, None, self.camera(pose), (name,))
-        return np.asarray(drawn.views[name])
+    def _surfaces(self, pose: Pose) -> Mapping[str, NDArray[Any]]:
+        """Return depth and ids, which cost no more than one of them."""
+        if self._last is None or self._last[0] is not pose:
+            camera, wanted = self.camera(pose), ("depth", "instance")
+            self._last = pose, self._backend.render(self.snapshot, None, camera, wanted).views
+        return self._last[1]
 
 
 def agent_entries(scene: StandingWorld, count: int, seed: int) -> list[dict[str, Any]]:
@@ -108,11 +107,3 @@ def best_first(scene: StandingWorld, waypoints: Sequence[dict[str, Any]]) -> lis
     ]
     first = int(np.argmax(worth))
     return [*waypoints[first:], *waypoints[:first]]
-
-
-def standing(world: World) -> StandingWorld:
-    """Return a world for the choice of cameras."""
-    width, height = _LOOK_PX
-    return StandingWorld(
-        world, CameraIntrinsics(width=width, height=height, vertical_fov_deg=FOV_DEG)
-    )

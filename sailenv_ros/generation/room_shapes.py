@@ -185,6 +185,7 @@ def add_openings(
                 entry: dict[str, Any] = {"type": type_, "wall": side.wall, "at": at, "width": width}
                 if type_ == "door":
                     door_walls.add(number)
+                    entry["hinged"] = True
                     up = (0.0, DOOR_M[1])
                     if dice.chance(rules.doors.open_chance):
                         entry["open"] = round(dice.between((75.0, 95.0)))

@@ -12,6 +12,10 @@ Diagnostics: TypeAlias = Iterable[tuple[tuple[str | int, ...], str]]
 """Paths inside an entry, each with a sentence that says what is wrong there."""
 
 
+def _no_camera_errors(rule: str, settings: Mapping[str, Any]) -> Diagnostics:
+    return ()
+
+
 def _no_errors(entry: Mapping[str, Any]) -> Diagnostics:
     return ()
 
@@ -31,6 +35,9 @@ class SceneKnowledge:
     object_errors : callable
         ``object_errors(entry)`` yields why an object's asset cannot be placed as its entry says.
         The entry is plain data; nothing in it is certain.
+    camera_errors : callable
+        ``camera_errors(rule, settings)`` yields what is wrong with a camera rule: below ``rule`` or
+        ``settings``.
     surfaces : tuple of str
         Every name that the material of a room's walls, floor or ceiling may have.
     skies : tuple of str
@@ -44,6 +51,7 @@ class SceneKnowledge:
     categories: tuple[str, ...]
     behaviour_errors: Callable[[str, Mapping[str, Any]], Diagnostics]
     object_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
+    camera_errors: Callable[[str, Mapping[str, Any]], Diagnostics] = _no_camera_errors
     surfaces: tuple[str, ...] = ()
     skies: tuple[str, ...] = ()
     material_fault: Callable[[str], str] | None = None

@@ -112,6 +112,9 @@ def room_part_names(room: Entry) -> Iterator[str]:
             name = part.get("name") if isinstance(part, Mapping) else None
             if isinstance(name, str):
                 yield name
+                doorways = part.get("doorways")
+                count = len(doorways) if isinstance(doorways, list | tuple) else 0
+                yield from (f"{name} door {number} leaf" for number in range(1, count + 1))
     counts = {"window": 0, "door": 0}
     listed = room.get("openings")
     for entry in listed if isinstance(listed, list | tuple) else ():
@@ -121,6 +124,8 @@ def room_part_names(room: Entry) -> Iterator[str]:
             yield f"{kind} {counts[kind]}"
             if kind == "window":
                 yield f"curtains {counts[kind]}"
+            elif entry.get("hinged") is True:
+                yield f"door {counts[kind]} leaf"
 
 
 def _openings(room: Entry) -> Iterator[_Opening]:

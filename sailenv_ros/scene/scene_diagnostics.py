@@ -165,6 +165,10 @@ def _unknown_drawn(
                 Diagnostic((*loc, key), found.message)
                 for found in _unknown((), {key: name}, key, known)
             )
+    rule, settings = entry.get("rule"), entry.get("settings", {})
+    if isinstance(rule, str) and isinstance(settings, Mapping):
+        for place, sentence in knowledge.camera_errors(rule, settings):
+            yield Diagnostic((*loc, *place), sentence)
     for key in ("material", "picture"):
         for name in drawn_names(entry.get(key)):
             for found in _unknown_looks((), {key: name}, knowledge):

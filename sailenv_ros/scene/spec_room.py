@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from sailenv_ros.scene.field_types import Choice, Number, Several
+from sailenv_ros.scene.field_types import Choice, Number, Several, Switch
 from sailenv_ros.scene.fields import LinearColour, Name, Rule, SceneModel
 from sailenv_ros.scene.partition_rules import (
     along_an_axis,
@@ -37,6 +37,7 @@ from sailenv_ros.scene.room_rules import (
     inside_walls,
     without_overlaps,
 )
+from sailenv_ros.scene.rules import only_beside
 from sailenv_ros.scene.spec_materials import LookSpec, MaterialName
 
 __all__ = [
@@ -195,6 +196,10 @@ class DoorSpec(_OpeningBase):
     hinge: Annotated[Literal["left", "right"], Choice(("left", "right"))] = Field(
         default="left", description="side of the hinges, as seen from inside"
     )
+    hinged: Annotated[bool, Switch()] = Field(
+        default=False,
+        description="true: the leaf is an object of its own, 'door 1 leaf', that opens and closes",
+    )
     colour: LinearColour = Field(default=(0.78, 0.77, 0.74), description="of leaf and frame")
 
 
@@ -202,7 +207,9 @@ OpeningSpec: TypeAlias = Annotated[WindowSpec | DoorSpec, Field(discriminator="t
 
 
 class DoorwaySpec(SceneModel):
-    """An opening in a wall between rooms: a frame without a leaf."""
+    """An opening in a wall between rooms: a frame, with or without a leaf."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (only_beside("door", "open", "hinge"),)
 
     at: _Along = Field(
         default=0.0,
@@ -210,7 +217,33 @@ class DoorwaySpec(SceneModel):
     )
     width: _Opening = Field(default=DOOR_SIZE_M[0], description="of the opening [m]")
     height: _Opening = Field(default=DOOR_SIZE_M[1], description="of the opening [m]")
-    colour: LinearColour = Field(default=(0.78, 0.77, 0.74), description="of the frame")
+    door: Annotated[bool, Switch()] = Field(
+        default=False,
+        description="true: a leaf that opens towards -x or -y, an object of its own: "
+        "'<wall> door 1 leaf'",
+    )
+    open: Annotated[float, Number(least=0.0, most=170.0, unit="deg")] = Field(
+        default=0.0, description="by which its leaf is turned [deg]"
+    )
+    hinge: Annotated[Literal["left", "right"], Choice(("left", "right"))] = Field(
+        default="left", description="side of its hinges, as seen from where it opens to"
+    )
+    colour: LinearColour = Field(
+        default=(0.78, 0.77, 0.74), description="of the frame and the leaf"
+    )
+
+    def as_door(self) -> DoorSpec:
+        """Return the door that hangs in it; the wall that it names means nothing."""
+        return DoorSpec(
+            type="door",
+            wall="south",
+            width=self.width,
+            height=self.height,
+            open=self.open,
+            hinge=self.hinge,
+            hinged=True,
+            colour=self.colour,
+        )
 
 
 class PartitionSpec(SceneModel):

@@ -26,18 +26,13 @@ from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.extras import need
-from sailenv_ros.geometry import Pose, invert
+from sailenv_ros.geometry import Pose
 from sailenv_ros.model import Material
 from sailenv_ros.scene_import.categories_by_name import category_of_name
 from sailenv_ros.scene_import.default_light import add_daylight
 from sailenv_ros.scene_import.imported import Entry, ImportedScene, Names
-from sailenv_ros.scene_import.robot_joints import (
-    FREE,
-    check_limits,
-    moving_joint,
-    pose_entry,
-    pose_of_body,
-)
+from sailenv_ros.scene_import.robot_joints import check_limits, pose_entry, pose_of_body
+from sailenv_ros.scene_import.robot_places import RobotPlaces
 from sailenv_ros.scene_import.safe_xml import XmlNode, read_xml
 from sailenv_ros.scene_import.scene_parts import asset_of_parts
 
@@ -62,7 +57,7 @@ FILE_KEYS = (
 
 # MuJoCo's numbers, which its files fix.
 _PLANE, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = 0, 2, 3, 4, 5, 6, 7
-_FIXED_LIGHT_TYPES = {0: "spot", 1: "directional", 2: "point"}
+_LIGHT_TYPES = {0: "spot", 1: "directional", 2: "point"}
 # A camera of MuJoCo looks along its -z, with y up.
 _CAMERA_FROM_BODY = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
 
@@ -174,11 +169,7 @@ class _RobotBuilder:
         visuals_apart: bool,
         limits: Mapping[str, tuple[float, float]],
     ) -> None:
-        self._limits = limits
-        self._objects: dict[int, str] = {}
-        self._moving: set[int] = set()
-        self._fixed: list[tuple[str, str]] = []
-        self._guessed: list[str] = []
+        self._places = RobotPlaces(read["bodies"], limits, scene.title)
         self._visuals_apart = visuals_apart
         self._scene = scene
         self._names = names
@@ -197,86 +188,12 @@ class _RobotBuilder:
                     entry: Entry = {**pose_entry(pose_of_body(body)), "static": True}
                     self._add_object(geom["name"] or "ground", body, [geom], entry)
                 continue
-            entry = self._place(number)
+            entry = self._places.place(number)
             if own and self._add_object(body["name"] or "body", body, own, entry):
-                self._objects[number] = self._scene.objects[-1]["name"]
+                self._places.take_note(number, self._scene.objects[-1]["name"])
             elif "joint" in entry and entry["joint"]["type"] != "fixed":
-                self._fixed.append((_name_of(body), "a body without a geometry"))
-        self._tell_joints()
-
-    def _place(self, number: int) -> Entry:
-        """Return the keys that say where a body is, and on what."""
-        body = self._read["bodies"][number]
-        if self._is_loose(number):
-            mass = {"mass": round(min(body["mass"], 1e6), 6)} if body["mass"] > 0.0 else {}
-            return {**pose_entry(pose_of_body(body)), **(mass or {"static": True})}
-        joint = None
-        joints = [one for one in body["joints"] if one["type"] != FREE]
-        if joints:
-            found = moving_joint(joints, self._limits, self._scene.title)
-            joint = found.entry
-            if joint is None:
-                self._fixed += [(one["name"] or "unnamed", found.why_fixed) for one in joints]
-            elif found.guessed_friction:
-                self._guessed.append(joints[0]["name"] or "unnamed")
-        elif body["joints"]:
-            self._fixed.append((_name_of(body), "a free body that carries others"))
-        parent, above = self._carrier(number)
-        if joint is not None:
-            self._moving.add(number)
-            rest = np.array(body["rest_position"]), body["rest_quat_wxyz"]
-            in_parent = pose_of_body({"position": rest[0], "quat_wxyz": rest[1]}).matrix()
-            carrier = pose_of_body(self._read["bodies"][body["parent"]]).matrix()
-            pose = Pose.from_matrix(invert(above) @ carrier @ in_parent)
-        elif self._goes_along(number):
-            self._moving.add(number)
-            joint = {"type": "fixed"}
-            pose = Pose.from_matrix(invert(above) @ pose_of_body(body).matrix())
-        else:
-            return {**pose_entry(pose_of_body(body)), "static": True}
-        mass = {"mass": round(min(max(body["mass"], 1e-3), 1e6), 6)}
-        named = {"parent": parent} if parent else {}
-        first = {"type": joint.pop("type")}
-        return {**pose_entry(pose), **mass, "joint": {**first, **named, **joint}}
-
-    def _carrier(self, number: int) -> tuple[str, Doubles]:
-        """Return the nearest object that carries a body, and its pose as the file begins."""
-        bodies = self._read["bodies"]
-        above = bodies[number]["parent"]
-        while above and above not in self._objects:
-            above = bodies[above]["parent"]
-        if not above:
-            return "", np.eye(4)
-        return self._objects[above], pose_of_body(bodies[above]).matrix()
-
-    def _goes_along(self, number: int) -> bool:
-        """Return whether something that carries a body moves on a joint."""
-        bodies = self._read["bodies"]
-        above = bodies[number]["parent"]
-        while above:
-            if above in self._moving and above in self._objects:
-                return True
-            above = bodies[above]["parent"]
-        return False
-
-    def _is_loose(self, number: int) -> bool:
-        """Return whether a body moves freely: it alone, or with nothing on joints below it."""
-        bodies = self._read["bodies"]
-        free = any(joint["type"] == FREE for joint in bodies[number]["joints"])
-        return free and not any(body["parent"] == number for body in bodies[1:])
-
-    def _tell_joints(self) -> None:
-        whys: dict[str, list[str]] = {}
-        for name, why in self._fixed:
-            whys.setdefault(why, []).append(name)
-        for why, names in whys.items():
-            verb = "joint is" if len(names) == 1 else "joints are"
-            note = f"{len(names)} {verb} fixed where the file begins ({why}): {_listed(names)}"
-            self._scene.notes.append(note)
-        if self._guessed:
-            many = f"{len(self._guessed)} joints have" if self._guessed[1:] else "1 joint has"
-            note = "no friction in the file and gets enough to hold its weight"
-            self._scene.notes.append(f"{many} {note}: {_listed(self._guessed)}")
+                self._places.leave_out(number)
+        self._scene.notes += self._places.notes()
 
     def _drawn(self, geoms: Sequence[Geom]) -> list[Geom]:
         """Return what is drawn of a body: of URDF its visuals, of MJCF the groups that are shown.
@@ -367,7 +284,7 @@ class _RobotBuilder:
             peak = max(light["colour"])
             if not 0.0 < peak <= 1e6:
                 continue
-            kind = _FIXED_LIGHT_TYPES.get(light["type"], "point")
+            kind = _LIGHT_TYPES.get(light["type"], "point")
             entry: Entry = {"name": self._names.of_object(light["name"] or f"{kind} light")}
             entry["type"] = kind
             if kind != "directional":
@@ -401,13 +318,3 @@ class _RobotBuilder:
                     "vertical_fov": round(min(max(camera["fov"], 1.0), 170.0), 3),
                 }
             )
-
-
-def _name_of(body: Mapping[str, Any]) -> str:
-    """Return the name of a body's joint, or its own."""
-    named = [joint["name"] for joint in body["joints"] if joint["name"]]
-    return str(named[0] if named else body["name"] or "unnamed")
-
-
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names[:8]) + (" …" if len(names) > 8 else "")

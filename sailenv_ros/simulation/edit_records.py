@@ -18,6 +18,7 @@ from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.scene.spec import EnvironmentSpec
 from sailenv_ros.simulation.material_edits import set_surface, surface_keys
+from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.support import overlap_m, standing_place
 
 if TYPE_CHECKING:
@@ -86,8 +87,9 @@ def record_of(core: SimulationCore, number: int) -> ObjectRecord:
     state, spec = core.world.object_state(number), core.world.body(number).placement.entry
     entry, pose = None, state.pose
     joint = core.world.joint(number)
-    if spec is not None and spec.joint is not None:
-        pose = spec.pose
+    body = core.world.body(number)
+    if isinstance(body, JointedBody):
+        pose = body.joint.parent_from_rest
     if spec is not None:
         entry = {
             **core.editor.entry_without_place(spec),

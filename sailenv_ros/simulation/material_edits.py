@@ -78,10 +78,15 @@ def merged_look(
 
 
 def surface_keys(core: SimulationCore, instance_id: int) -> dict[str, Any] | None:
-    """Return what the scene says of the look of a part of the room; None for what is none."""
+    """Return what the scene says of the look of a part of the room; None for what is none.
+
+    None for the leaf of a door, too, whose look is that of the door.
+    """
     described = core.world.described
     name = core.world.body(instance_id).placement.name
     if described is None or described.room is None or name not in _part_names(described.room):
+        return None
+    if core.world.joint(instance_id) is not None:
         return None
     return _keys_of(described.room, name)
 
@@ -103,11 +108,14 @@ def set_surface(core: SimulationCore, instance_id: int, keys: Mapping[str, Any] 
     assert spec is not None
     stock = core.library.materials_of(world.scene)
     made = {p.name: p for p in room_placements(spec, world.categories, stock)}
-    world.replace_body(
-        instance_id,
-        replace(body.placement, asset=made[name].asset),
-        described.model_copy(update={"room": spec}),
-    )
+    described = described.model_copy(update={"room": spec})
+    world.replace_body(instance_id, replace(body.placement, asset=made[name].asset), described)
+    # A leaf has the colour of its door.
+    for number, other in list(world.numbered_bodies):
+        leaf = other.placement.name
+        if other.placement.entry is None and leaf == f"{name} leaf" and leaf in made:
+            painted = replace(other.placement, asset=made[leaf].asset)
+            world.replace_body(number, painted, described)
     core.announce()
 
 
@@ -171,7 +179,8 @@ def _colour_place(room: RoomSpec, name: str, entry: dict[str, Any]) -> dict[str,
     kind, _, number = name.partition(" ")
     wanted = {"window": "window", "door": "door", "curtains": "window"}.get(kind)
     if wanted is None or not number.isdecimal():
-        raise InvalidRequest("object", name, "a wall, the floor, the ceiling, a window or a door")
+        accepted = "a wall, the floor, the ceiling, a window or a door, with which goes its leaf"
+        raise InvalidRequest("object", name, accepted)
     same = [one for one in entry.get("openings", ()) if one["type"] == wanted]
     opening: dict[str, Any] = same[int(number) - 1]
     if kind != "curtains":

@@ -23,6 +23,7 @@ from sailenv_ros.scene.randomise.thing import RandomTargets, Thing, Values
 from sailenv_ros.scene.serialisation import PLACE_KEYS
 from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
 from sailenv_ros.simulation.material_edits import set_material
+from sailenv_ros.simulation.rule_places import agent_specs, placed_by_rules
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -83,6 +84,8 @@ class Randomiser:
         with self._core.announced_once():
             self._change_objects(self._epoch)
             self._change_looks(self._epoch)
+        # A rule looks at the scene as it was drawn.
+        self._epoch = placed_by_rules(self._epoch, self._core)
 
     def place_cameras(self) -> None:
         """Put the agents where the epoch has drawn them; those that come later stay."""
@@ -99,6 +102,7 @@ class Randomiser:
         )
         with self._core.announced_once():
             self._change_looks(self._frame)
+            self._frame = placed_by_rules(self._frame, self._core)
             self._change_cameras(self._frame)
         self._drawn_at = step
 
@@ -174,7 +178,7 @@ class Randomiser:
         return RandomTargets(
             objects=objects,
             surfaces=tuple(surfaces),
-            agents=tuple(spec.name for spec in core.agents.specs),
+            agents=tuple(agent_specs(core)),
             lights={light.name: light.to_light().position_m for light in lights},
         )
 

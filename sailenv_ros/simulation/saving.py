@@ -140,7 +140,24 @@ def room_entry(world: World) -> Entry:
     for number, window in enumerate(windows, start=1):
         if f"curtains {number}" in missing:
             window["curtains"] = False
+    _note_doors(entry, world)
     return entry
+
+
+def _note_doors(entry: Entry, world: World) -> None:
+    """Write how far the doors of a room are open now."""
+    leaves = {b.placement.name: b for b in world.bodies if isinstance(b, JointedBody)}
+    doors = [opening for opening in entry.get("openings", ()) if opening["type"] == "door"]
+    named = {f"door {number} leaf": door for number, door in enumerate(doors, start=1)}
+    for wall in entry.get("partitions", ()):
+        for number, doorway in enumerate(wall.get("doorways", ()), start=1):
+            named[f"{wall['name']} door {number} leaf"] = doorway
+    for name, door in named.items():
+        leaf = leaves.get(name)
+        if leaf is not None and leaf.placement.entry is None:
+            position, _ = leaf.joint_state()
+            if position != leaf.joint.spec.start:
+                door["open"] = math.degrees(position)
 
 
 def _lights(world: World, spec: SceneSpec) -> list[Entry]:

@@ -42,6 +42,7 @@ from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
+from sailenv_ros.viewpoints.rule_table import rule_errors
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -143,6 +144,7 @@ class SceneLibrary:
             categories=tuple(category.name for category in self.categories.values()),
             behaviour_errors=readable_behaviour_errors,
             object_errors=ObjectFit(self._assets),
+            camera_errors=rule_errors,
             surfaces=surface_names(),
             skies=tuple(self._skies),
         )

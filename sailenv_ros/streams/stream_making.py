@@ -22,12 +22,13 @@ from sailenv_ros.motion import FORWARD_VIEWS
 from sailenv_ros.recording.lockstep import FrameRecorder, due_steps
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.render.backend import BackendName
+from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.streams.stream_parts import StreamFolder
 from sailenv_ros.streams.stream_table import StreamKind
 from sailenv_ros.system.futures import wait_for
 
-__all__ = ["PART_FRAMES", "StreamJob", "make_stream"]
+__all__ = ["PART_FRAMES", "StreamJob", "make_stream", "stream_pairs"]
 
 PART_FRAMES = 500
 """Frames in each file of the bag: what is lost at most when it is broken off."""
@@ -127,6 +128,51 @@ def make_stream(
         if begin < job.frames:
             _make_parts(job, folder, begin, on_frame)
         return folder.finish()
+
+
+def stream_pairs(job: StreamJob, pairs: int) -> Iterator[tuple[int, Frame, Frame, SceneInfo]]:
+    """Return frames that follow each other, spread evenly over a stream, without the ones between.
+
+    Parameters
+    ----------
+    job : StreamJob
+    pairs : int
+        How many; at most half the frames.
+
+    Yields
+    ------
+    number : int
+        Of the later frame.
+    before, now : Frame
+    info : SceneInfo
+
+    Raises
+    ------
+    InvalidRequest
+        If there are not so many pairs.
+    """
+    if not 1 <= pairs <= job.frames // 2:
+        raise InvalidRequest("pairs", pairs, f"1 to {job.frames // 2}")
+    numbers = {1 + place * (job.frames - 1) // pairs for place in range(pairs)}
+    views = checked_views(job.views) if job.views else None
+    pusher = job.kind.pusher(job.seed) if job.kind.pusher is not None else None
+    with Simulation(
+        job.kind.scene, mode="lockstep", seed=job.seed, backend=job.backend
+    ) as simulation:
+        spec, step = simulation.info.agents[0], 0
+        before: Frame | None = None
+        for number, due in enumerate(due_steps(job.kind.rate_hz, max(numbers) + 1)):
+            if pusher is not None and number:
+                pusher.push(simulation, number)
+            if due > step:
+                simulation.step.submit(due - step)
+                step = due
+            if number not in numbers and number + 1 not in numbers:
+                continue
+            frame = _await(simulation.capture.submit(views, agent=spec.name))
+            if number in numbers and before is not None:
+                yield number, before, frame, simulation.info
+            before = frame
 
 
 def _make_parts(

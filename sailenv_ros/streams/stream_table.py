@@ -9,6 +9,7 @@ from typing import Protocol
 
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.streams.pushers import FurniturePusher, LaptopPusher, RoamingPusher
 from sailenv_ros.system.resources import resource_path
 
 __all__ = ["STREAMS", "Pusher", "StreamKind", "stream_named"]
@@ -54,12 +55,27 @@ class StreamKind:
         return resource_path("config", "streams", f"{self.name}.yaml")
 
 
+def _colof(which: str, pusher: Callable[[int], Pusher]) -> StreamKind:
+    """Return a stream of CoLLAs 2022: an hour at 25 Hz."""
+    return StreamKind(
+        name=f"colof_{which}",
+        title=f"Stream {which.upper()}",
+        rate_hz=25.0,
+        lap_frames=90_000,
+        laps=False,
+        pusher=pusher,
+    )
+
+
 STREAMS: dict[str, StreamKind] = {
     kind.name: kind
     for kind in (
         StreamKind(name="empty_space", title="EmptySpace", rate_hz=20.0, lap_frames=1550),
         StreamKind(name="solid", title="Solid", rate_hz=8.0, lap_frames=400),
         StreamKind(name="living_room", title="LivingRoom", rate_hz=25.0, lap_frames=558),
+        _colof("a", LaptopPusher),
+        _colof("b", FurniturePusher),
+        _colof("c", RoamingPusher),
     )
 }
 """The streams by their names."""

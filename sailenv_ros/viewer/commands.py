@@ -19,6 +19,7 @@ from sailenv_ros.operations import Operations
 from sailenv_ros.simulation.edit_records import EditOperations
 from sailenv_ros.viewer.chance_commands import CHANCE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
+from sailenv_ros.viewer.joint_commands import JOINT_COMMANDS
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
 from sailenv_ros.viewer.material_commands import MATERIAL_COMMANDS
 from sailenv_ros.viewer.object_overlay import overlay_of
@@ -34,7 +35,13 @@ MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
 _commands = CommandTable(
-    {**LIGHT_COMMANDS, **ROOM_COMMANDS, **MATERIAL_COMMANDS, **CHANCE_COMMANDS}
+    {
+        **LIGHT_COMMANDS,
+        **ROOM_COMMANDS,
+        **MATERIAL_COMMANDS,
+        **JOINT_COMMANDS,
+        **CHANCE_COMMANDS,
+    }
 )
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)

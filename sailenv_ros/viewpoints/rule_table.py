@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -17,7 +17,7 @@ from sailenv_ros.viewpoints.room_view import room_view
 from sailenv_ros.viewpoints.scene_coverage import coverage
 from sailenv_ros.viewpoints.view_scene import CameraRule, CameraView, RuleSettings, ViewScene
 
-__all__ = ["MOST_VIEWS", "camera_rules", "checked_rule", "sample_cameras"]
+__all__ = ["MOST_VIEWS", "camera_rules", "checked_rule", "rule_errors", "sample_cameras"]
 
 _RULES: Mapping[str, CameraRule] = MappingProxyType(
     {rule.type: rule for rule in (object_view, free_view, coverage, room_view)}
@@ -56,6 +56,20 @@ def checked_rule(rule: str, settings: Mapping[str, Any]) -> tuple[CameraRule, Ru
                 told = f"is not a setting of {rule}; its settings are: {known}"
             wrong.append((name, told))
         raise InvalidEntry(f"camera rule {rule!r}", dict(settings), wrong) from None
+
+
+def rule_errors(
+    rule: str, settings: Mapping[str, Any]
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Yield what is wrong with a rule and its settings: where below both, and a sentence."""
+    try:
+        checked_rule(rule, settings)
+    except UnknownName as problem:
+        yield ("rule",), str(problem)
+    except InvalidEntry as problem:
+        for name, why in problem.diagnostics:
+            parts = (int(part) if part.isdigit() else part for part in name.split("."))
+            yield ("settings", *parts), why
 
 
 def sample_cameras(

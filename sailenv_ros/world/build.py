@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.material_stock import MaterialStock, material_names
@@ -66,18 +68,21 @@ def build_world(
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
     found = materials or MaterialStock(assets)
+    parts = list(room_placements(spec.room, table, found))
     return World(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
         placements=[
-            *room_placements(spec.room, table, found),
+            *(part for part in parts if part.joint is None),
             *(
                 make_placement(
                     entry, stock[entry.name], poses[entry.name], table, seed, materials=found
                 )
                 for entry in spec.objects
             ),
+            # After the objects, whose ids do not depend on how doors are made.
+            *(part for part in parts if part.joint is not None),
         ],
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
@@ -110,13 +115,22 @@ def room_placements(
     room: RoomSpec | None, categories: CategoryTable, materials: MaterialStock | None = None
 ) -> Iterator[Placement]:
     """Yield the parts of a room, none if there is no room."""
-    for part in () if room is None else room_parts(room, materials):
+    made = () if room is None else room_parts(room, materials)
+    places = {part.asset.display_name: np.asarray(part.position_m) for part in made}
+    for part in made:
+        joint = None
+        if part.joint is not None:
+            x, y, z = (np.asarray(part.position_m) - places[part.parent]).tolist()
+            joint = JointPlacement(
+                spec=part.joint, parent=part.parent, parent_from_rest=Pose((x, y, z))
+            )
         yield Placement(
             name=part.asset.display_name,
             asset=part.asset,
             category_id=categories.named(part.asset.category).id,
             pose=Pose(part.position_m),
-            static=True,
+            static=joint is None,
+            joint=joint,
         )
 
 

@@ -47,6 +47,14 @@ def test_a_viewpoint_can_be_given(tmp_path: Path) -> None:
         assert np.asarray(sheet)[100:400, 100:500].std() == 0.0
 
 
+def test_a_scene_may_have_an_agent_of_any_name(tmp_path: Path) -> None:
+    """`random_shapes` has an agent `eye`."""
+    out = tmp_path / "shapes.png"
+    size = ["--width", "64", "--height", "48", "--views", "rgb", "--plain"]
+    assert main(["scene", "render", "random_shapes", "-o", str(out), *size]) == 0
+    assert out.is_file()
+
+
 def test_a_view_alone_has_no_border(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The file has the view's size; of several views there is no such file."""
     out = tmp_path / "plain.png"

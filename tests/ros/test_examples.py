@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytestmark = pytest.mark.ros
@@ -116,3 +118,35 @@ def test_a_data_set_is_made_and_read() -> None:
     out = run("14_dataset")
     assert "16 frames, SHA-256 " in out
     assert "frames: 12" in out
+
+
+def test_an_object_is_seen_on_white_from_all_around(tmp_path: Path) -> None:
+    """All of it is in every picture, and nothing else."""
+    sheet, arrays = tmp_path / "views.png", tmp_path / "views.npz"
+    out = run("15_adversarial_views", str(sheet), str(arrays))
+    assert "24 views" in out
+    assert ", 0 pixels at borders" in out
+    assert "around it all is 255 to 255" in out
+    assert sheet.stat().st_size > 10_000
+    with np.load(arrays) as views:
+        mask, places = views["mask"], views["object_coords"]
+        assert views["rgb"].shape == (24, 224, 224, 3)
+    assert np.isfinite(places[mask]).all()
+    assert np.ptp(places[mask][:, 2]) == pytest.approx(0.4, abs=0.02)
+    # Each view is another one.
+    assert len({view.tobytes() for view in places}) == 24
+
+
+def test_attention_follows_what_moves(tmp_path: Path) -> None:
+    """Far more often than chance, and labels are of what moves, one pixel each, far apart."""
+    still = tmp_path / "still.foa"
+    still.write_text("128,128,0,0,0\n" * 400)
+    out = run("16_attention", str(tmp_path / "sheet.png"), str(still))
+    covered = float(re.search(r"covers ([\d.]+) % of the pixels", out)[1])  # type: ignore[index]  # it is there
+    ours, others = (float(share) for share in re.findall(r"moves in (\d+) %", out))
+    assert ours > 5.0 * covered
+    assert ours > 2.0 * others
+    labels = re.findall(r"label: frame (\d+), row \d+, column \d+: (\w+)", out)
+    frames = [int(number) for number, _ in labels]
+    assert min(after - before for before, after in itertools.pairwise(frames)) >= 100
+    assert {name for _, name in labels} == {"cylinder", "cube", "sphere"}

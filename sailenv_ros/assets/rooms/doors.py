@@ -16,7 +16,17 @@ from sailenv_ros.assets.rooms.pieces import Box, WallFrame, boxes_mesh, collisio
 from sailenv_ros.model import BoxShape, Material, Mesh, ModelPart
 from sailenv_ros.scene.spec_room import DoorSpec, DoorwaySpec
 
-__all__ = ["ARCHITRAVE_M", "door_collision", "door_parts", "doorway_collision", "doorway_parts"]
+__all__ = [
+    "ARCHITRAVE_M",
+    "closed_leaf_parts",
+    "door_collision",
+    "door_parts",
+    "doorway_collision",
+    "doorway_parts",
+    "hinge_point",
+    "leaf_box",
+    "opening_sense",
+]
 
 ARCHITRAVE_M = 0.045
 """By which the frame covers the wall beside the opening [m]."""
@@ -39,9 +49,18 @@ _METAL = Material(name="handle", base_colour=(0.60, 0.59, 0.57, 1.0), metallic=1
 
 
 def door_parts(spec: DoorSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
-    """Return frame, leaf and metal fittings."""
+    """Return frame, leaf and metal fittings; of one whose leaf moves, the frame alone."""
+    fixed = ModelPart(mesh=boxes_mesh(_frame_boxes(spec, frame)), material=_paint(spec))
+    return (fixed,) if spec.hinged else (fixed, *closed_leaf_parts(spec, frame, spec.open))
+
+
+def closed_leaf_parts(
+    spec: DoorSpec, frame: WallFrame, open_deg: float = 0.0
+) -> tuple[ModelPart, ...]:
+    """Return leaf and metal fittings, turned into the room by an angle [deg]."""
     red, green, blue = spec.colour
-    paint = Material(name="door paint", base_colour=(red, green, blue, 1.0), roughness=0.6)
+    spec = spec.model_copy(update={"open": open_deg})
+    paint = _paint(spec)
     # What is sunk in gets less light than the renderer can know.
     shade = Material(
         name="door shade",
@@ -52,7 +71,6 @@ def door_parts(spec: DoorSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
     leaf = _turned(boxes_mesh(wood), spec, frame)
     panels = _turned(boxes_mesh(fields, chamfer_m=0.009), spec, frame)
     return (
-        ModelPart(mesh=boxes_mesh(_frame_boxes(spec, frame)), material=paint),
         ModelPart(mesh=leaf, material=paint),
         ModelPart(mesh=panels, material=paint),
         ModelPart(mesh=_turned(boxes_mesh(sunk), spec, frame), material=shade),
@@ -60,10 +78,18 @@ def door_parts(spec: DoorSpec, frame: WallFrame) -> tuple[ModelPart, ...]:
     )
 
 
+def _paint(spec: DoorSpec) -> Material:
+    red, green, blue = spec.colour
+    return Material(name="door paint", base_colour=(red, green, blue, 1.0), roughness=0.6)
+
+
 def door_collision(spec: DoorSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
-    """Return the closed door as a thick box outwards from its leaf, an open one as it stands."""
+    """Return the closed door as a thick box outwards from its leaf, an open one as it stands.
+
+    One whose leaf moves is its lining alone.
+    """
     half = spec.width / 2.0
-    if spec.open == 0.0:
+    if spec.open == 0.0 and not spec.hinged:
         out = (_LEAF_INNER_M, max(frame.thickness_m, _LEAF_INNER_M + _LEAST_BARRIER_M))
         return (collision_of(frame.box((-half, half), out, (0.0, spec.height))),)
     out = (0.0, frame.thickness_m)
@@ -72,7 +98,9 @@ def door_collision(spec: DoorSpec, frame: WallFrame) -> tuple[BoxShape, ...]:
         frame.box((half - _LINING_M, half), out, (0.0, spec.height)),
         frame.box((-half, half), out, (spec.height - _LINING_M, spec.height)),
     ]
-    leaf = _extent_box(spec, frame)
+    if spec.hinged:
+        return tuple(collision_of(box) for box in lining)
+    leaf = leaf_box(spec, frame)
     middle = (np.asarray(leaf.low) + np.asarray(leaf.high)) / 2.0
     x, y, z = _turned_points(middle, spec, frame).tolist()
     half_angle = _angle_rad(spec, frame) / 2.0
@@ -149,7 +177,8 @@ def _leaf_extent(spec: DoorSpec) -> tuple[float, float, float]:
     return spec.width / 2.0 - _LINING_M - _GAP_M, _FLOOR_GAP_M, spec.height - _LINING_M - _GAP_M
 
 
-def _extent_box(spec: DoorSpec, frame: WallFrame) -> Box:
+def leaf_box(spec: DoorSpec, frame: WallFrame) -> Box:
+    """Return the box of the closed leaf."""
     half, low, high = _leaf_extent(spec)
     return frame.box((-half, half), (_LEAF_INNER_M, _LEAF_INNER_M + _LEAF_M), (low, high))
 
@@ -226,10 +255,15 @@ def _turned(mesh: Mesh, spec: DoorSpec, frame: WallFrame) -> Mesh:
 def _turned_points(
     points: NDArray[np.float64], spec: DoorSpec, frame: WallFrame
 ) -> NDArray[np.float64]:
-    half = _leaf_extent(spec)[0] + _GAP_M
-    axis = frame.point(_hinge_sign(spec, frame) * half, _HINGE_OUT_M, 0.0)
+    axis = hinge_point(spec, frame)
     turned: NDArray[np.float64] = (points - axis) @ _turn(spec, frame).T + axis
     return turned
+
+
+def hinge_point(spec: DoorSpec, frame: WallFrame) -> NDArray[np.float64]:
+    """Return (3,) the foot of the hinges' axis [m]."""
+    half = _leaf_extent(spec)[0] + _GAP_M
+    return frame.point(_hinge_sign(spec, frame) * half, _HINGE_OUT_M, 0.0)
 
 
 def _turn(spec: DoorSpec, frame: WallFrame) -> NDArray[np.float64]:
@@ -240,7 +274,11 @@ def _turn(spec: DoorSpec, frame: WallFrame) -> NDArray[np.float64]:
 
 def _angle_rad(spec: DoorSpec, frame: WallFrame) -> float:
     """Return the angle about the vertical that swings the leaf into the room."""
+    return opening_sense(spec, frame) * math.radians(spec.open)
+
+
+def opening_sense(spec: DoorSpec, frame: WallFrame) -> float:
+    """Return the sense about the vertical in which the leaf opens into the room: 1 or -1."""
     leaf = -_hinge_sign(spec, frame) * np.asarray(frame.along)
     inwards = -np.asarray(frame.outward)
-    sense = math.copysign(1.0, leaf[0] * inwards[1] - leaf[1] * inwards[0])
-    return sense * math.radians(spec.open)
+    return math.copysign(1.0, leaf[0] * inwards[1] - leaf[1] * inwards[0])

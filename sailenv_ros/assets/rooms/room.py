@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.material_stock import MaterialStock, appearance_key
+from sailenv_ros.assets.rooms.door_leaves import door_leaf
 from sailenv_ros.assets.rooms.doors import (
     ARCHITRAVE_M,
     door_collision,
@@ -37,6 +38,7 @@ from sailenv_ros.assets.solids import joined
 from sailenv_ros.assets.surfaces import Surface
 from sailenv_ros.model import Asset, BoxShape, CollisionShape, Material, Mesh, Model, ModelPart
 from sailenv_ros.scene.room_rules import WALLS
+from sailenv_ros.scene.spec_joints import JointSpec
 from sailenv_ros.scene.spec_room import (
     DoorSpec,
     DoorwaySpec,
@@ -67,7 +69,7 @@ _OUTWARD: dict[str, Vector3] = {
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class RoomPart:
-    """A part of a room that never moves; it is not turned against the world.
+    """A part of a room; it is not turned against the world.
 
     Attributes
     ----------
@@ -75,10 +77,16 @@ class RoomPart:
         Its display name is the object's.
     position_m : (3,) tuple of float
         Of the asset's origin in the world [m].
+    joint : JointSpec or None
+        What a door's leaf moves on; None of what never moves.
+    parent : str
+        Display name of the part that carries a leaf.
     """
 
     asset: Asset
     position_m: Vector3
+    joint: JointSpec | None = None
+    parent: str = ""
 
 
 def room_parts(spec: RoomSpec, stock: MaterialStock | None = None) -> tuple[RoomPart, ...]:
@@ -124,6 +132,7 @@ def _room_parts(
         *_skirting(spec, frames),
         *_openings(spec, frames),
         *_partitions(spec, surfaces),
+        *_leaves(spec, frames),
     )
 
 
@@ -137,12 +146,36 @@ def _partitions(spec: RoomSpec, looks: _Looks) -> Iterator[RoomPart]:
         shapes = [*wall_collision(frame, holes)]
         for doorway in partition.doorways:
             by = frame.point(doorway.at, 0.0, 0.0)
-            for part in doorway_parts(doorway, frame):
+            door = doorway.as_door()
+            drawn = door_parts(door, frame) if doorway.door else doorway_parts(doorway, frame)
+            for part in drawn:
                 parts.append(replace(part, mesh=_moved_mesh(part.mesh, _vector(by))))
             shapes += [
                 _moved_shape(shape, _vector(by)) for shape in doorway_collision(doorway, frame)
             ]
         yield _part(partition.name, "wall", parts, shapes, frame.middle_m)
+
+
+def _leaves(spec: RoomSpec, frames: _Frames) -> Iterator[RoomPart]:
+    """Yield the leaves of doors that open and close."""
+    doors = [opening for opening in spec.openings if isinstance(opening, DoorSpec)]
+    for number, door in enumerate(doors, start=1):
+        if door.hinged:
+            yield _leaf(f"door {number}", f"door {number}", door, frames[door.wall], door.at)
+    for partition in spec.partitions:
+        frame, _ = partition_frame(partition, spec.size[2])
+        for number, doorway in enumerate(partition.doorways, start=1):
+            if doorway.door:
+                name = f"{partition.name} door {number}"
+                yield _leaf(name, partition.name, doorway.as_door(), frame, doorway.at)
+
+
+def _leaf(name: str, parent: str, door: DoorSpec, frame: WallFrame, at: float) -> RoomPart:
+    leaf, place = door_leaf(door, frame), frame.world_point(at)
+    part = _part(f"{name} leaf", "door", leaf.parts, [leaf.shape], place)
+    x, y, z = leaf.shape.centre_m
+    asset = replace(part.asset, mass_kg=leaf.mass_kg, centre_of_mass_m=(x, y, z))
+    return RoomPart(asset=asset, position_m=place, joint=leaf.joint, parent=parent)
 
 
 def _doorway_hole(doorway: DoorwaySpec) -> Hole:

@@ -1,6 +1,6 @@
 // The selected object: where it is, how large, what it is, what moves it; and all objects to choose.
 
-import { button, el, fixed, put, section } from "./dom.js";
+import { button, el, fixed, latest, put, section, slider } from "./dom.js";
 import { MaterialEditor } from "./material_editor.js";
 import { pairs } from "./view_panel.js";
 
@@ -48,6 +48,7 @@ export class ObjectPanel {
     try {
       const state = await this.app.ask("get_object", { object: id });
       if (this.state?.id === id) this.#fill(state);
+      if (this.opening) await this.#askJoint(id);
     } catch {
       // It has gone; the scene's news say so.
     }
@@ -110,6 +111,8 @@ export class ObjectPanel {
     );
     this.facts = el("dl", { class: "values" });
     this.behaviours = el("div", { class: "list" });
+    this.joint = el("div", { id: "joint" });
+    this.opening = null;
     const nudge = (glyph, title, by) => button("", () => this.#nudge(by), { glyph, title, kind: "icon" });
     const turn = (words, by) => button(words, () => this.#turn(by), { title: `turn by ${by}°` });
     this.editor.replaceChildren(
@@ -132,6 +135,7 @@ export class ObjectPanel {
           nudge("down", "lower by 5 cm", [0, 0, -0.05]),
           button("Delete", () => this.app.deleteSelected(), { glyph: "trash", kind: "danger", title: "Del" }),
         ),
+        this.joint,
         this.facts,
       ),
       this.materials.root,
@@ -139,6 +143,20 @@ export class ObjectPanel {
     );
     this.materials.show(state.id);
     this.#fill(state);
+    this.#askJoint(state.id);
+  }
+
+  /** Show the joint that the object moves on as a slider, if it is on one. */
+  async #askJoint(id) {
+    const joint = await this.app.ask("get_joint", { object: id });
+    if (this.state?.id !== id || !joint) return;
+    if (!this.opening) {
+      const words = joint.type === "hinge" ? "open [rad]" : "open [m]";
+      const send = latest((position) => this.app.ask("set_joint", { object: id, position }));
+      this.opening = slider(words, joint.low, joint.high, (joint.high - joint.low) / 200, send);
+      this.joint.replaceChildren(this.opening.root);
+    }
+    this.opening.set(joint.position);
   }
 
   #fill(state) {

@@ -59,6 +59,22 @@ DATA: dict[str, dict[str, Any]] = {
         "classes": [{"name": "bed", **CLASS}, {"name": "tv", **CLASS, "views": 3}],
         "overall": {"views": 8, "hit_rate": 0.6, "box_iou": 0.5, "pixel_iou": float("nan")},
     },
+    "streams": {
+        "seed": 0,
+        "streams": [
+            {"name": "solid", "label": "Solid", "pairs": 4, "factor": 0.998, "factor_pixels": 900,
+             "left": {"ours": 0.2, "dis": 0.3},
+             "published": {"factor": 5.4, "left_stored": 0.9, "left_best": 0.2, "left_dis": 0.2,
+                           "f1": 0.18},
+             "templates": {"whole": 0.2, "whole_deviation": 0.1, "focus": 0.3,
+                           "focus_deviation": 0.1},
+             "horn_schunck": None},
+            {"name": "colof_a", "label": "Stream A", "pairs": 4, "factor": float("nan"),
+             "factor_pixels": 0, "left": {"ours": float("nan"), "dis": 0.3}, "published": {},
+             "templates": None,
+             "horn_schunck": {"motion_f1": 0.3, "accuracies": [0.9, 0.8]}},
+        ],
+    },
     "throughput": {
         "frames": 2, "transports": ["in process", "DDS, default"], "renderer": "GL",
         "base": {"transport": "in process", "scene": "optical", "width": 64, "height": 48,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,8 @@ import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.generation import GeneratedScene, Generator, Rules, room_kinds
-from sailenv_ros.generation.room_agents import standing
+from sailenv_ros.generation.checks import look_backend
+from sailenv_ros.generation.room_agents import StandingWorld
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.viewpoints.room_view import outlook
@@ -147,12 +149,13 @@ def test_its_agents_and_its_way_begin_with_a_view_of_the_room(
     scene: GeneratedScene, world: World
 ) -> None:
     specs = {entry.name: entry.to_agent_spec() for entry in scene.spec.agents}
-    assert specs["eye"].following
+    assert specs["walker"].following
     assert "view" in specs
     mover = scene.spec.mover
     assert mover is not None
     poses = [spec.pose for spec in specs.values() if spec.pose is not None]
-    with standing(world) as rules:
+    with closing(look_backend()) as backend:
+        rules = StandingWorld(world, backend)
         for pose in (mover.waypoint_poses[0], *poses):
             seen = outlook(rules, pose)
             assert len(seen.shares) >= 3

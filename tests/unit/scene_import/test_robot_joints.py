@@ -171,7 +171,7 @@ def test_links_of_urdf_are_where_mujoco_has_them(tmp_path: Path, packs: Path) ->
 
 
 def test_a_pushed_door_moves_as_mujocos_does(tmp_path: Path, packs: Path) -> None:
-    """20 N for 0.2 s across the leaf: the same way within 2 %, until friction has stopped it."""
+    """20 N for 0.2 s across the leaf: the same way within 0.5 %, until friction has stopped it."""
     door = """<mujoco model="door"><compiler angle="radian"/>
       <option timestep="0.004166666666666667" gravity="0 0 -9.81" integrator="implicitfast"/>
       <worldbody><body name="leaf" pos="0 0 1"><joint name="hinge" axis="0 0 1" range="-0.1 3"
@@ -189,7 +189,7 @@ def test_a_pushed_door_moves_as_mujocos_does(tmp_path: Path, packs: Path) -> Non
                 data.xfrc_applied[1] = (0, 20, 0, 0, 0, 0) if data.time < 0.2 - 1e-9 else 0
                 mujoco.mj_step(model, data)
             (joint,) = simulation.get_joints()
-            assert joint.position == pytest.approx(float(data.qpos[0]), rel=0.02)
+            assert joint.position == pytest.approx(float(data.qpos[0]), rel=0.005)
         assert joint.position > 0.05
         assert abs(joint.velocity) < 1e-3 > abs(float(data.qvel[0]))
 

@@ -13,7 +13,7 @@ import pytest
 from sailenv_ros import Simulation
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
+from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState, SceneError
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 
@@ -41,6 +41,8 @@ randomise:
      look_at: {uniform: [[-0.5, -0.5, 0], [0.5, 0.5, 1]]}, exposure: {normal: [0, 0.5]}}
   - {name: junk, type: distractors, assets: [cube, cone], count: {uniform: [1, 3]},
      within: [[-1, -1, 1], [1, 1, 2]], scale: {uniform: [0.05, 0.2]}}
+  - {name: sky, type: environment, every: frame, exposure: {normal: [0, 0.3]},
+     sky_zenith: {uniform: ["#203050", "#a0c0f0"]}}
 """
 
 
@@ -98,6 +100,67 @@ def test_record_holds_also_if_the_scene_draws_otherwise_now(den: Simulation, fol
         other.randomise(record=frame.randomised)
         other.step(5)
         assert same(frame, capture(other))
+
+
+RULED = """
+randomise:
+  - {name: yard, type: object, of: crate, offset: {uniform: [[-0.5, -0.5, 0], [0.5, 0.5, 0]]}}
+  - {name: look, type: camera, of: eye, every: EVERY, rule: RULE, settings: {SETTINGS}}
+"""
+RULES = {
+    "room_view": "objects: 1, nearest_m: 0.3, height_m: [0.8, 1.2]",
+    "free_view": "objects: 1, nearest_m: 0.3, height_m: [0.8, 1.2]",
+    "coverage": "height_m: [0.8, 1.2], attempts: 20, visible: 0.1, nearest_m: 0.3",
+    "object_view": "objects: [crate]",
+}
+
+
+def ruled(rule: str, every: str) -> str:
+    plain = DEN[: DEN.index("randomise:")]
+    drawn = RULED.replace("RULE", rule).replace("EVERY", every)
+    return plain + drawn.replace("SETTINGS", RULES[rule])
+
+
+@pytest.mark.parametrize("every", ["epoch", "frame"])
+@pytest.mark.parametrize("rule", sorted(RULES))
+def test_rules_place_cameras_and_the_record_keeps_the_place(
+    tmp_path: Path, folder: Path, rule: str, every: str
+) -> None:
+    """A frame is made again from its record where no rule is; another epoch stands elsewhere."""
+    (tmp_path / "ruled.yaml").write_text(ruled(rule, every), encoding="utf-8")
+    with simulation(tmp_path, "ruled") as made:
+        first = capture(made)
+        made.randomise()
+        second = capture(made)
+        poses = [frame.camera.pose for frame in (first, second)]
+        assert poses[0] != poses[1]
+        if rule == "object_view":
+            crate = next(i.id for i in made.info.instances if i.name == "crate")
+            for frame in (first, second):
+                assert 0.02 <= float((frame["instance"] == crate).mean()) <= 0.6
+        else:
+            assert all(0.8 <= pose.position_m[2] <= 1.2 for pose in poses)
+    record = json.loads(json.dumps(second.randomised))
+    assert set(record[every]["agents"]["eye"]) == {"position", "rotation"}
+    with simulation(folder, "plain") as other:
+        other.randomise(record=record)
+        assert same(second, capture(other))
+
+
+def test_a_rule_that_is_none_is_told_with_its_place(tmp_path: Path) -> None:
+    """Names and settings of rules are checked with the file."""
+    text = ruled("room_view", "epoch").replace("rule: room_view", "rule: room_vue")
+    (tmp_path / "vue.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError, match="did you mean 'room_view'"):
+        simulation(tmp_path, "vue")
+    text = ruled("room_view", "epoch").replace("objects: 1", "objekts: 1")
+    (tmp_path / "set.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError, match="is not a setting of room_view"):
+        simulation(tmp_path, "set")
+    text = ruled("room_view", "epoch").replace("rule:", "position: [0, 0, 1], rule:")
+    (tmp_path / "both.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError, match="rule"):
+        simulation(tmp_path, "both")
 
 
 def test_seed_and_index_decide(den: Simulation) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
 from sailenv_ros.picture_settings import LIMITS
-from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Position, Rotation, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
@@ -17,6 +17,8 @@ __all__ = ["RandomCamera"]
 
 _Angle = Annotated[float, Number(least=1.0, most=170.0, unit="deg")]
 _Stops = Annotated[float, Number(least=-16.0, most=16.0, unit="stops")]
+_RuleName = Annotated[str, Text(r"[a-z][a-z0-9_]{0,62}", "the name of a camera rule")]
+_Seed = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
 _Well = Annotated[float, Number(least=0.0, most=LIMITS["full_well"][1], unit="electrons")]
 
 
@@ -28,6 +30,8 @@ class RandomCamera(Thing):
     rules: ClassVar[tuple[Rule, ...]] = (
         at_most_one("look_at", "rotation"),
         only_beside("position", "look_at", "rotation"),
+        at_most_one("position", "rule"),
+        only_beside("rule", "settings"),
     )
 
     type: Literal["camera"]
@@ -41,6 +45,13 @@ class RandomCamera(Thing):
     rotation: Annotated[Draw, Drawn(Rotation)] | None = Field(
         default=None, description="[roll, pitch, yaw], instead of look_at [deg]"
     )
+    rule: _RuleName | None = Field(
+        default=None,
+        description="instead of a position: the camera rule that places it, such as `room_view`",
+    )
+    settings: dict[str, Any] = Field(
+        default_factory=dict, description="of the rule, those that differ from its own"
+    )
     vertical_fov: Annotated[Draw, Drawn(_Angle)] | None = Field(
         default=None, description="full vertical angle of view [deg]"
     )
@@ -52,11 +63,16 @@ class RandomCamera(Thing):
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
-        """Return position, look_at or rotation, and settings, for each camera."""
+        """Return the keys of each camera; a rule with its settings and the seed that was drawn."""
         draws = self.draws()
-        return {
-            "agents": {
-                name: {key: pick(name, key, draw) for key, draw in draws.items()}
-                for name in chosen(self.of, targets.agents)
-            }
-        }
+        seed = Drawn(_Seed).check({"uniform": [0, 2**31 - 1]})
+        agents: Values = {}
+        for name in chosen(self.of, targets.agents):
+            agents[name] = {key: pick(name, key, draw) for key, draw in draws.items()}
+            if self.rule is not None:
+                agents[name]["rule"] = {
+                    "name": self.rule,
+                    "settings": dict(self.settings),
+                    "seed": pick(name, "rule", seed),
+                }
+        return {"agents": agents}

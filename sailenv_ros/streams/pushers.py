@@ -1,0 +1,172 @@
+"""What pushes the objects and the camera of the streams of continual optical flow (CoLLAs 2022).
+
+The published programs step 1 ms a picture and call 25 pictures a second. Here a second is one: all
+velocities are such that objects and camera move as far from picture to picture as there.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.simulation import Simulation
+
+__all__ = ["FurniturePusher", "LaptopPusher", "RoamingPusher"]
+
+Vector = NDArray[np.float64]
+
+FRAME_S = 1.0 / 25.0
+
+STEP_S = 1.0 / 240.0
+"""A force of one physics step is an impulse."""
+
+PUBLISHED_STEP_S = 0.001
+
+SLOWER = PUBLISHED_STEP_S / FRAME_S
+"""By which velocities of the published programs are multiplied."""
+
+
+class LaptopPusher:
+    """Pushes one floating object at random within a rectangle, which the camera looks at.
+
+    Parameters
+    ----------
+    seed : int
+    """
+
+    NAME = "laptop"
+    EYE_M = (0.0, 0.0, 0.995)
+    LEAST_M, MOST_M = np.array([-0.421, 0.615]), np.array([0.433, 1.39])
+    """Of its place: to the left and up, seen from the camera [m]."""
+
+    NEAR_M = 0.2
+    """Nearer than this to a side of the rectangle it is sent back."""
+
+    CHANCE = 0.01
+    IMPULSE_N_S, MASS_KG = 0.9, 0.3
+    """Of the published program; its laptop's mass is not told, this one moves the picture by about
+    a pixel, beyond the 0.5 px from which the metrics call a pixel moving."""
+
+    SPEED_M_S = IMPULSE_N_S / MASS_KG * SLOWER
+
+    def __init__(self, seed: int) -> None:
+        self._rng = np.random.default_rng([seed, 1])
+
+    def push(self, simulation: Simulation, number: int) -> None:
+        """Send it another way, if it is time, and turn the camera to it."""
+        thing = simulation.get_object(self.NAME)
+        simulation.set_pose(look_at(self.EYE_M, thing.pose.position_m))
+        place = np.asarray(thing.pose.position_m)[1:]
+        # Drawn in every frame, so that what happens at the sides changes nothing later.
+        chance, direction = self._rng.uniform(), self._rng.normal(size=2)
+        wanted: Vector | None = None
+        if number == 1:
+            wanted = direction / self.MASS_KG * SLOWER
+        elif min((place - self.LEAST_M).min(), (self.MOST_M - place).min()) < self.NEAR_M:
+            wanted = 5.0 * SLOWER * ((self.LEAST_M + self.MOST_M) / 2.0 - place)
+        elif chance < self.CHANCE:
+            wanted = self.SPEED_M_S * direction / np.linalg.norm(direction)
+        if wanted is None:
+            return
+        now = np.asarray(thing.linear_velocity)
+        change = np.array([0.0, *wanted]) - now
+        simulation.apply_wrench(self.NAME, force_n=thing.mass_kg * change / STEP_S)
+
+
+class FurniturePusher:
+    """Pushes and twists furniture in every frame, by Gaussian forces and torques.
+
+    Parameters
+    ----------
+    seed : int
+    """
+
+    NAMES = ("bed", "lamp", "box", "side table")
+    FORCE_N = 5.0
+    TORQUE_NM = 0.5
+
+    def __init__(self, seed: int) -> None:
+        self._rng = np.random.default_rng([seed, 2])
+
+    def push(self, simulation: Simulation, number: int) -> None:
+        """Push each for the time of a frame."""
+        for name in self.NAMES:
+            drawn = self._rng.normal(size=6)
+            simulation.apply_wrench(
+                name,
+                force_n=self.FORCE_N * drawn[:3],
+                torque_nm=self.TORQUE_NM * drawn[3:],
+                duration_s=FRAME_S,
+            )
+
+
+class RoamingPusher:
+    """Pushes the furniture, and a camera that is a body and looks at a point.
+
+    The camera's body is a ball of a mass, with drag, that bounces off the sides of a box in which
+    nothing stands.
+
+    Parameters
+    ----------
+    seed : int
+    """
+
+    EYE_M = np.array([-1.9, 0.6, 1.81])
+    """Where it begins [m]; the scene's agent has this pose."""
+
+    TARGET_M = (1.6, 0.0, 0.87)
+    LEAST_M, MOST_M = np.array([-2.2, -1.5, 1.4]), np.array([-0.8, 1.5, 2.3])
+    """The box [m]."""
+
+    MASS_KG = 0.125
+    DRAG_PER_S = 5e-4
+    RESTITUTION = 0.4
+    IMPULSES_N_S = (0.8 * SLOWER, 1.1 * SLOWER)
+    EVERY = 200
+    """Frames between two pushes."""
+
+    SLOW_M_S, FAST_M_S = 3.0 * SLOWER, 8.5 * SLOWER
+    SLOW_FRAMES = 20
+    """After so many slow frames it is pushed, too."""
+
+    def __init__(self, seed: int) -> None:
+        self._rng = np.random.default_rng([seed, 3])
+        self._furniture = FurniturePusher(seed)
+        self._place = self.EYE_M.copy()
+        self._velocity = np.zeros(3)
+        self._slow = 0
+        self._last: tuple[int, float] | None = None
+
+    def push(self, simulation: Simulation, number: int) -> None:
+        """Push all, and move the camera on by a frame."""
+        self._furniture.push(simulation, number)
+        simulation.set_pose(self.pose_after(number))
+
+    def pose_after(self, number: int) -> Pose:
+        """Return the camera's next pose; called once a frame, in order."""
+        impulse = float(self._rng.uniform(*self.IMPULSES_N_S))
+        direction = self._other_direction()
+        speed = float(np.linalg.norm(self._velocity))
+        self._slow = self._slow + 1 if speed < self.SLOW_M_S else 0
+        if speed > self.FAST_M_S:
+            self._velocity = self._velocity * (1.0 - impulse / self.MASS_KG / speed)
+        elif number % self.EVERY == 0 or self._slow >= self.SLOW_FRAMES:
+            self._last = direction
+            self._velocity = self._velocity.copy()
+            self._velocity[direction[0]] += direction[1] * impulse / self.MASS_KG
+        self._velocity = self._velocity * math.exp(-self.DRAG_PER_S * FRAME_S)
+        self._place = self._place + self._velocity * FRAME_S
+        out = (self._place < self.LEAST_M) | (self._place > self.MOST_M)
+        self._place = np.clip(self._place, self.LEAST_M, self.MOST_M)
+        self._velocity = np.where(out, -self.RESTITUTION * self._velocity, self._velocity)
+        return look_at(self._place, self.TARGET_M)
+
+    def _other_direction(self) -> tuple[int, float]:
+        """Draw an axis and a sign, not those of the last push."""
+        while True:
+            drawn = int(self._rng.integers(3)), float(self._rng.integers(2) * 2 - 1)
+            if drawn != self._last:
+                return drawn
