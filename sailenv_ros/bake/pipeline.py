@@ -335,7 +335,8 @@ def _tiles(texels: Texels, chosen: NDArray[np.intp]) -> Texels:
 
 def _places_of(texels: Texels) -> NDArray[np.int64]:
     """Return (N,) the number of each texel's place in the map."""
-    return texels.rows.astype(np.int64) * texels.index.shape[1] + texels.columns
+    places: NDArray[np.int64] = texels.rows.astype(np.int64) * texels.index.shape[1]
+    return places + texels.columns
 
 
 def _middles(texels: Texels, patches: Patches) -> NDArray[np.intp]:
