@@ -49,7 +49,7 @@ _INTERPOLATE = Kernel(
 _SPREAD = Kernel(
     "spread_change",
     *("integer", "integer", "integer", "array", "array", "array", "array", "integer", "array"),
-    *("array", "array", "array", "array", "array", "integer", "integer", "array", "array"),
+    *("array", "array", "array", "array", "array", "integer", "array", "array", "array"),
 )
 
 
@@ -256,11 +256,10 @@ def spread_change(
     change : (P, C) float32
         What was found: the layers' channels in their order.
     layers : list of (side, side, 3) or (side, side) float16
-        At least one, all of one shape; written to.
+        At least one; written to.
     """
     count, patch_count = len(texels[0]), len(found)
-    each = 3 if layers[0].ndim == 3 else 1
-    channels = each * len(layers)
+    channels = sum(3 if layer.ndim == 3 else 1 for layer in layers)
     for what, array, dtype, width in (
         ("places", texels[0], np.int32, None),
         ("positions", texels[1], np.float32, 3),
@@ -276,8 +275,17 @@ def spread_change(
     checked("change", change, np.float32, (patch_count, channels))
     for layer in layers:
         checked("layer", layer, np.float16, (side, side, 3)[: layer.ndim])
-    addresses = np.array([address(layer) for layer in layers], np.uint64)
+    depths = [3 if layer.ndim == 3 else 1 for layer in layers]
+    addresses = np.array(
+        [
+            address(layer) + 2 * channel
+            for layer, depth in zip(layers, depths, strict=True)
+            for channel in range(depth)
+        ],
+        np.uint64,
+    )
+    steps = np.repeat(np.array(depths, np.int64), depths)
     _SPREAD(
         threads, side, count, *texels, patch_count, patch_of_texel, *patches, found,
-        each, channels, change, addresses,
+        channels, change, addresses, steps,
     )  # fmt: skip

@@ -26,6 +26,11 @@ class Quality:
         Objects that may take less of a patch's view than this share change nothing there.
     bounces : int
         How often light is sent on between surfaces whose colour has changed.
+    by_texels : bool
+        True traces shadows of lamps and sun from each texel, False from each patch.
+    least_far : float
+        Changes of less than this share of what most patches get are not seen where they come from
+        surfaces that became brighter or darker.
     """
 
     first_rays: int
@@ -36,17 +41,21 @@ class Quality:
     smoothing: int
     least: float
     bounces: int
+    by_texels: bool
+    least_far: float
 
 
 QUICK = Quality(
     first_rays=0,
-    rays=8,
-    area_rays=4,
+    rays=4,
+    area_rays=2,
     light_rays=4,
-    probe_rays=32,
+    probe_rays=16,
     smoothing=3,
     least=0.01,
     bounces=4,
+    by_texels=False,
+    least_far=0.012,
 )
 """For the frame in which something moves."""
 
@@ -59,5 +68,7 @@ FINE = Quality(
     smoothing=2,
     least=0.002,
     bounces=8,
+    by_texels=True,
+    least_far=0.004,
 )
 """For what follows."""

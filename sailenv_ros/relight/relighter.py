@@ -75,6 +75,7 @@ class Relighter:
         self._usable = native_is_usable()
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
+        self._preparing: Future[BakedScene] | None = None
         self._original: SceneContents | None = None
         self._scene: BakedScene | None = None
         self._places: dict[int, _Place] = {}
@@ -101,6 +102,7 @@ class Relighter:
             return
         self._scene, self._light, self._seen, self._of = None, None, None, None
         self._places, self._refining, self._changes, self._painted = {}, None, [], {}
+        self._preparing = None
 
     def lit(
         self,
@@ -128,6 +130,9 @@ class Relighter:
         if self._original is None or not self._usable:
             return snapshot
         if wanted:
+            if not lockstep and self._scene is None and self._preparing is None:
+                # The first move then finds everything ready; in lockstep nobody waits for it.
+                self._preparing = self._background().submit(_scene_of, self._original, 1)
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
         if self._light is None:
             return snapshot
@@ -177,10 +182,8 @@ class Relighter:
             if key == shown.key:
                 shown.light, shown.refined = future.result(), True
                 return
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(1, "relighting")
         # One thread: the others draw meanwhile.
-        future = self._pool.submit(
+        future = self._background().submit(
             relit, self._prepared(), self._changes, FINE, threads=1, painted=self._painted
         )
         self._refining = shown.key, future
@@ -194,11 +197,19 @@ class Relighter:
             painted=self._painted,
         )
 
+    def _background(self) -> ThreadPoolExecutor:
+        if self._pool is None:
+            self._pool = ThreadPoolExecutor(1, "relighting")
+        return self._pool
+
     def _prepared(self) -> BakedScene:
         if self._scene is None:
             assert self._original is not None
-            assert self._original.baked is not None
-            self._scene = BakedScene(self._original.baked, self._original, thread_count())
+            if self._preparing is None:
+                self._scene = _scene_of(self._original, thread_count())
+            else:
+                self._scene = self._preparing.result()
+                self._preparing = None
         return self._scene
 
     def _changed(self, snapshot: WorldSnapshot, *, lockstep: bool) -> list[Change]:
@@ -274,6 +285,11 @@ class Relighter:
             and drawn.model is not known[drawn.instance.id].model
             and _has_shape_of(drawn, known[drawn.instance.id])
         }
+
+
+def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
+    assert contents.baked is not None
+    return BakedScene(contents.baked, contents, threads)
 
 
 def _has_shape_of(drawn: DrawnInstance, before: DrawnInstance) -> bool:

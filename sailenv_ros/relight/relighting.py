@@ -35,8 +35,8 @@ __all__ = ["relit"]
 
 Floats = NDArray[np.float32]
 
-LEAST_FAR = 0.004
-"""Changes of less than this share of what most patches get are not seen."""
+LEAST_KNOWN = 0.004
+"""Share of what most patches get below which nothing is known of what others would get."""
 
 
 def relit(
@@ -100,11 +100,14 @@ class _Relighting:
         if quality.first_rays:
             wanted = np.where(found == 2, 2, self._wanted)
             found, change, area = self._gather(wanted, quality.rays)
-        found, change, far, near = self._bounced(found, change, direct)
-        layers = self._spread(found, change, area)
-        layers = [
-            self._with_direct(layer, shone.get(number)) for number, layer in enumerate(layers)
-        ]
+        found_far, change, far, near = self._bounced(found, change, direct)
+        layers = self._spread(found_far, change, area)
+        if quality.by_texels:
+            layers = [
+                self._with_direct(layer, shone.get(number)) for number, layer in enumerate(layers)
+            ]
+        else:
+            layers = self._with_patches_direct(layers, shone)
         layers = self._with_probes(layers, far, near)
         return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
 
@@ -144,7 +147,7 @@ class _Relighting:
         channels = [3 * n + colour for n in lamps for colour in range(3)]
         known = self._scene.irradiance[:, channels].sum(axis=1)
         guessed = by_probes[:, channels].sum(axis=1)
-        least = LEAST_FAR * float(np.percentile(known, 90)) if known.any() else np.inf
+        least = LEAST_KNOWN * float(np.percentile(known, 90)) if known.any() else np.inf
         share = np.where(guessed > least, known / np.maximum(guessed, 1e-12), 1.0)
         return np.clip(share, 0.25, 4.0).astype(np.float32)[:, None]
 
@@ -238,19 +241,40 @@ class _Relighting:
     def _shine(
         self, found: NDArray[np.uint8], direct: Floats
     ) -> dict[int, tuple[NDArray[np.uint8], Floats, Floats]]:
-        """Find what changes of lamps and sun at texels, and bring means of patches up to date."""
+        """Find what changes of lamps and sun, and bring means of patches up to date.
+
+        Returns
+        -------
+        shone : dict of int to tuple
+            By layer: state, light and share of it that arrives, of texels or of patches.
+        """
         patches, shone = self._scene.patches, {}
+        by_texels = self._quality.by_texels
+        places = (
+            (self._positions, self._normals, patches.of_texel)
+            if by_texels
+            else (
+                self._patch_positions,
+                self._patch_normals,
+                np.arange(len(patches.size), dtype=np.int32),
+            )
+        )
         for number, light in enumerate(self._lights):
             if light is None or light.type == "area" or not self._changes:
                 continue
             state, value, share = shine_change(
-                self._rays, ray_light(light), self._positions, self._normals, patches.of_texel,
+                self._rays, ray_light(light), *places,
                 found, net(self._quality.light_rays), threads=self._threads,
             )  # fmt: skip
-            old = self._layers[number].direct.reshape(-1)[self._scene.places].astype(np.float32)
+            if by_texels:
+                old = self._layers[number].direct.reshape(-1)[self._scene.places].astype(np.float32)
+            else:
+                old = direct[:, number]
             new = np.where(state == 2, value, old + value)
             difference = np.where(state > 0, np.maximum(new, 0.0) - old, 0.0)
-            direct[:, number] = np.maximum(direct[:, number] + patches.means(difference), 0.0)
+            if by_texels:
+                difference = patches.means(difference)
+            direct[:, number] = np.maximum(direct[:, number] + difference, 0.0)
             shone[number] = state, value, share
         return shone
 
@@ -292,7 +316,7 @@ class _Relighting:
         if share is not None:
             light *= share
         brightest = float(np.percentile(self._scene.irradiance.sum(axis=1), 90))
-        seen = np.abs(light).sum(axis=1) > LEAST_FAR * brightest
+        seen = np.abs(light).sum(axis=1) > self._quality.least_far * brightest
         chosen = seen & (found < 2) & (self._wanted == 1)
         change[chosen] += light[chosen]
         found[chosen] = 1
@@ -301,17 +325,14 @@ class _Relighting:
 
     def _spread(self, found: NDArray[np.uint8], change: Floats, area: Floats) -> list[LightLayer]:
         bounced = [layer.bounced.copy() for layer in self._layers]
-        self._spread_over(found, change, bounced)
-        layers = [
-            replace(layer, bounced=texels)
-            for layer, texels in zip(self._layers, bounced, strict=True)
+        direct = {number: self._layers[number].direct.copy() for number in self._area}
+        # In one go: they share their neighbours.
+        both = np.concatenate([change, area], axis=1)
+        self._spread_over(found, both, [*bounced, *direct.values()])
+        return [
+            replace(layer, bounced=texels, direct=direct.get(number, layer.direct))
+            for number, (layer, texels) in enumerate(zip(self._layers, bounced, strict=True))
         ]
-        if self._area:
-            direct = [self._layers[n].direct.copy() for n in self._area]
-            self._spread_over(found, area, direct)
-            for number, texels in zip(self._area, direct, strict=True):
-                layers[number] = replace(layers[number], direct=texels)
-        return layers
 
     def _spread_over(
         self,
@@ -338,10 +359,38 @@ class _Relighting:
             return replace(layer, direct=direct)
         visibility = layer.visibility.copy()
         _put(visibility, self._scene.places, state, 255.0 * share, 255.0)
-        changed = visibility != layer.visibility
-        return replace(
-            layer, direct=direct, visibility=visibility, edges=_elsewhere(layer.edges, changed)
-        )
+        return _shown(layer, direct, visibility)
+
+    def _with_patches_direct(
+        self,
+        layers: list[LightLayer],
+        shone: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
+    ) -> list[LightLayer]:
+        """Bring lamps and sun up to date by what was found at patches."""
+        numbers = [number for number, (state, _, _) in shone.items() if state.any()]
+        if not numbers:
+            return layers
+        # What is worked out anew is so for all lights alike.
+        found = np.maximum.reduce([shone[number][0] for number in numbers])
+        texels: list[NDArray[np.float16]] = []
+        columns: list[Floats] = []
+        for number in numbers:
+            layer, (state, value, share) = layers[number], shone[number]
+            texels.append(layer.direct.copy())
+            columns.append(np.where(state > 0, value, np.float32(0.0)))
+            if layer.visibility is not None:
+                texels.append(layer.visibility.astype(np.float16))
+                columns.append(np.where(state > 0, np.float32(255.0) * share, np.float32(0.0)))
+        self._spread_over(found, np.stack(columns, axis=1), texels)
+        result, rest = list(layers), iter(texels)
+        for number in numbers:
+            layer, direct = layers[number], next(rest)
+            if layer.visibility is None:
+                result[number] = replace(layer, direct=direct)
+                continue
+            bytes_ = np.rint(np.minimum(next(rest), np.float16(255.0))).astype(np.uint8)
+            result[number] = _shown(layer, direct, bytes_)
+        return result
 
     def _with_probes(self, layers: list[LightLayer], far: Floats, near: Floats) -> list[LightLayer]:
         result = []
@@ -372,6 +421,14 @@ def _put(
     kept = np.where(state[chosen] == 1, flat[at].astype(np.float32), 0.0)
     new = np.clip(kept + value[chosen], 0.0, most)
     flat[at] = np.rint(new) if layer.dtype == np.uint8 else new
+
+
+def _shown(
+    layer: LightLayer, direct: NDArray[np.float16], visibility: NDArray[np.uint8]
+) -> LightLayer:
+    """Return a layer of a light whose share that arrives is known, with other shares."""
+    edges = _elsewhere(layer.edges, visibility != layer.visibility)
+    return replace(layer, direct=direct, visibility=visibility, edges=edges)
 
 
 def _elsewhere(edges: SunEdges | None, changed: NDArray[np.bool_]) -> SunEdges | None:

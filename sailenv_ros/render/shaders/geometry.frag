@@ -40,9 +40,11 @@ void main() {
     // the most exact form in which the rasteriser knows it.
     out_surface = vec2(1.0 / gl_FragCoord.w, INSTANCE_ID);
 #ifdef SHADED
-    vec4 base = base_colour(uv);
+#ifndef UNLIT
+    vec3 colour = picture_colour(uv);
+#endif
 #ifdef MASKED
-    if (base.a < cutoff(MATERIAL_FINISH.z, uv)) discard;
+    if (base_colour(uv).a < cutoff(MATERIAL_FINISH.z, uv)) discard;
 #endif
     vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
 #ifdef OUT_NORMALS
@@ -63,7 +65,7 @@ void main() {
 #endif
     vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, packed_texel);
     out_shape = vec4(octahedral(normal), rough_metal);
-    out_albedo = vec4(base.rgb, MATERIAL_FINISH.w);
+    out_albedo = vec4(colour, MATERIAL_FINISH.w);
 #ifdef BAKED
     out_light_at = light_uv;
 #endif

@@ -16,6 +16,16 @@ vec4 base_colour(vec2 uv) {
 #endif
 }
 
+// The same for pictures, of a slightly finer level: that is nearer to the mean over the pixel, as
+// measured beside 4 x 4 samples a pixel. Alpha, which decides what is there, keeps its level.
+vec3 picture_colour(vec2 uv) {
+#ifdef COLOUR_MAP
+    return MATERIAL_COLOUR.rgb * texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x), -0.25).rgb;
+#else
+    return MATERIAL_COLOUR.rgb;
+#endif
+}
+
 // Alpha below which there is nothing; from afar it is less (coverage.py).
 float cutoff(float nearby, vec2 uv) {
 #ifdef COLOUR_MAP

@@ -154,3 +154,18 @@ def test_what_goes_leaves_no_shadow(baked: WorldSnapshot) -> None:
     assert (lamp > 0).sum() > (light_of(baked).layers[1].direct > 0).sum()
     unbaked = replace(baked, contents=replace(contents, baked=None))
     assert relighter.lit(unbaked, wanted=True, lockstep=True) is unbaked
+
+
+def test_in_real_time_the_first_move_finds_all_ready(baked: WorldSnapshot) -> None:
+    """What relighting needs is made beside frames that move nothing, and is what lockstep makes."""
+    relighter, other = Relighter(), Relighter()
+    relighter.lit(baked, wanted=True, lockstep=False)
+    assert relighter._preparing is not None
+    relighter._preparing.result(timeout=60.0)
+    first = light_of(relighter.lit(at(baked, -0.5), wanted=True, lockstep=False))
+    other.watch(baked)
+    second = light_of(other.lit(at(baked, -0.5), wanted=True, lockstep=True))
+    for one, two in zip(first.layers, second.layers, strict=True):
+        assert np.array_equal(one.direct, two.direct)
+        assert np.array_equal(one.bounced, two.bounced)
+    relighter.close()

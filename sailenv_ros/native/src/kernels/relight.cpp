@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <new>
+#include <vector>
 
 #include "../abi.h"
 #include "../threads.h"
@@ -39,9 +42,6 @@ void frame_about(const float* n, float* a, float* b) {
 }
 
 // Halves that are 0 or more.
-float half_to_float(uint16_t h) { return from_half(splat(static_cast<int32_t>(h)))[0]; }
-uint16_t float_to_half(float x) { return static_cast<uint16_t>(to_half(splat(x))[0]); }
-
 float dot(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Adds what a ray sees, times `weight`, to `sum`; false if that is the back of a surface.
@@ -243,6 +243,48 @@ Shine shine(const RayScene& s, const RayLight& l, const float* p, const float* n
         }
     }
     return result;
+}
+
+// Which tiles of 4 x 4 texels lie up to `radius` tiles from a patch where something was found.
+class FoundTiles {
+public:
+    FoundTiles(int64_t side, int64_t patches, const float* places, const uint8_t* found,
+               int64_t radius)
+        : tiles_((side + 3) / 4), marks_(static_cast<size_t>(tiles_ * tiles_), 0) {
+        for (int64_t q = 0; q < patches; q++) {
+            if (found[q] == 0) continue;
+            if (!(places[2 * q] >= 0.0f) || !(places[2 * q + 1] >= 0.0f)) continue;
+            const int64_t x = static_cast<int64_t>(std::min(places[2 * q], 65536.0f)) / 4;
+            const int64_t y = static_cast<int64_t>(std::min(places[2 * q + 1], 65536.0f)) / 4;
+            const int64_t last = std::min(x + radius, tiles_ - 1);
+            for (int64_t ty = std::max<int64_t>(y - radius, 0);
+                 ty <= std::min(y + radius, tiles_ - 1); ty++) {
+                for (int64_t tx = std::max<int64_t>(x - radius, 0); tx <= last; tx++) {
+                    marks_[static_cast<size_t>(ty * tiles_ + tx)] = 1;
+                }
+            }
+        }
+    }
+
+    // Whether the tile of a texel, in the map, is one of them.
+    bool has(int64_t x, int64_t y) const {
+        if (x < 0 || y < 0 || x / 4 >= tiles_ || y / 4 >= tiles_) return false;
+        return marks_[static_cast<size_t>(y / 4 * tiles_ + x / 4)] != 0;
+    }
+
+private:
+    int64_t tiles_;
+    std::vector<uint8_t> marks_;
+};
+
+// Null where there is no memory.
+std::unique_ptr<FoundTiles> found_tiles(int64_t side, int64_t patches, const float* places,
+                                        const uint8_t* found, int64_t radius) {
+    try {
+        return std::make_unique<FoundTiles>(side, patches, places, found, radius);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
 }
 
 bool sound(const RayScene& s) {
@@ -454,25 +496,27 @@ SAILENV_KERNEL(light_of_probes)
 // Spreads what was found at patches over the texels between them.
 //
 // places: (count,), of the texels in the map; patch_places: (patches, 2), x and y of each patch's
-// middle texel. found, change: of the patches, as gather_change gives them. Each layer holds `each`
-// halves a texel, and the channels one after the other; result: into `layers`.
+// middle texel. found, change: of the patches, as gather_change gives them. Result: into `texels`,
+// halves of the map's first texel by channel, of which one texel's follow `steps` after another's.
 SAILENV_KERNEL(spread_change)
 (int64_t threads, int64_t side, int64_t count, const int32_t* places, const float* positions,
  const float* normals, const int32_t* owners, int64_t patches, const int32_t* patch_of,
  const float* patch_places, const float* patch_positions, const float* patch_normals,
- const int32_t* patch_owners, const uint8_t* found, int64_t each, int64_t channels,
- const float* change, uint16_t* const* layers) {
+ const int32_t* patch_owners, const uint8_t* found, int64_t channels, const float* change,
+ uint16_t* const* texels, const int64_t* steps) {
     using namespace sailenv;
-    if (side < 1 || side > 65536 || count < 0 || patches < 1 || channels < 1 ||
-        (each != 1 && each != 3) || channels % each != 0) {
+    if (side < 1 || side > 65536 || count < 0 || patches < 1 || channels < 1) {
         return STATUS_INVALID_ARGUMENT;
     }
+    const std::unique_ptr<FoundTiles> tiles = found_tiles(side, patches, patch_places, found, 1);
+    if (!tiles) return STATUS_OUT_OF_MEMORY;
     parallel_for(threads, count, 1024, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t k = first; k < last; k++) {
             const int64_t place = places[k];
             if (place < 0 || place >= side * side) continue;
             const int32_t x = static_cast<int32_t>(place % side);
             const int32_t y = static_cast<int32_t>(place / side);
+            if (!tiles->has(x, y)) continue;
             const float *p = positions + 3 * k, *n = normals + 3 * k;
             int32_t near[10];
             float weight[10], total = 0.0f;
@@ -509,19 +553,30 @@ SAILENV_KERNEL(spread_change)
                 }
             }
             if (!touched || total <= 0.0f) continue;
-            for (int64_t c = 0; c < channels; c++) {
-                uint16_t* texel = layers[c / each] + each * place + c % each;
-                const float was = half_to_float(*texel);
-                float sum = 0.0f;
+            for (int64_t c = 0; c < channels; c += 8) {
+                const int64_t width = std::min<int64_t>(channels - c, 8);
+                i8 stored = {};
+                for (int64_t j = 0; j < width; j++) {
+                    stored[j] = texels[c + j][steps[c + j] * place];
+                }
+                const f8 was = from_half(stored);
+                f8 sum = {};
                 for (int j = 0; j < count_near; j++) {
                     const int32_t q = near[j];
-                    const float value = change[q * channels + c];
-                    float light = was;
-                    if (found[q] == 1) light = was + value;
-                    if (found[q] == 2) light = value;
-                    sum += weight[j] * light;
+                    f8 value = {};
+                    const float* from = change + q * channels + c;
+                    if (width == 8) {
+                        value = load(from);
+                    } else {
+                        for (int64_t i = 0; i < width; i++) value[i] = from[i];
+                    }
+                    const f8 light = found[q] == 1 ? was + value : found[q] == 2 ? value : was;
+                    sum = sum + weight[j] * light;
                 }
-                *texel = float_to_half(std::min(std::max(sum / total, 0.0f), 60000.0f));
+                const i8 light = to_half(min8(max8(sum / total, splat(0.0f)), splat(60000.0f)));
+                for (int64_t j = 0; j < width; j++) {
+                    texels[c + j][steps[c + j] * place] = static_cast<uint16_t>(light[j]);
+                }
             }
         }
     });
@@ -540,6 +595,9 @@ SAILENV_KERNEL(smooth_change)
     if (side < 1 || side > 65536 || radius < 0 || radius > 8 || patches < 0 || channels < 1) {
         return STATUS_INVALID_ARGUMENT;
     }
+    const std::unique_ptr<FoundTiles> tiles =
+        found_tiles(side, patches, patch_places, found, radius);
+    if (!tiles) return STATUS_OUT_OF_MEMORY;
     parallel_for(threads, patches, 256, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t k = first; k < last; k++) {
             float* out = smooth + k * channels;
@@ -550,6 +608,7 @@ SAILENV_KERNEL(smooth_change)
             const float near = std::max(nearness[k], 0.02f), scale = 2.0f / (near * near);
             const int32_t x = static_cast<int32_t>(patch_places[2 * k]);
             const int32_t y = static_cast<int32_t>(patch_places[2 * k + 1]);
+            if (!tiles->has(x, y)) continue;
             const bool whole = found[k] == 2;
             float total = 0.0f;
             bool touched = false;
