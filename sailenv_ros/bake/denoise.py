@@ -111,8 +111,9 @@ def _denoise(  # type: ignore[no-untyped-def]
                 weights += weight
                 for c in range(channels):
                     total[c] += weight * values[other, c]
-        for c in range(channels):
-            result[k, c] = total[c] / weights
+        if weights > 0.0:  # else another stands at its place
+            for c in range(channels):
+                result[k, c] = total[c] / weights
 
 
 @numba.njit(cache=True, nogil=True)

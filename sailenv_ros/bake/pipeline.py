@@ -32,7 +32,7 @@ from sailenv_ros.bake.ray_patterns import net
 from sailenv_ros.bake.rays import NEVER, RayScene
 from sailenv_ros.bake.reflectance import albedo_of, emission_of, glow_of
 from sailenv_ros.bake.sampling import tile_shift
-from sailenv_ros.bake.settings import BakeSettings
+from sailenv_ros.bake.settings import BakeSettings, drafted
 from sailenv_ros.bake.sky import panes
 from sailenv_ros.bake.sky_picture import sky_picture
 from sailenv_ros.bake.solving import Samples, SolvedLight, Solver, Stages
@@ -188,8 +188,18 @@ class _Bake:
             emission=samples.emission[chosen],
             glows={name: glow[chosen] for name, glow in samples.glows.items()},
         )  # fmt: skip
-        solver = Solver(few, self._snapshot.contents.lights, self._settings, self._stages)
+        solver = Solver(few, self._snapshot.contents.lights, drafted(self._settings), self._stages)
         solver.begin()
+        tiles = _tiles(texels, chosen)
+        # Of patches that share a tile one is averaged: what is at edges stays as it is.
+        alone = np.bincount(_places_of(tiles), minlength=1)[_places_of(tiles)] == 1
+        for _ in range(2):
+            # Few rays leave blotches, which are wider than what texels are averaged over.
+            smooth = denoised(
+                self._geometry, tiles, solver.bounced, solver.valid & alone, solver.nearness,
+                self._stages.workers,
+            )  # fmt: skip
+            solver.bounced[alone] = smooth[alone]
         return self._result(solver, of_texel)
 
     def _straight_at_probes(self, light: Light) -> Floats | None:
@@ -304,6 +314,29 @@ class _Bake:
 
 def _is_soft(entry: SolvedLight) -> bool:
     return entry.light is not None and entry.light.type == "area"
+
+
+def _tiles(texels: Texels, chosen: NDArray[np.intp]) -> Texels:
+    """Return some texels, one for each tile of 4 by 4, as those of a map of a quarter the size."""
+    rows, columns = texels.rows[chosen] // 4, texels.columns[chosen] // 4
+    index = np.full((texels.index.shape[0] // 4 + 1,) * 2, -1, np.int32)
+    index[rows, columns] = np.arange(len(chosen))
+    return Texels(
+        index=index,
+        rows=rows,
+        columns=columns,
+        triangle=texels.triangle[chosen],
+        weights=texels.weights[chosen],
+        positions=texels.positions[chosen],
+        normals=texels.normals[chosen],
+        faces=texels.faces[chosen],
+    )
+
+
+def _places_of(texels: Texels) -> NDArray[np.int64]:
+    """Return (N,) the number of each texel's place in the map."""
+    places: NDArray[np.int64] = texels.rows.astype(np.int64) * texels.index.shape[1]
+    return places + texels.columns
 
 
 def _middles(texels: Texels, patches: Patches) -> NDArray[np.intp]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-__all__ = ["BAKE_VERSION", "BakeSettings"]
+__all__ = ["BAKE_VERSION", "BakeSettings", "drafted"]
 
 BAKE_VERSION = 9
 """Grows whenever the same scene and settings would give another result."""
@@ -53,3 +53,15 @@ class BakeSettings:
     probe_spacing_m: float = 0.4
     max_probes: int = 8000
     probe_rays: int = 1024
+
+
+def drafted(settings: BakeSettings) -> BakeSettings:
+    """Return how a draft is made: a quarter of the rays, fewer bounces, nothing refined."""
+    return replace(
+        settings,
+        rays=min(16, settings.pass_rays),
+        pass_rays=min(16, settings.pass_rays),
+        window_rays=min(4, settings.window_rays),
+        light_rays=min(4, settings.light_rays),
+        bounces=min(5, settings.bounces),
+    )
