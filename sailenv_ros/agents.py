@@ -12,6 +12,7 @@ from sailenv_ros.camera import CameraIntrinsics, require_drawable
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS, checked_views
 from sailenv_ros.geometry import Pose
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.validation import IDENTIFIER, checked_number, is_finite_number, is_number
 
@@ -62,6 +63,8 @@ class AgentSpec:
         What is done to its pictures, and to nothing else.
     pose : Pose or None
         Where it starts when it does not follow; None means at the mover.
+    look_at : LookAt or None
+        What it faces from the start on; `set_look_at` changes that, not this.
     """
 
     name: str
@@ -73,6 +76,7 @@ class AgentSpec:
     mover: str = ""
     pose: Pose | None = None
     picture: PictureSettings = field(default_factory=PictureSettings)
+    look_at: LookAt | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not IDENTIFIER.fullmatch(self.name):

@@ -24,6 +24,7 @@ __all__ = [
     "POSITION_LIMIT_M",
     "QUAT_BODY_FROM_OPTICAL",
     "Pose",
+    "facing",
     "interpolate",
     "invert",
     "look_at",
@@ -38,6 +39,12 @@ UNIT_TOLERANCE = 1e-3
 
 POSITION_LIMIT_M = 1e4
 """Coordinates beyond this [m] lose the precision that ground truth needs, and are refused."""
+
+SAME_PLACE_M = 1e-9
+"""A point that is nearer has no direction [m]."""
+
+SAME_DIRECTION = 1e-9
+"""Sine of the angle to the vertical below which a direction has no heading."""
 
 BODY_FROM_OPTICAL: Matrix = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -162,6 +169,37 @@ def look_at(eye_m: ArrayLike, target_m: ArrayLike) -> Pose:
     yaw = math.atan2(forward[1], forward[0])
     pitch = -math.asin(float(np.clip(forward[2], -1.0, 1.0)))
     return Pose.from_rpy_deg(eye, (0.0, math.degrees(pitch), math.degrees(yaw)))
+
+
+def facing(pose: Pose, target_m: tuple[float, float, float]) -> Pose:
+    """Turn a pose's x axis to a point, without a roll.
+
+    Yaw and pitch are arctangents of the offset: exact to rounding, close to the vertical too.
+
+    Parameters
+    ----------
+    pose : Pose
+    target_m : (3,) tuple of float
+        World frame [m].
+
+    Returns
+    -------
+    turned : Pose
+        In the same place. Straight below or above the point it has the heading that `pose` has;
+        at the point itself it is `pose`.
+    """
+    x, y, z = (t - p for t, p in zip(target_m, pose.position_m, strict=True))
+    flat = math.hypot(x, y)
+    distance = math.hypot(flat, z)
+    if distance < SAME_PLACE_M:
+        return pose
+    upright = flat <= SAME_DIRECTION * distance
+    half_yaw = 0.5 * (math.radians(pose.rpy_deg[2]) if upright else math.atan2(y, x))
+    half_pitch = -0.5 * math.atan2(z, flat)
+    cos_yaw, sin_yaw = math.cos(half_yaw), math.sin(half_yaw)
+    cos_pitch, sin_pitch = math.cos(half_pitch), math.sin(half_pitch)
+    quat = (-sin_yaw * sin_pitch, cos_yaw * sin_pitch, sin_yaw * cos_pitch, cos_yaw * cos_pitch)
+    return Pose(pose.position_m, quat)
 
 
 def interpolate(start: Pose, end: Pose, fraction: float) -> Pose:

@@ -62,6 +62,8 @@ _NO_CHANGE, _CLOSED, _OPEN = (
 
 def _write_agent(given: Arguments) -> Arguments:
     spec = given["spec"]
+    if spec.look_at is not None:
+        raise InvalidRequest("look_at", spec.look_at, "None over ROS; call set_look_at then")
     return {"agent_info": spec, "has_pose": spec.pose is not None, "pose": spec.pose}
 
 
@@ -201,6 +203,19 @@ def _write_wrench(given: Arguments) -> Arguments:
 def _read_wrench(given: Arguments) -> Arguments:
     has_point, point = given.pop("has_point"), given.pop("point")
     return {**given, "point_m": point if has_point else None}
+
+
+def _write_look_at(given: Arguments) -> Arguments:
+    point = given["point_m"]
+    return {
+        **given,
+        "release": given["obj"] is None and point is None,
+        "point_m": (0.0, 0.0, 0.0) if point is None else point,
+    }
+
+
+def _read_look_at(given: Arguments) -> Arguments:
+    return {**given, "obj": None, "point_m": None} if given.pop("release") else given
 
 
 def _write_background(given: Arguments) -> Arguments:
@@ -422,6 +437,14 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     ),
     Service(Operations.turn_mover, srv.TurnMover),
     Service(
+        Operations.set_mover_look_at,
+        srv.SetMoverLookAt,
+        names={"point_m": "point"},
+        none={"obj": 0},
+        write=_write_look_at,
+        read=_read_look_at,
+    ),
+    Service(
         Operations.set_waypoints,
         srv.SetWaypoints,
         names={"total_time_s": "total_time"},
@@ -488,6 +511,14 @@ AGENT_SERVICES: tuple[Service, ...] = (
         name="get_pose",
         fill=_fill_pose,
         result=_pose_of_response,
+    ),
+    Service(
+        Operations.set_look_at,
+        srv.SetLookAt,
+        names={"point_m": "point"},
+        none={"obj": 0},
+        write=_write_look_at,
+        read=_read_look_at,
     ),
     Service(Operations.toggle_follow, srv.ToggleFollow),
     Service(Operations.set_follow, srv.SetFollow),

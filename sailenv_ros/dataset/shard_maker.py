@@ -259,7 +259,9 @@ class ShardMaker:
         if name not in brought:
             raise UnknownName("agent", name, brought)
         own = brought[name]
-        return replace(spec, following=own.following, mover=own.mover, pose=own.pose)
+        return replace(
+            spec, following=own.following, mover=own.mover, pose=own.pose, look_at=own.look_at
+        )
 
     @contextmanager
     def _scene(self, first: Clip) -> Iterator[SimulationCore]:

@@ -49,6 +49,14 @@ def _frame_number(what: str, value: object) -> int:
     return checked_integer(what, value, 0, 2**63 - 1)
 
 
+def _put(core: SimulationCore, pose: Pose, agent: str | None, *, teleport: bool) -> None:
+    before = core.agents[agent].spec
+    was_driven = before.following and core.world.mover(before.mover).controller == "waypoint"
+    core.agents.put(before.name, pose, core.world, teleport=teleport)
+    if was_driven:
+        core.announce()
+
+
 class AgentOperations(Caller):
     """Cameras in the world. Positions are in metres, rotations in degrees about fixed axes."""
 
@@ -83,12 +91,10 @@ class AgentOperations(Caller):
         """Move and turn an agent, or the mover that it follows (which leaves its waypoints then).
 
         A set pose is motion, which flow shows; `teleport` makes the next frame one without flow.
+        What agent and mover faced by `set_look_at` and `set_mover_look_at`, they face no more.
         """
-        before = core.agents[agent].spec
-        was_driven = before.following and core.world.mover(before.mover).controller == "waypoint"
-        core.agents.put(before.name, pose, core.world, teleport=teleport)
-        if was_driven:
-            core.announce()
+        core.agents.turn_freely(core.agents[agent].spec.name, core.world)
+        _put(core, pose, agent, teleport=teleport)
 
     @operation(position=vector, teleport=check.flag)
     @staticmethod
@@ -99,10 +105,13 @@ class AgentOperations(Caller):
         teleport: bool = False,
         agent: str | None = None,
     ) -> None:
-        """Move an agent to world coordinates [m] and leave its orientation; see `set_pose`."""
-        here = core.agents.pose(agent, core.world).pose
+        """Move an agent to world coordinates [m] and leave its orientation; see `set_pose`.
+
+        What it faces by `set_look_at` it goes on facing.
+        """
+        here = core.agents.carried_pose(core.agents[agent], core.world)
         moved = Pose(vector("position", position), here.orientation_xyzw)
-        core.set_pose(moved, teleport=teleport, agent=agent)
+        _put(core, moved, agent, teleport=teleport)
 
     @operation(rotation=vector, teleport=check.flag)
     @staticmethod

@@ -14,6 +14,7 @@ from sailenv_ros.operations.frame_pictures import FramePictures
 from sailenv_ros.operations.joint_operations import JointOperations
 from sailenv_ros.operations.lesson_operations import LessonOperations
 from sailenv_ros.operations.light_operations import LightOperations
+from sailenv_ros.operations.look_operations import LookOperations
 from sailenv_ros.operations.material_operations import MaterialOperations
 from sailenv_ros.operations.models import ModelOperations
 from sailenv_ros.operations.movers import MoverOperations
@@ -28,6 +29,7 @@ __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 
 class WorldOperations(
     AgentOperations,
+    LookOperations,
     ObjectOperations,
     JointOperations,
     MaterialOperations,

@@ -15,6 +15,7 @@ import numpy as np
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.geometry import Pose, quat_xyzw_from_rpy_deg
 from sailenv_ros.lights import Light
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.scene.spec_cameras import AgentSpecModel
@@ -33,6 +34,7 @@ __all__ = [
     "agent_entry",
     "changed_light_entry",
     "light_entry",
+    "look_at_entry",
     "pose_entry",
     "rounded",
 ]
@@ -131,7 +133,17 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
         entry["picture"] = _picture(spec.picture)
     if spec.mover:
         entry["mover"] = spec.mover
+    if spec.look_at is not None:
+        entry["keep_looking_at"] = look_at_entry(spec.look_at)
     return entry if pose is None else {**entry, **pose_entry(pose)}
+
+
+def look_at_entry(look_at: LookAt) -> dict[str, Any]:
+    """Return the keys of what is faced; a point is not rounded, as it may be a moving object's."""
+    if not look_at.obj:
+        return {"point": list(look_at.point_m)}
+    at_origin = not any(look_at.point_m)
+    return {"object": look_at.obj, **({} if at_origin else {"point": list(look_at.point_m)})}
 
 
 def rounded(numbers: Sequence[float], decimals: int) -> list[float]:

@@ -31,6 +31,7 @@ from sailenv_ros.scene.rules import (
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
 from sailenv_ros.scene.spec_joints import JointSpec, joints_hold
 from sailenv_ros.scene.spec_lessons import LessonSpec, LessonsSpec
+from sailenv_ros.scene.spec_look_at import LookAtSpec, faced_objects_exist
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.scene.spec_room import RoomSpec
@@ -55,6 +56,7 @@ __all__ = [
     "LessonsSpec",
     "JointSpec",
     "LightSpec",
+    "LookAtSpec",
     "MoverSpec",
     "ObjectSpec",
     "PictureSpec",
@@ -108,6 +110,7 @@ class SceneSpec(SceneModel):
         random_targets_exist,
         distinct("id", "categories"),
         movers_exist,
+        faced_objects_exist,
         carriers_exist,
         parents_exist,
         joints_hold,

@@ -14,6 +14,7 @@ from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_where_placed
+from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 
 __all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
@@ -60,6 +61,9 @@ class MoverSpec(Aimed):
     controller: Annotated[Controller, Choice(get_args(Controller))] = Field(
         default="waypoint",
         description="what moves it at the start: its waypoints, or commands and set poses",
+    )
+    keep_looking_at: LookAtSpec | None = Field(
+        default=None, description="what it faces all the time, instead of where its track turns it"
     )
 
     @property
@@ -122,6 +126,9 @@ class AgentSpecModel(Turned):
     position: Position | None = Field(
         default=None, description="where it starts when it does not follow [m]"
     )
+    keep_looking_at: LookAtSpec | None = Field(
+        default=None, description="what it faces all the time, also where a mover carries it"
+    )
 
     def to_agent_spec(self) -> AgentSpec:
         """Return the data type that the simulation takes."""
@@ -140,5 +147,6 @@ class AgentSpecModel(Turned):
             picture=self.picture.to_settings(),
             following=self.following,
             mover=self.mover or "",
+            look_at=None if self.keep_looking_at is None else self.keep_looking_at.to_look_at(),
             pose=None if self.position is None else self.pose_at(self.position),
         )

@@ -17,6 +17,7 @@ from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.snapshot import Observation
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
+from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.world import World
 
 __all__ = ["AgentRecord", "AgentTable"]
@@ -33,7 +34,9 @@ class AgentRecord:
     spec : AgentSpec
         As it is now (its follow state changes).
     pose : Pose
-        Where it is while it does not follow.
+        Where it is while it does not follow, and how it would be turned if it faced nothing.
+    gaze : Gaze or None
+        What it faces in the present world.
     sequence : int
         Number of its last frame.
     latest, earlier : Observation or None
@@ -47,6 +50,7 @@ class AgentRecord:
     registered: AgentSpec
     spec: AgentSpec
     pose: Pose
+    gaze: Gaze | None = None
     sequence: int = 0
     latest: Observation | None = None
     earlier: Observation | None = None
@@ -126,7 +130,7 @@ class AgentTable:
         Raises
         ------
         NameTaken, UnknownName, InvalidRequest
-            If the name is in use, the mover unknown, or there are too many agents.
+            If the name is in use, the mover or what it faces unknown, or there are too many agents.
         """
         if spec.name in self._records:
             raise NameTaken("agent", spec.name)
@@ -137,7 +141,8 @@ class AgentTable:
         mover = world.mover(spec.mover)
         pose = spec.pose or mover.pose_at(world.sim_time_ns)
         accepted = replace(spec, mover=mover.name, pose=pose)
-        record = AgentRecord(registered=accepted, spec=accepted, pose=pose)
+        gaze = None if spec.look_at is None else world.gaze(spec.look_at)
+        record = AgentRecord(registered=accepted, spec=accepted, pose=pose, gaze=gaze)
         if spec.rate_hz:
             record.skip_to(world.step_count)
         self._records[spec.name] = record
@@ -162,14 +167,37 @@ class AgentTable:
 
     def camera(self, record: AgentRecord, world: World) -> Camera:
         """Return an agent's camera as it stands now."""
-        pose = record.pose
-        if record.spec.following:
-            pose = world.mover(record.spec.mover).pose_at(world.sim_time_ns)
+        pose = self.carried_pose(record, world)
+        if record.gaze is not None:
+            pose = record.gaze.turned(pose)
         spec = record.spec
         return Camera(intrinsics=spec.intrinsics, pose=pose, picture=spec.picture, name=spec.name)
 
+    def carried_pose(self, record: AgentRecord, world: World) -> Pose:
+        """Return where an agent is, turned as if it faced nothing but what its mover faces."""
+        if record.spec.following:
+            return world.mover(record.spec.mover).pose_at(world.sim_time_ns)
+        return record.pose
+
+    def look_at(self, name: str | None, gaze: Gaze | None, world: World) -> None:
+        """Have an agent face something from now on; without anything, it stays as it is turned."""
+        record = self[name]
+        if gaze is None and not record.spec.following:
+            record.pose = self.camera(record, world).pose
+        record.gaze = gaze
+
+    def turn_freely(self, name: str, world: World) -> None:
+        """End what an agent faces, and what the mover that it follows does."""
+        record = self[name]
+        record.gaze = None
+        if record.spec.following:
+            world.mover(record.spec.mover).face(None, world.sim_time_ns)
+
     def put(self, name: str, pose: Pose, world: World, *, teleport: bool) -> None:
-        """Move an agent; one that follows moves its mover, and with it all that follow it."""
+        """Move an agent; one that follows moves its mover, and with it all that follow it.
+
+        What it faces it goes on facing.
+        """
         record = self[name]
         moved = [record]
         if record.spec.following:
@@ -262,7 +290,18 @@ class AgentTable:
             if as_registered:
                 record.spec = record.registered
                 record.pose = record.registered.pose or record.pose
+            record.gaze = self._gaze_in(record, world, as_registered=as_registered)
             if record.spec.mover not in world.movers:
                 first = world.mover("").name
                 record.spec = replace(record.spec, mover=first)
                 record.registered = replace(record.registered, mover=first)
+
+    def _gaze_in(self, record: AgentRecord, world: World, *, as_registered: bool) -> Gaze | None:
+        """Return what an agent faces in a world that has just begun; nothing that it lacks."""
+        faced = record.spec.look_at
+        if not as_registered:
+            faced = None if record.gaze is None else record.gaze.begun
+        try:
+            return None if faced is None else world.gaze(faced)
+        except UnknownName:
+            return None

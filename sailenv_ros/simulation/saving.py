@@ -21,6 +21,7 @@ from sailenv_ros.scene.serialisation import (
     agent_entry,
     changed_light_entry,
     light_entry,
+    look_at_entry,
     pose_entry,
     rounded,
 )
@@ -345,8 +346,14 @@ def _mover(mover: Mover, described: MoverSpec, time_ns: int) -> Entry:
     for key, value in now.items():
         if value != getattr(described, key):
             entry[key] = value
+    gaze = None if mover.gaze is None else mover.gaze.described()
+    begun = described.keep_looking_at
+    if gaze != (begun and begun.to_look_at()):
+        entry.pop("keep_looking_at", None)
+        if gaze is not None:
+            entry["keep_looking_at"] = look_at_entry(gaze)
     is_led = mover.controller == "waypoint" and bool(poses)
-    pose = mover.pose_at(time_ns)
+    pose = mover.own_pose_at(time_ns)
     if not is_led and (pose != described.pose or poses != described.waypoint_poses):
         for key in PLACE_KEYS:
             entry.pop(key, None)
@@ -367,7 +374,8 @@ def _agents(
 
 
 def _agent(record: AgentRecord, described: AgentSpecModel | None, world: World) -> Entry:
-    spec = record.spec
+    gaze = None if record.gaze is None else record.gaze.described()
+    spec = replace(record.spec, look_at=gaze)
     first = world.mover("").name
     if described is not None:
         begun = described.to_agent_spec()

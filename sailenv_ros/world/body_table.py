@@ -84,6 +84,7 @@ class BodyTable:
         self._parts: dict[int, tuple[int, ...]] = {}
         self._pieces: tuple[LabelledPiece, ...] | None = None
         self._histories: dict[int, int] = {}
+        self._last_poses: dict[int, NDArray[np.float64]] = {}
         self._last_id = 0
         self._last_history = 0
         for placement in placements:
@@ -181,6 +182,23 @@ class BodyTable:
         """Return the instance id of the object of that name; 0 if there is none."""
         return next((id_ for id_, body in self.items() if body.placement.name == name), 0)
 
+    def name_of(self, body_id: int) -> str:
+        """Return the name of a body that is there or waits; empty if it is gone for good."""
+        if body_id in self.waiting:
+            return self.waiting[body_id].name
+        return self._bodies[body_id].placement.name if body_id in self._bodies else ""
+
+    def last_world_from_body(self, body_id: int) -> NDArray[np.float64]:
+        """Return the (4, 4) pose of a body now, or as it was when it left or was removed.
+
+        Of one that has not been there yet, where it will be.
+        """
+        if body_id in self._bodies:
+            return self._bodies[body_id].world_from_body()
+        if body_id in self._last_poses:
+            return self._last_poses[body_id]
+        return self.waiting[body_id].pose.matrix()
+
     @property
     def firsts(self) -> Mapping[str, Body]:
         """The bodies of the start that are still there, by the names that they had then."""
@@ -245,11 +263,13 @@ class BodyTable:
     def remove(self, instance_id: int) -> None:
         """Take a body out of the engine, and wake what rests upon it."""
         if instance_id in self.waiting:
+            self._last_poses[instance_id] = self.last_world_from_body(instance_id)
             self.waiting.forget(instance_id)
         else:
             gone = self[instance_id]
             self._require_nothing_on(gone, "to be removed")
             self.rouse_beside(gone)
+            self._last_poses[instance_id] = gone.world_from_body().copy()
             gone.remove()
             del self._bodies[instance_id]
         del self._histories[instance_id], self._parts[instance_id]
@@ -270,6 +290,7 @@ class BodyTable:
         """Take a body out of the engine as `remove` does, but keep its ids for when it enters."""
         gone = self[instance_id]
         self.rouse_beside(gone)
+        self._last_poses[instance_id] = gone.world_from_body().copy()
         self.waiting.take_back(instance_id, gone)
         gone.remove()
         del self._bodies[instance_id]
@@ -342,6 +363,7 @@ class BodyTable:
                 body.remove()
             raise
         for id_ in leaving:
+            self._last_poses[id_] = self._bodies[id_].world_from_body().copy()
             self._bodies[id_].remove()
         for body in made:
             id_ = parts.get(body.placement.name, 0)

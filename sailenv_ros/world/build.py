@@ -68,7 +68,7 @@ def build_world(
     table = CategoryTable([*categories.values(), *own])
     found = materials or MaterialStock(assets)
     parts = list(room_placements(spec.room, table, found))
-    return World(
+    world = World(
         scene=spec.name,
         epoch=epoch,
         next_revision=next_revision,
@@ -92,6 +92,14 @@ def build_world(
         settled=spec.settled,
         described=spec,
     )
+    try:
+        for entry in spec.all_movers:
+            if entry.keep_looking_at is not None:
+                world.movers[entry.name].face(world.gaze(entry.keep_looking_at.to_look_at()), 0)
+    except BaseException:
+        world.close()
+        raise
+    return world
 
 
 def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Environment:

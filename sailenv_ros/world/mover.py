@@ -14,6 +14,7 @@ from typing import Literal, get_args
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.geometry import Pose, interpolate
 from sailenv_ros.validation import vector
+from sailenv_ros.world.gaze import Gaze
 
 __all__ = [
     "COMMAND_LASTS_NS",
@@ -155,6 +156,7 @@ class Mover:
         self._since_ns = 0
         self._command: MoverCommand | None = None
         self._command_ends_ns = 0
+        self._gaze: Gaze | None = None
 
     @property
     def track(self) -> WaypointTrack | None:
@@ -182,10 +184,36 @@ class Mover:
         return self._controller
 
     def pose_at(self, time_ns: int) -> Pose:
-        """Return the pose at a simulated time not before the last change [ns]."""
-        if self._controller == "rigidbody" or self._track is None:
+        """Return the pose at a simulated time not before the last change [ns].
+
+        What it faces is where it is now.
+        """
+        own = self.own_pose_at(time_ns)
+        return own if self._gaze is None else self._gaze.turned(own)
+
+    def own_pose_at(self, time_ns: int) -> Pose:
+        """Return the pose that it would have if it faced nothing."""
+        if self._stands or self._track is None:
             return self._held
         return self._track.pose_at(self._ran_ns(time_ns) * 1e-9)
+
+    @property
+    def gaze(self) -> Gaze | None:
+        """What it faces; None if nothing."""
+        return self._gaze
+
+    def face(self, gaze: Gaze | None, time_ns: int) -> None:
+        """Face something from now on; without anything, waypoints or commands alone turn it.
+
+        One that stands stays turned as it is.
+        """
+        if gaze is None:
+            self._held = self.pose_at(time_ns) if self._stands else self._held
+        self._gaze = gaze
+
+    @property
+    def _stands(self) -> bool:
+        return self._controller == "rigidbody" or self._track is None
 
     def hold(self, pose: Pose, time_ns: int) -> None:
         """Put it somewhere and keep it there: waypoints no longer drive it."""
@@ -197,7 +225,7 @@ class Mover:
         self._held = pose
 
     def turn(self, pitch_rad: float, yaw_rad: float) -> None:
-        """Turn it where it stands: pitch down, yaw to the left [rad].
+        """Turn it where it stands: pitch down, yaw to the left [rad]; it faces nothing then.
 
         Raises
         ------
@@ -212,10 +240,13 @@ class Mover:
                 "by set_mover_controller"
             )
         given = vector("angles to turn by", (0.0, pitch_rad, yaw_rad), limit=math.pi)
+        self.face(None, 0)  # where it stands does not depend on the time
         self._held = turned(self._held, given[1], given[2])
 
     def command(self, command: MoverCommand, time_ns: int) -> None:
         """Have it walk, until another command comes or `COMMAND_LASTS_NS` are over.
+
+        One that turns ends what it faces.
 
         Raises
         ------
@@ -227,6 +258,8 @@ class Mover:
                 f"waypoints drive mover {self.name!r}; to drive it, make its controller "
                 "'rigidbody' by set_mover_controller"
             )
+        if any(command.angular_rad_s):
+            self.face(None, time_ns)
         self._command = command
         self._command_ends_ns = time_ns + COMMAND_LASTS_NS
 

@@ -24,6 +24,7 @@ from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.joints import JointState
 from sailenv_ros.labels import PART_MARK, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.scene.spec import RoomSpec, SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
@@ -32,6 +33,7 @@ from sailenv_ros.world.body_table import BodyTable, LabelledPiece
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.contact_log import ContactLog
+from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.lit_lamps import lit_by
 from sailenv_ros.world.mover import Mover, MoverCommand
@@ -267,6 +269,16 @@ class World:
             If there is no such object now.
         """
         return self._bodies.find(obj)
+
+    def gaze(self, look_at: LookAt) -> Gaze:
+        """Return a look-at constraint in this world.
+
+        Raises
+        ------
+        UnknownName
+            If no object of that name is there or waits.
+        """
+        return Gaze(self._bodies, look_at)
 
     def object_state(self, instance_id: int) -> ObjectState:
         """Return what and where an object, or a part of one, is now.

@@ -1,0 +1,66 @@
+"""What an agent or a mover of a scene file keeps looking at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from sailenv_ros.look_at import LookAt
+from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
+from sailenv_ros.scene.messages import suggestion
+from sailenv_ros.scene.rules import Entry, Faults
+
+__all__ = ["LookAtSpec", "faced_objects_exist"]
+
+
+def _looks_at_something(entry: Entry) -> Faults:
+    if entry.get("object") is None and entry.get("point") is None:
+        yield ("object",), "or a point is needed: what is faced"
+
+
+class LookAtSpec(SceneModel):
+    """What is faced, wherever it goes and whoever faces it goes."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (_looks_at_something,)
+
+    object: Name | None = Field(
+        default=None, description="an object of the scene; once it is gone, where it was last"
+    )
+    point: Position | None = Field(
+        default=None,
+        description="the point that is faced: of the world [m], or beside object in its own frame, "
+        "its scale applied; the object's origin if left out",
+    )
+
+    def to_look_at(self) -> LookAt:
+        """Return the data type that the simulation takes."""
+        return LookAt(obj=self.object or "", point_m=self.point or (0.0, 0.0, 0.0))
+
+
+def faced_objects_exist(scene: Entry) -> Faults:
+    """Refuse agents and movers that face an object which the scene lacks."""
+    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
+    names = [entry["name"] for entry in objects if isinstance(entry.get("name"), str)]
+    for place, entry in _onlookers(scene):
+        look_at = entry.get("keep_looking_at")
+        name = look_at.get("object") if isinstance(look_at, Mapping) else None
+        if isinstance(name, str) and name not in names:
+            known = suggestion(name, names, listing="its objects")
+            where = (*place, "keep_looking_at", "object")
+            yield where, f"the scene has no object {name!r}; {known}"
+
+
+def _onlookers(scene: Entry) -> Iterator[tuple[tuple[str | int, ...], Entry]]:
+    if isinstance(scene.get("mover"), Mapping):
+        yield ("mover",), scene["mover"]
+    for key in ("movers", "agents"):
+        for index, entry in enumerate(_listed(scene, key)):
+            if isinstance(entry, Mapping):
+                yield (key, index), entry
+
+
+def _listed(entry: Entry, key: str) -> Sequence[Any]:
+    values = entry.get(key)
+    return values if isinstance(values, list | tuple) else ()
