@@ -300,7 +300,7 @@ class AgentTable:
         """Return what an agent faces in a world that has just begun; nothing that it lacks."""
         faced = record.spec.look_at
         if not as_registered:
-            faced = None if record.gaze is None else record.gaze.begun
+            faced = None if record.gaze is None else record.gaze.described()
         try:
             return None if faced is None else world.gaze(faced)
         except UnknownName:

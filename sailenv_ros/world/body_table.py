@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, PhysicsError, UnknownName
 from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import MAX_INSTANCE_ID, PART_MARK
 from sailenv_ros.model import AssetPart
@@ -263,13 +263,13 @@ class BodyTable:
     def remove(self, instance_id: int) -> None:
         """Take a body out of the engine, and wake what rests upon it."""
         if instance_id in self.waiting:
-            self._last_poses[instance_id] = self.last_world_from_body(instance_id)
+            self._note_last_pose(instance_id)
             self.waiting.forget(instance_id)
         else:
             gone = self[instance_id]
             self._require_nothing_on(gone, "to be removed")
             self.rouse_beside(gone)
-            self._last_poses[instance_id] = gone.world_from_body().copy()
+            self._note_last_pose(instance_id)
             gone.remove()
             del self._bodies[instance_id]
         del self._histories[instance_id], self._parts[instance_id]
@@ -290,7 +290,7 @@ class BodyTable:
         """Take a body out of the engine as `remove` does, but keep its ids for when it enters."""
         gone = self[instance_id]
         self.rouse_beside(gone)
-        self._last_poses[instance_id] = gone.world_from_body().copy()
+        self._note_last_pose(instance_id)
         self.waiting.take_back(instance_id, gone)
         gone.remove()
         del self._bodies[instance_id]
@@ -363,7 +363,7 @@ class BodyTable:
                 body.remove()
             raise
         for id_ in leaving:
-            self._last_poses[id_] = self._bodies[id_].world_from_body().copy()
+            self._note_last_pose(id_)
             self._bodies[id_].remove()
         for body in made:
             id_ = parts.get(body.placement.name, 0)
@@ -412,6 +412,13 @@ class BodyTable:
         self._parts[body_id] = tuple(range(self._last_id + 1, self._last_id + 1 + count))
         self._last_id += count
         self._pieces = None
+
+    def _note_last_pose(self, body_id: int) -> None:
+        """Keep where a body is that is about to go; where it was placed if that is not finite."""
+        try:
+            self._last_poses[body_id] = self.last_world_from_body(body_id).copy()
+        except PhysicsError:
+            self._last_poses[body_id] = self._bodies[body_id].entry_pose.matrix()
 
     def _require_nothing_on(self, body: Body, what: str) -> None:
         carried = self.joints.carried_by(body)

@@ -42,11 +42,6 @@ class Gaze:
                 raise UnknownName("object", look_at.obj, [*names, *waiting])
 
     @property
-    def begun(self) -> LookAt:
-        """What was asked for."""
-        return self._look_at
-
-    @property
     def target_m(self) -> Vector3:
         """The point that is faced now, world frame [m]; of an object that is gone, the last."""
         point = self._look_at.point_m
@@ -61,7 +56,10 @@ class Gaze:
         return facing(pose, self.target_m)
 
     def described(self) -> LookAt:
-        """Return what a scene file says of it now: of an object that is gone, where it was."""
+        """Return what a scene file says of it now: of an object that is gone, where it was.
+
+        The engine is not asked, so that it may be closed.
+        """
         name = self._bodies.name_of(self._id) if self._id else ""
         if not self._id or name:
             return LookAt(obj=name, point_m=self._look_at.point_m)

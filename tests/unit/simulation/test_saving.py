@@ -255,6 +255,11 @@ _surroundings = st.fixed_dictionaries(
         "background": st.sampled_from(["sky", "colour"]),
     },
 )
+# Far away and beside any vertical: a micrometre of an eye turns it by less than is compared.
+_faced = st.sampled_from(
+    [(None, None), (None, (30.0, -40.0, 20.0)), ("cup", (40.0, 50.0, 60.0)),
+     ("table", (40.0, 50.0, 60.0))]
+)  # fmt: skip
 _edits = st.one_of(
     st.tuples(st.just("spawn_object"), st.sampled_from(["cube", "Sphere"]), _poses, st.booleans()),
     st.tuples(st.just("move_object"), _names, _poses),
@@ -273,6 +278,8 @@ _edits = st.one_of(
               st.sampled_from(["waypoint", "rigidbody"])),
     st.tuples(st.just("set_pose"), st.sampled_from(["watcher", "rider"]), _poses),
     st.tuples(st.just("set_follow"), st.sampled_from(["watcher", "rider"]), st.booleans()),
+    st.tuples(st.just("set_look_at"), st.sampled_from(["watcher", "rider"]), _faced),
+    st.tuples(st.just("set_mover_look_at"), st.sampled_from(["rail", "cart"]), _faced),
     st.tuples(st.just("step"), st.integers(1, 12)),
 )  # fmt: skip
 
@@ -299,6 +306,10 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
         core.set_mover_controller(given[1], given[0])
     elif name == "move_object":
         core.move_object(given[0], pose=given[1])
+    elif name == "set_look_at":
+        core.set_look_at(*given[1], agent=given[0])
+    elif name == "set_mover_look_at":
+        core.set_mover_look_at(*given[1], mover=given[0])
     elif name in ("set_pose", "set_follow"):
         getattr(core, name)(given[1], agent=given[0])
     else:
