@@ -170,6 +170,9 @@ class Environment:
     sky_rotation : float
         By what the picture is turned about the vertical, counter-clockwise as seen from above
         [deg]; `sky` is turned already.
+    sky_blend : bool
+        Whether the picture of a sky is shown as bright as a photographer would blend it with the
+        room; False shows its radiance as it is. It lights the objects alike.
     exposure : float
         Stops that the picture is brightened by (factor 2**exposure).
     """
@@ -184,6 +187,7 @@ class Environment:
     sky: SkyMap | None = None
     sky_map: str = ""
     sky_rotation: float = 0.0
+    sky_blend: bool = True
     exposure: float = 0.0
 
     def __post_init__(self) -> None:

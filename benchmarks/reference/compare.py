@@ -16,6 +16,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -115,6 +116,9 @@ def _compared(
     counter = itertools.count(1)
     world = SceneLibrary().build(scene, 0, 1, lambda: next(counter))
     try:
+        # The traced sky is as bright as it is.
+        environment = replace(world.contents.environment, sky_blend=False)
+        world.set_environment(environment)
         snapshot = world.snapshot()
     finally:
         world.close()

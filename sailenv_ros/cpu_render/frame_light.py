@@ -31,7 +31,7 @@ from sailenv_ros.render.lightmap_compositing import (
     main_light,
 )
 from sailenv_ros.render.room_reflections import RoomReflections
-from sailenv_ros.render.seen_sky import seen_sky
+from sailenv_ros.render.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
@@ -126,7 +126,7 @@ class FrameLight:
             partial(blur_directions, threads=threads), partial(sum_texels, threads=threads)
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
-        self._sky: tuple[tuple[SkyMap, float], NDArray[np.float16]] | None = None
+        self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None
         self._lamps = np.zeros(MAX_LIGHTS, LAMP)
         self._warned_of: Sequence[Light] | None = None
         self._light = np.zeros(1, LIGHT)
@@ -200,7 +200,7 @@ class FrameLight:
             light["main_colour"][0] = lamp_power(main)
             light["main_towards"][0] = -np.asarray(main.direction)
         if environment.sky is not None:
-            wanted = environment.sky, environment.exposure
+            wanted = environment.sky, seen_exposure(environment)
             if self._sky is None or self._sky[0] != wanted:
                 self._sky = wanted, _sky_texels(*wanted)
             _set_sky(light, self._sky[1])

@@ -22,7 +22,7 @@ from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, stronge
 from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.reflection_points import MOST
 from sailenv_ros.render.reflection_texture import ReflectionTexture
-from sailenv_ros.render.seen_sky import seen_sky
+from sailenv_ros.render.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.shadow_pass import ShadowPass
 from sailenv_ros.render.shadow_plan import SIZE_PX
 
@@ -111,7 +111,7 @@ class LightingPass:
         for program in (light, sky):
             set_camera(program, camera, environment)
         if environment.sky is not None:
-            exposure = environment.exposure if illumination.blended else None
+            exposure = seen_exposure(environment) if illumination.blended else None
             self._show_sky(environment.sky, exposure, sky)
         self._set_lights(light, camera, illumination)
         _set_textures(light, targets, illumination)

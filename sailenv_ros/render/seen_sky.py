@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.lights import SkyMap
+from sailenv_ros.lights import Environment, SkyMap
 
-__all__ = ["FINER", "seen_sky"]
+__all__ = ["FINER", "seen_exposure", "seen_sky"]
 
 FINER = 2
 """Pixels of what is seen for one of the file, along each side: windows magnify the sky, and
@@ -46,6 +46,11 @@ BRIGHTEST = 0.85
 """Exposed luminance that no pixel passes."""
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+
+
+def seen_exposure(environment: Environment) -> float | None:
+    """Return for which exposure a sky is blended [stops]; None if it is shown as it is."""
+    return environment.exposure if environment.sky_blend else None
 
 
 def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:

@@ -60,6 +60,11 @@ class EnvironmentSpec(SceneModel):
         description="turns the photographed sky about the vertical, counter-clockwise as seen from "
         "above [deg], so that its sun stands where the light does",
     )
+    sky_blend: bool = Field(
+        default=_STANDARD.sky_blend,
+        description="shows the photographed sky as bright as a photographer would blend it with "
+        "the room; false shows its radiance as it is, mostly white behind windows",
+    )
     exposure: Annotated[float, Number(least=-20.0, most=20.0, unit="stops")] = Field(
         default=_STANDARD.exposure,
         description="the picture is brightened by 2 to the power of it [stops]",

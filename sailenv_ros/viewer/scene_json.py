@@ -78,6 +78,7 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
             "background_colour": list(surroundings.background_colour),
             "sky_map": surroundings.sky_map,
             "sky_rotation": surroundings.sky_rotation,
+            "sky_blend": surroundings.sky_blend,
             "sky_share": surroundings.sky_share,
             "exposure": surroundings.exposure,
         },

@@ -70,6 +70,28 @@ def test_each_quarter_is_where_it_belongs(name: str, world: World, renderer: Ren
     assert (rendered.views["instance"] == 0).all()
 
 
+def test_a_sky_is_blended_unless_its_radiance_is_wanted(
+    world: World, renderer: RenderBackend
+) -> None:
+    """A sky as bright as white paper in the sun, in a picture that is exposed for a room."""
+    towards_east = Camera(
+        intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=30.0),
+        pose=look_at((0, 0, 0), (1, 0, 0)),
+    )
+    bright = replace(painted_sky(), radiance=np.full((60, 120, 3), 6.0, np.float16))
+    before = world.contents.environment
+    seen = {}
+    try:
+        for blend in (True, False):
+            world.set_environment(Environment(sky=bright, sky_map="painted", sky_blend=blend))
+            rendered = renderer.render(world.snapshot(), None, towards_east, ("rgb",))
+            seen[blend] = int(rendered.views["rgb"][16, 16].min())
+    finally:
+        world.set_environment(before)
+    assert seen[False] >= 250
+    assert seen[True] <= 235
+
+
 def test_above_is_the_first_row(world: World, renderer: RenderBackend) -> None:
     """The zenith of this sky is black."""
     camera = Camera(
