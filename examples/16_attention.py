@@ -64,7 +64,8 @@ class Gravitation:
         return self.place.copy()
 
     def _cells(self, values: Array) -> Array:
-        return cv2.resize(values, self.inhibited.shape[::-1], interpolation=cv2.INTER_AREA)
+        size = self.inhibited.shape[::-1]
+        return np.asarray(cv2.resize(values, size, interpolation=cv2.INTER_AREA), np.float64)
 
 
 def _shares(masses: Array) -> Array:
@@ -76,7 +77,7 @@ def crop_at(picture: NDArray[np.uint8], row: int, column: int) -> NDArray[np.uin
     """Return what lies around a place, its edge repeated beyond the picture's."""
     half = CROP_PX // 2
     wide = cv2.copyMakeBorder(picture, half, half, half, half, cv2.BORDER_REPLICATE)
-    return wide[row : row + CROP_PX, column : column + CROP_PX]
+    return np.asarray(wide[row : row + CROP_PX, column : column + CROP_PX], np.uint8)
 
 
 def told_of(path: Array, moving: NDArray[np.bool_]) -> str:
