@@ -33,6 +33,7 @@ from sailenv_ros.scene.spec import (
     SceneSpec,
 )
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+from sailenv_ros.simulation.settled_places import settled_place
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
@@ -45,7 +46,12 @@ Entry = dict[str, Any]
 
 SETTLED_M = 0.002
 SETTLED_DEG = 0.5
-"""What physics has moved by no more, and is at rest, has only settled: it stands as it was put."""
+"""What physics has moved by no more, and is at rest, has only settled: it still stands upon its
+carrier, or at its wall."""
+
+SAME_M = 1e-6
+SAME_DEG = 1e-4
+"""What has moved by no more keeps the words of its file."""
 
 AT_REST = 0.01
 """Slower is at rest [m/s], [rad/s]."""
@@ -184,7 +190,9 @@ def _objects(world: World) -> list[Entry]:
     entries = {
         id_: _visitor(body.placement, body.entry_pose)
         if body.placement.name in visitors
-        else _object(body, unchanged=_placement_unchanged(body, begun, same_walls=same_walls))
+        else _object(
+            body, begun, unchanged=_placement_unchanged(body, begun, same_walls=same_walls)
+        )
         for id_, body in world.numbered_bodies
         if body.placement.entry is not None
     }
@@ -206,7 +214,7 @@ def _visitor(placement: Placement, pose: Pose) -> Entry:
     return entry
 
 
-def _object(body: Body, *, unchanged: bool) -> Entry:
+def _object(body: Body, begun: Mapping[str, Body], *, unchanged: bool) -> Entry:
     placement = body.placement
     assert placement.entry is not None
     entry: Entry = placement.entry.model_dump(
@@ -219,6 +227,11 @@ def _object(body: Body, *, unchanged: bool) -> Entry:
             entry.pop(key, None)
         entry.update(pose_entry(body.pose()))
         entry.update(_velocities(body))
+    elif placement.entry.wall is None and not _as_put(body, begun):
+        on = placement.entry.on
+        for key in PLACE_KEYS:
+            entry.pop(key, None)
+        entry.update(pose_entry(body.pose()) if on is None else settled_place(body, begun[on]))
     elif "orientation" in entry:
         del entry["orientation"]
         entry.update(pose_entry(placement.entry.pose))
@@ -260,6 +273,14 @@ def _placement_unchanged(body: Body, begun: Mapping[str, Body], *, same_walls: b
     return body.placement.static or _only_settled(body)
 
 
+def _as_put(body: Body, begun: Mapping[str, Body]) -> bool:
+    """Return whether neither it nor what carries it has settled by anything that is written."""
+    entry = body.placement.entry
+    if entry is not None and entry.on is not None and not _as_put(begun[entry.on], begun):
+        return False
+    return _is_same(body.entry_pose, body.pose(), SAME_M, SAME_DEG)
+
+
 def _only_settled(body: Body) -> bool:
     first, now = body.entry_pose, body.pose()
     speeds = np.concatenate(body.velocity())
@@ -273,10 +294,10 @@ def _only_settled(body: Body) -> bool:
     )
 
 
-def _is_same(first: Pose, second: Pose) -> bool:
-    """Return whether two poses are the same up to rounding."""
-    return math.dist(first.position_m, second.position_m) < 1e-12 and (
-        _angle_deg(first, second) < 1e-6
+def _is_same(first: Pose, second: Pose, within_m: float = 1e-12, within_deg: float = 1e-6) -> bool:
+    """Return whether two poses are the same up to rounding, or up to so much [m], [deg]."""
+    return math.dist(first.position_m, second.position_m) < within_m and (
+        _angle_deg(first, second) < within_deg
     )
 
 

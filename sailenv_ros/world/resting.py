@@ -85,9 +85,12 @@ def begin_at_rest(client: BulletClient, bodies: Sequence[Body], *, settled: bool
     client.stepSimulation()
     _restore(client, start, sunk)
     client.removeState(start)
+    # What touches something awake has woken in that step, unless it hangs on joints.
     wakes = states.ACTIVATION_STATE_ENABLE_WAKEUP
+    again = states.ACTIVATION_STATE_SLEEP
     for body in asleep:
-        client.changeDynamics(body.bullet_id, LINK_OF_BASE, activationState=wakes)
+        state = wakes if isinstance(body, JointedBody) else again
+        client.changeDynamics(body.bullet_id, LINK_OF_BASE, activationState=state)
 
 
 def _restore(

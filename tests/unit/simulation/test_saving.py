@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
 from sailenv_ros.agents import AgentSpec
@@ -200,6 +200,33 @@ def test_what_has_only_settled_still_stands_upon_its_carrier(core: SimulationCor
     assert "on: table" in core.scene_text()
 
 
+def test_what_stands_upon_what_has_settled_comes_back(folder: Path) -> None:
+    """A label that hangs over a book keeps its place when the book drops onto a turned table."""
+    (folder / "piled.yaml").write_text(
+        """
+version: 1
+objects:
+  - {name: table, asset: cube, position: [0, 0, 0.25], rotation: [0, 0, 30], scale: [1, 1, 0.5],
+     static: true}
+  - {name: book, asset: cube, on: table, position: [0.1, 0.2, 0], rotation: [0, 0, 10],
+     scale: [0.2, 0.3, 0.05]}
+  - {name: label, asset: cube, on: book, position: [0.07, 0, 0.01], scale: 0.02, static: true}
+""",
+        encoding="utf-8",
+    )
+    core = make_core(folder)
+    begin(core, "piled")
+    before = core.get_object("book").pose
+    for body in core.world.bodies:
+        body.wake()
+    core.step(24)
+    assert core.get_object("book").pose.position_m[2] < before.position_m[2] - 0.0009
+    text = assert_comes_back(core)
+    assert "on: table" in text
+    assert "on: book" in text
+    core.close()
+
+
 def test_a_saved_scene_passes_the_check_and_says_the_same_again(
     core: SimulationCore, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -322,6 +349,7 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
+@example(edits=[("add_behaviour", "cup", 0.0), ("step", 12)])  # it drops onto the table
 @given(edits=st.lists(_edits, max_size=8))
 def test_an_edited_world_comes_back_as_it_was(core: SimulationCore, edits: list[Any]) -> None:
     """Whatever was edited, in whatever order: contents are equal, poses to a micrometre."""

@@ -56,3 +56,42 @@ def test_the_check_of_a_scene_wakes_what_sleeps() -> None:
     world = make_world(floor(), steady)
     assert list(shifts(world)) == []
     assert world.step_count == 480
+
+
+def test_a_high_pile_stands_firmly_while_it_is_awake() -> None:
+    """Ten cubes of 30 cm, one upon another, get less than 2 mm away within ten seconds."""
+    pile = [
+        placed(f"cube {n}", (0.0, 0.0, 0.3 * (n + 0.5)), asset=UNIT_BOX, scale=(0.3, 0.3, 0.3))
+        for n in range(10)
+    ]
+    world = make_world(floor(), *pile)
+    first = world.snapshot().world_from_body[1:, :3, 3]
+    for body in world.bodies:
+        body.wake()
+    world.step(2400)
+    away = np.linalg.norm(world.snapshot().world_from_body[1:, :3, 3] - first, axis=1)
+    assert away.max() < 0.002
+
+
+def test_what_is_light_bears_what_is_heavy() -> None:
+    """A cube of 100 g under one of 50 kg sinks into the floor by less than 5 mm in five seconds."""
+    small = (0.2, 0.2, 0.2)
+    light = placed("light", (0.0, 0.0, 0.1), asset=UNIT_BOX, scale=small, mass_kg=0.1)
+    heavy = placed("heavy", (0.0, 0.0, 0.3), asset=UNIT_BOX, scale=small, mass_kg=50.0)
+    world = make_world(floor(), light, heavy)
+    for body in world.bodies:
+        body.wake()
+    world.step(1200)
+    heights = world.snapshot().world_from_body[1:, 2, 3]
+    assert heights[0] > 0.1 - 0.005
+    assert heights[1] > 0.3 - 0.005
+
+
+def test_what_sleeps_follows_a_gravity_that_is_changed() -> None:
+    """What sleeps falls by a gravity that was changed meanwhile, as soon as it wakes."""
+    world = make_world(floor(), placed("box", (0.0, 0.0, 0.5), asset=UNIT_BOX))
+    world.step(480)
+    world.set_gravity((0.0, 0.0, 2.0))
+    world.step(120)
+    rise = 2.0 / 240**2 * 120 * 121 / 2
+    np.testing.assert_allclose(world.object_state(2).pose.position_m[2], 0.5 + rise, atol=1e-4)
