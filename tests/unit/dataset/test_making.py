@@ -300,3 +300,36 @@ def test_what_is_drawn_at_random_differs_from_scene_to_scene(tmp_path: Path) -> 
         cube = next(one["id"] for one in dataset[0].objects if one["name"] == "red cube")
         colours = [one.frame["rgb"][one.frame["instance"] == cube].mean(axis=0) for one in dataset]
     assert np.abs(np.diff(colours, axis=0)).max(axis=1).min() > 5.0
+
+
+def test_a_camera_of_the_scene_faces_what_it_does_there(tmp_path: Path) -> None:
+    """An agent that keeps looking at an object that moves has it in the middle of each frame."""
+    (tmp_path / "drift.yaml").write_text(
+        "version: 1\ngravity: [0, 0, 0]\n"
+        "objects: [{name: ball, asset: sphere, position: [3, 0, 1], gravity: false,"
+        " velocity: [0, 2, 0]}]\n"
+        "agents: [{name: eye, following: false, position: [0, 0, 1.5],"
+        " keep_looking_at: {object: ball}}]\n",
+        encoding="utf-8",
+    )
+    changes: dict[str, Any] = {
+        "scenes": [{"scene": "drift.yaml"}],
+        "cameras": [{"type": "agent", "width": 33, "height": 33}],
+        "clips": {"train": 1},
+        "formats": ["mcap"],
+    }
+    make_dataset(
+        load_job(written_recipe(tmp_path, **changes)), tmp_path / "made", engine_of(1, None)
+    )
+    with open_dataset(tmp_path / "made") as dataset:
+        frames = [one.frame for one in dataset]
+    headings = []
+    for frame in frames:
+        assert frame.states is not None
+        away = frame.states.positions[0] - frame.camera.pose.position_m
+        axis = frame.camera.pose.matrix()[:3, 0]
+        np.testing.assert_allclose(axis, away / np.linalg.norm(away), atol=1e-9)
+        assert frame["instance"][16, 16] == 1
+        headings.append(frame.camera.pose.rpy_deg[2])
+    assert len(headings) == 3
+    assert headings[0] < headings[1] < headings[2]
