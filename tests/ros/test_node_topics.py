@@ -105,6 +105,8 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
         f"{NAMESPACE}/agent/pose": "geometry_msgs/msg/PoseStamped",
         f"{NAMESPACE}/scene_info": "sailenv_msgs/msg/SceneInfo",
         f"{NAMESPACE}/contacts": "sailenv_msgs/msg/Contacts",
+        f"{NAMESPACE}/joint_states": "sensor_msgs/msg/JointState",
+        f"{NAMESPACE}/lesson": "std_msgs/msg/String",
         **(
             {f"{NAMESPACE}/free_space": "nav_msgs/msg/OccupancyGrid"}
             if find_spec("nav_msgs")
