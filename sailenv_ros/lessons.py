@@ -76,7 +76,7 @@ class LessonState:
         return cls(**{**given, "objects": tuple(given["objects"])})
 
     def __str__(self) -> str:
-        """Say it for people: ``lap 2 of 30, lesson 1 of 4: ewer``."""
+        """Return it for people to read: ``lap 2 of 30, lesson 1 of 4: ewer``."""
         laps = f" of {self.laps}" if self.laps else ""
         more = "" if self.phase == "lesson" else f" ({self.phase})"
         return f"lap {self.lap}{laps}, lesson {self.number} of {self.count}: {self.name}{more}"

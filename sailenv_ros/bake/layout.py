@@ -1,4 +1,4 @@
-"""Gives every instance its place in the light map. From `StaticGeometry` to `Layout`.
+"""The place of every instance in the light map. From `StaticGeometry` to `Layout`.
 
 Knows neither rays nor light.
 """

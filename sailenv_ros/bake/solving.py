@@ -44,7 +44,7 @@ EDGE_TEXELS = 5
 
 
 class Stages:
-    """Tells how far a bake is, and shares its work among threads.
+    """Reports how far a bake is, and shares its work among threads.
 
     Parameters
     ----------

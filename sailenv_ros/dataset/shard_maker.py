@@ -308,7 +308,7 @@ def _agent_name(camera: AnyCamera) -> str:
 
 
 def _bake_missing(world: World) -> None:
-    """Give a world of a room its baked light, which is baked if it is not there."""
+    """Load the baked light of a room's world; bake it if it is not there."""
     if world.contents.baked is not None or world.described is None:
         return
     if world.described.room is None:

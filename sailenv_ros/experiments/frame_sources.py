@@ -21,7 +21,7 @@ __all__ = ["FrameSource", "agent_source", "in_process_source"]
 
 
 class FrameSource(Protocol):
-    """Gives frames of one size of picture, in lockstep."""
+    """A source of frames of one size of picture, in lockstep."""
 
     @property
     def renderer(self) -> str:

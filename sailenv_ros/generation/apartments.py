@@ -240,7 +240,7 @@ def _wall_between(
 
 
 def _take_materials(shell: Shell, rooms: Sequence[_Room], hub: _Room) -> None:
-    """Give the apartment the hub's walls and floor, and every other room its own floor."""
+    """Take the hub's walls and floor for the apartment, and its own floor for each other room."""
     shell.entry["walls"] = hub.faces["walls"]
     shell.entry["floor"] = hub.faces["floor"]
     shell.entry["skirting"] = {"colour": [0.78, 0.77, 0.73]}

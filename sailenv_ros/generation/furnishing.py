@@ -134,7 +134,7 @@ class Furnisher:
         return self.dice.one([a for a in rule.assets if a not in present] or rule.assets)
 
     def _fits(self, item: Item, rule: FurnitureRule, name: str, group: _Group) -> bool:
-        """Say if a piece can stand where it was drawn; it is in the group then."""
+        """Return whether a piece can stand where it was drawn; it is in the group then."""
         # What stands free keeps off sill boards and curtains.
         stands_free = item.side is None and not rule.flat and rule.at != "ceiling"
         if not self.area.holds(item.block, FROM_WALL_M if stands_free else 0.0):
@@ -161,7 +161,7 @@ class Furnisher:
         return True
 
     def _rug_fits(self, item: Item, group: _Group) -> bool:
-        """Say if a rug lies on the floor alone, or under what stands free and never moves."""
+        """Return whether a rug lies on bare floor, or under what stands free and never moves."""
         for other in (*self.items, *group.items):
             standing = other.side is not None or not other.entry.get("static", False)
             if (other.is_flat or standing) and _over(item.block, other.block):
@@ -213,7 +213,7 @@ def _thin(block: Block) -> Block:
 
 
 def _over(first: Block, second: Block) -> bool:
-    """Say if two boxes that stand on the floor lie over one another, seen from above."""
+    """Return whether two boxes that stand on the floor overlap, seen from above."""
     if second.low > 0.1:
         return False
     flat = [

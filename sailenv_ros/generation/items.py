@@ -82,7 +82,7 @@ class Item:
 
 
 class Namer:
-    """Gives names that no other object of the scene has: lamp, lamp 2, lamp 3."""
+    """Names that no other object of the scene has: lamp, lamp 2, lamp 3."""
 
     def __init__(self, taken: Iterable[str] = ()) -> None:
         self._taken = set(taken)

@@ -63,7 +63,7 @@ class Block:
         return offsets
 
     def meets(self, other: Block, margin_m: float = 0.0) -> bool:
-        """Say if two boxes come nearer than a margin in the plane, at heights that both have."""
+        """Return whether two boxes are nearer than a margin in the plane, at heights both have."""
         if self.low >= other.high or other.low >= self.high:
             return False
         reach = math.hypot(self.half_x, self.half_y) + math.hypot(other.half_x, other.half_y)
@@ -177,7 +177,7 @@ class Area:
         return self.size[0] * self.size[1] - cut
 
     def holds(self, block: Block, margin_m: float = 0.0) -> bool:
-        """Say if a box lies inside, so far from all walls."""
+        """Return whether a box lies inside, so far from all walls."""
         corners = block.corners()
         low, high = np.asarray(self.low) + margin_m, np.asarray(self.high) - margin_m
         inside = bool((corners >= low - 1e-9).all() and (corners <= high + 1e-9).all())
@@ -220,16 +220,16 @@ class RoomPlan:
             self._blocked |= wall.distance_m(self._points) < BODY_RADIUS_M
 
     def is_free(self, block: Block, margin_m: float = 0.01, ignored: Sequence[Block] = ()) -> bool:
-        """Say if a box meets nothing that stands, and no floor that is to stay free."""
+        """Return whether a box meets nothing that stands, and no floor that is to stay free."""
         others = [other for other in (*self.solid, *self.clear) if other not in ignored]
         return not any(block.meets(other, margin_m) for other in others)
 
     def is_empty(self, block: Block) -> bool:
-        """Say if nothing stands where a box is; floor that stays free may be shared."""
+        """Return whether nothing stands where a box is; floor that stays free may be shared."""
         return not any(block.meets(other) for other in self.solid)
 
     def connects(self, more: Iterable[Block]) -> bool:
-        """Say if one can walk between all doors with more boxes in the way."""
+        """Return whether one can walk between all doors with more boxes in the way."""
         return self.walkable(more) is not None
 
     def walkable(self, more: Iterable[Block] = (), wider_m: float = 0.0) -> Flags | None:

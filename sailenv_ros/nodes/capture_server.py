@@ -68,7 +68,7 @@ class CaptureServer:
         threading.Thread(target=self._accept, name="frames-listener", daemon=True).start()
 
     def close(self) -> None:
-        """Hang up on everybody; a second call does nothing."""
+        """Close all connections; a second call does nothing."""
         if self._closed or self._listener is None:
             return
         self._closed = True

@@ -97,7 +97,7 @@ def _mcap_files(folder: Path) -> list[Path]:
 
 
 def _put_in_place(draft: Path, path: Path, kept: Path) -> None:
-    """Give the damaged file its second name first: at every moment one of both has the old name."""
+    """Link the damaged file to its new name first: at every moment a file has the old name."""
     try:
         os.link(path, kept)
     except PermissionError:  # a file system without hard links

@@ -23,7 +23,7 @@ MAX_RATE = 1000.0
 
 @dataclass(slots=True, kw_only=True)
 class PlaybackClock:
-    """Tells how long to wait for a moment of the recording.
+    """Computes how long to wait for a moment of the recording.
 
     Attributes
     ----------

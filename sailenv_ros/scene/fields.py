@@ -38,7 +38,7 @@ BROKEN_RULE = "scene_rule"
 
 
 Rule: TypeAlias = Callable[[Mapping[str, Any]], Iterator[tuple[tuple[str | int, ...], str]]]
-"""Says what is wrong between the keys of one entry, however wrong the values are themselves.
+"""Yields what is wrong between the keys of one entry, however wrong the values are themselves.
 
 Takes the entry as plain data, yields places inside it with finished sentences.
 """

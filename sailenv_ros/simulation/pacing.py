@@ -14,7 +14,7 @@ MAX_LAG_S = 0.25
 
 
 class Pacer:
-    """Says which step simulated time should have reached.
+    """Computes which step simulated time should have reached.
 
     Parameters
     ----------

@@ -261,7 +261,7 @@ class Randomiser:
         world.wait_as(number, replace(placement, pose=pose))
 
     def dress(self, number: int) -> None:
-        """Give an object that has just entered the looks that were drawn for it."""
+        """Apply the looks that were drawn for an object that has just entered."""
         name = self._core.world.body(number).placement.name
         for values in (self._epoch, self._frame):
             for part, keys in values.get("materials", {}).get(name, {}).items():

@@ -22,7 +22,7 @@ LIGHT_COMMANDS = CommandTable()
 @LIGHT_COMMANDS.changes
 @edits_surroundings("adding the light")
 async def add_light(context: CommandContext, given: Arguments) -> Any:
-    """Hang a light where the watched camera is, shining where it looks."""
+    """Add a light where the watched camera is, shining where it looks."""
     camera = context.frame(None).camera
     place = {
         "position_m": camera.pose.position_m,
