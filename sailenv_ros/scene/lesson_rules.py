@@ -77,12 +77,13 @@ def visitors_stand_alone(scene: Entry) -> Faults:
     joints = [entry["joint"] for entry in objects if isinstance(entry.get("joint"), Mapping)]
     parents = {str(joint.get("parent")) for joint in joints}
     for number, entry in enumerate(objects):
-        name = entry.get("name")
+        given = entry.get("name")
+        name = given if isinstance(given, str) else ""
         comes = name in taught or entry.get("appear") or entry.get("leave") is not None
         if comes and (entry.get("joint") is not None or name in parents):
             yield (
                 ("objects", number),
-                f"{shown(name)} cannot come and go, as it is on a joint or carries what is on one",
+                f"{shown(given)} cannot come and go, as it is on a joint or carries what is on one",
             )
 
 

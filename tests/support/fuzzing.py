@@ -165,6 +165,26 @@ agents:
   - {name: eye, width: 64, height: 48, mover: walker}
 """
 
+_STAGED_SCENE = b"""version: 1
+title: Comes and goes
+objects:
+  - {name: chest, asset: Cube, static: true, position: [2, 0, 0.5]}
+  - name: lid
+    asset: Cube
+    category: door
+    position: [0, 0, 0.6]
+    joint: {type: hinge, parent: chest, origin: [0, 0.5, 0], axis: [1, 0, 0], limits: [-1.5, 0]}
+  - {name: ball, asset: Sphere, appear: 1, leave: 9, behaviours: [{type: poltergeist, seed: 3}]}
+lessons: {laps: 3, pause: 1, after: loop, shuffled: true, sequence: [{objects: [ball], duration: 10}]}
+movers:
+  - {name: walker, waypoints: [{position: [0, 0, 1]}, {position: [1, 0, 1]}]}
+agents:
+  - {name: eye, width: 64, height: 48, keep_looking_at: {object: ball, point: [0, 0, 0.1]}}
+randomise:
+  - {name: paint, type: material, of: chest, colour: {uniform: ["#202020", "#f0e0d0"]}}
+  - {name: place, type: camera, of: eye, rule: room_view, settings: {attempts: 5}, every: frame}
+"""
+
 _SCENARIO = {
     "scene_name": "optical/scene",
     "objects": [
@@ -317,7 +337,7 @@ def _read_asset(data: bytes, folder: Path) -> object:
 
 
 TARGETS = {
-    "scene": Target(lambda: (_SCENE,), _read_scene),
+    "scene": Target(lambda: (_SCENE, _STAGED_SCENE), _read_scene),
     "scenario": Target(lambda: (json.dumps(_SCENARIO).encode(),), _read_scenario),
     "gateway": Target(_gateway_samples, _read_gateway),
     "viewer": Target(

@@ -295,10 +295,11 @@ class _WithoutStates:
 
     def write(self, topic: str, parts: Any, log_ns: int) -> None:
         if topic.endswith("frame_info"):
-            # A false, three bytes that fill up, three empty arrays, and an empty text.
+            # A false, three bytes that fill up, three empty arrays, and two empty texts with three
+            # bytes between them.
             (data,) = parts
-            assert data[-21] == 0
-            assert not any(data[-17:-5])
-            assert bytes(data[-5:]) == b"\x01\0\0\0\0"
-            parts = (data[:-21],)
+            assert data[-29] == 0
+            assert not any(data[-25:-13])
+            assert bytes(data[-13:]) == b"\x01\0\0\0\0" + bytes(3) + b"\x01\0\0\0\0"
+            parts = (data[:-29],)
         self._writer.write(topic, parts, log_ns)
