@@ -175,7 +175,7 @@ objects:
     position: [0, 0, 0.6]
     joint: {type: hinge, parent: chest, origin: [0, 0.5, 0], axis: [1, 0, 0], limits: [-1.5, 0]}
   - {name: ball, asset: Sphere, appear: 1, leave: 9, behaviours: [{type: poltergeist, seed: 3}]}
-lessons: {laps: 3, pause: 1, after: loop, shuffled: true, sequence: [{objects: [ball], duration: 10}]}
+lessons: {laps: 3, pause: 1, after: loop, sequence: [{objects: [ball], duration: 10}]}
 movers:
   - {name: walker, waypoints: [{position: [0, 0, 1]}, {position: [1, 0, 1]}]}
 agents:
