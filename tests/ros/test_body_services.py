@@ -69,7 +69,7 @@ def test_services_make_push_and_tell_of_a_body(probe: Probe) -> None:
 
 def test_an_agent_rides_on_a_body_and_feels_it_strike(probe: Probe) -> None:
     """It is carried, bounces off the wall and faces it meanwhile, by the simulation's calls."""
-    with Agent(name="rider", namespace=NAMESPACE, mover="ball") as agent:
+    with Agent(name="rider", namespace=NAMESPACE) as agent:
         begun = agent.movers["ball"].body
         assert begun == RigidBody(mass_kg=0.5, restitution=0.5, gravity=False)
         assert agent.movers["cart"].body is None
