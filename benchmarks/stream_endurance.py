@@ -65,6 +65,8 @@ def main() -> int:
     options = parser.parse_args()
     if options.action == "check":
         return _check(options.folder)
+    # Where it was ignored, as in a shell's background, the processes begun here would ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     breaks = [
         *((share, signal.SIGINT) for share in options.int),
         *((share, signal.SIGKILL) for share in options.kill),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -63,6 +64,9 @@ def run(args: argparse.Namespace) -> int:
     from sailenv_ros.cli.scene_bake import ensure_baked
     from sailenv_ros.streams import StreamJob, make_stream, stream_named
 
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # A shell starts what it puts into the background so; who sends it means it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     kind = stream_named(f"colof_{args.which}" if args.stream == "colof" else args.stream)
     frames = args.frames
     if frames is None and not kind.laps:

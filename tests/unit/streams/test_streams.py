@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import itertools
 import json
+import signal
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -254,6 +255,16 @@ def test_bad_requests_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert main(["stream", "solid", "-o", str(tmp_path / "x"), "--laps", "0"]) == 2
     assert "--laps" in capsys.readouterr().err
     assert not (tmp_path / "x").exists()
+
+
+def test_a_stream_in_the_background_hears_ctrl_c(tmp_path: Path) -> None:
+    """A shell has what it puts into the background ignore it."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        assert main(["stream", "solid", "-o", str(tmp_path / "x"), "--laps", "0"]) == 2
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_the_command_writes_what_their_code_reads(
