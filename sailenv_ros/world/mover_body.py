@@ -35,6 +35,9 @@ __all__ = ["BOUNCES_FROM_M_S", "MoverBody"]
 BOUNCES_FROM_M_S = 0.05
 """What strikes more slowly stays where it is [m/s]; gravity gives a resting body 0.04 in a step."""
 
+NO_SPIN_RAD_S = 1e-12
+"""Slower is rounding: less than 4e-9 rad in an hour."""
+
 Floats = NDArray[np.float64]
 Piece = tuple[int, int]
 """The engine's number of a body, and that of its link."""
@@ -161,10 +164,12 @@ class MoverBody(Body):
     def turned_from(self, before: Pose) -> Pose:
         """Return where it is; what does not spin is turned as it was, to the bit.
 
-        The engine rounds orientations anew in every step.
+        The engine rounds orientations anew in every step, and strikes leave spins of 1e-60 rad/s.
         """
         here = self.pose()
-        return here if any(self.motion[1]) else Pose(here.position_m, before.orientation_xyzw)
+        if max(map(abs, self.motion[1])) > NO_SPIN_RAD_S:
+            return here
+        return Pose(here.position_m, before.orientation_xyzw)
 
     @property
     def motion(self) -> tuple[Vector3, Vector3]:
