@@ -28,7 +28,14 @@ from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
 
-__all__ = ["FrameRecorder", "due_steps", "record_lockstep", "rendered", "rendered_ahead"]
+__all__ = [
+    "FRAME_TIMEOUT_S",
+    "FrameRecorder",
+    "due_steps",
+    "record_lockstep",
+    "rendered",
+    "rendered_ahead",
+]
 
 STEPS_PER_S = 240
 """Physics steps per simulated second."""

@@ -18,7 +18,13 @@ from typing import Any
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.motion import FORWARD_VIEWS
-from sailenv_ros.recording.lockstep import FrameRecorder, due_steps, rendered, rendered_ahead
+from sailenv_ros.recording.lockstep import (
+    FRAME_TIMEOUT_S,
+    FrameRecorder,
+    due_steps,
+    rendered,
+    rendered_ahead,
+)
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo
@@ -27,6 +33,7 @@ from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.streams.stream_content import scene_content
 from sailenv_ros.streams.stream_parts import StreamFolder
 from sailenv_ros.streams.stream_table import StreamKind
+from sailenv_ros.system.futures import wait_for
 
 __all__ = ["PART_FRAMES", "StreamJob", "make_stream", "stream_pairs"]
 
@@ -208,12 +215,15 @@ def _opened(job: StreamJob) -> Simulation:
 def _walk(job: StreamJob, simulation: Simulation, count: int) -> Iterator[int]:
     """Lead the simulation from frame to frame, and yield the number of each when it is due."""
     pusher = job.kind.pusher(job.seed) if job.kind.pusher is not None else None
-    step = 0
+    step, stepped = 0, None
     for number, due in enumerate(due_steps(job.kind.rate_hz, count)):
         if pusher is not None and number:
             pusher.push(simulation, number)
         if due > step:
-            simulation.step.submit(due - step)
+            if stepped is not None:
+                # Where frames are passed over, the deadline is one frame's, not of the whole way.
+                wait_for(stepped, "physics to step to a frame", FRAME_TIMEOUT_S)
+            stepped = simulation.step.submit(due - step)
             step = due
         yield number
 

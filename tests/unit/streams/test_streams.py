@@ -17,7 +17,7 @@ from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli.main import main
-from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.scene.loader import load_scene
@@ -32,6 +32,7 @@ from sailenv_ros.streams import (
     stream_making,
     stream_named,
 )
+from sailenv_ros.system.futures import wait_for
 from tests.support.bake_scenes import COARSE
 
 pytestmark = pytest.mark.ros
@@ -194,6 +195,31 @@ def test_pictures_do_not_depend_on_the_light_in_the_cache(cell: StreamJob, tmp_p
     for path in light:
         path.rename(path.with_suffix(".draft"))
     assert messages(make_stream(with_light, tmp_path / "lost" / "cell")) == baked
+
+
+def test_the_deadline_of_a_long_way_is_one_frames(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Frames that are passed over are not waited for all at once; what is late says so itself."""
+    monkeypatch.setattr(stream_making, "PART_FRAMES", 2)
+    waited: list[str] = []
+
+    def count(future: Any, what: str, timeout_s: float) -> Any:
+        waited.append(what)
+        if len(waited) == 9:
+            raise DeadlineExceeded(what, timeout_s)
+        return wait_for(future, what, timeout_s)
+
+    def break_off(done: int) -> None:
+        if done == 12:
+            raise Broken
+
+    bag = tmp_path / "solid"
+    with pytest.raises(Broken):
+        make_stream(job(14), bag, on_frame=break_off)
+    monkeypatch.setattr(stream_making, "wait_for", count)
+    with pytest.raises(DeadlineExceeded, match="while waiting for physics to step to a frame"):
+        make_stream(job(14), bag)
 
 
 def test_a_broken_stream_keeps_its_light_and_models(
