@@ -16,6 +16,7 @@ from sailenv_ros.look_at import LookAt
 from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
+from tests.support.plain_doors import DOOR_INERTIA, door
 from tests.support.simple_solids import UNIT_BALL, placed
 from tests.unit.world.test_motion import HALF_M, closed_box
 from tests.unit.world.test_world import CATEGORIES
@@ -238,6 +239,19 @@ def test_a_strike_beside_the_middle_keeps_momentum_and_energy() -> None:
     inertia = world.body(1).inertia_kg_m2  # of a cube, equal about all axes
     energy = 0.1 * own @ own + 0.25 * linear @ linear + 0.5 * inertia[0] * spin @ spin
     assert energy == pytest.approx(0.4, rel=1e-5)
+    world.close()
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.6, 1.0])
+def test_a_strike_opens_a_door(restitution: float) -> None:
+    """0.7 m from the hinge: angular momentum about it, and the speeds after, of the textbook."""
+    rigid = RigidBody(mass_kg=1.0, radius_m=0.1, gravity=False, restitution=restitution)
+    world = body_world(door(), rigid=rigid, pose=Pose((0.3, -1, 0)), velocity=(0, 2.0, 0))
+    world.step(150)
+    rate = (1 + restitution) * 1.0 * 2.0 * 0.7 / (DOOR_INERTIA + 0.49)
+    assert world.joints()[0].velocity == pytest.approx(rate, rel=2e-3)
+    expected = (0, 0.7 * rate - restitution * 2.0, 0)
+    np.testing.assert_allclose(motion(world)[0], expected, atol=2e-3)
     world.close()
 
 
