@@ -97,8 +97,8 @@ def bounced_radiance(
     channels = first.shape[1]
     start = patches.means(first, valid)
     share = np.tile(patches.means(albedo, valid), channels // 3)
-    members = np.argsort(patches.of_texel, kind="stable")
-    members = members[valid[members]].astype(np.int32)
+    order = np.argsort(patches.of_texel, kind="stable")
+    members = order[valid[order]].astype(np.int32)
     bounds = np.searchsorted(patches.of_texel[members], np.arange(patches.count + 1))
     ends, sources = _sources_of(members, bounds, seen, patches)
     # Padded, so that channels are added up in blocks of a fixed size.
