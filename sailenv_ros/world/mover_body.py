@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +28,7 @@ from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
 from sailenv_ros.world.placement import Placement
+from sailenv_ros.world.struck import LinkMotion, Strike, StruckBody, StruckLink, links_near
 
 __all__ = ["BOUNCES_FROM_M_S", "MoverBody"]
 
@@ -45,17 +45,6 @@ Piece = tuple[int, int]
 Vector3 = tuple[float, float, float]
 
 _STILL: Vector3 = (0.0, 0.0, 0.0)
-
-
-class _Strike(NamedTuple):
-    """What one body gave the ball in a step."""
-
-    impulse_n_s: float
-    normal: Floats
-    """Towards the ball."""
-    place_m: Floats
-    depth_m: float
-    """How deep the two stood in one another when the step began."""
 
 
 class MoverBody(Body):
@@ -112,6 +101,7 @@ class MoverBody(Body):
         self._decay, self._angular_decay = (math.exp(-rate / STEPS_PER_SECOND) for rate in decays)
         self._before: Floats = np.asarray(linear_velocity)
         self._flies = False
+        self._links: dict[Piece, LinkMotion] = {}
 
     def before_step(self) -> None:
         """Slow it down for the step that comes."""
@@ -120,6 +110,7 @@ class MoverBody(Body):
             linear, angular = linear * self._decay, angular * self._angular_decay
             self._client.resetBaseVelocity(self._id, linear.tolist(), angular.tolist())
         self._before = linear
+        self._links = links_near(self._client, self._id, float(np.linalg.norm(linear)))
 
     def after_step(
         self, restitution: Mapping[Piece, float], done: Collection[Piece]
@@ -188,7 +179,7 @@ class MoverBody(Body):
         self._client.resetBasePositionAndOrientation(self._id, position, pose.orientation_xyzw)
         self._client.resetBaseVelocity(self._id, *motion)
 
-    def _strikes(self) -> dict[Piece, _Strike]:
+    def _strikes(self) -> dict[Piece, Strike]:
         """Return what pressed against it in the last step, by what did."""
         points: dict[Piece, list[tuple[Floats, Floats]]] = {}
         depths: dict[Piece, float] = {}
@@ -205,40 +196,35 @@ class MoverBody(Body):
             if size > 0.0:
                 weights = [float(np.linalg.norm(part)) for part, _ in parts]
                 place = np.average([at for _, at in parts], axis=0, weights=weights)
-                found[other] = _Strike(size, impulse / size, place, depths[other])
+                found[other] = Strike(size, impulse / size, place, depths[other])
         return found
 
-    def _bounce(
-        self, other: Piece, strike: _Strike, restitution: float, forced_m_s: float
-    ) -> float:
+    def _bounce(self, other: Piece, strike: Strike, restitution: float, forced_m_s: float) -> float:
         """Give both the impulse that is missing to a bounce, or too much; return it [N s].
 
         `forced_m_s` is how much faster, along the normal, forces have made the ball in the step: a
         ball that lies somewhere is pressed there, and strikes nothing.
         """
         n, at = strike.normal, strike.place_m
-        pressed, deep = max(0.0, -forced_m_s), 0.0
+        pressed = max(0.0, -forced_m_s)
         body, link = other
         if link != LINK_OF_BASE or self._client.getNumJoints(body):
-            # The inertia of what hangs on joints is not known here: Poisson's law of impact.
-            if strike.impulse_n_s / self.mass_kg - pressed < BOUNCES_FROM_M_S:
-                return 0.0
-            more = restitution * strike.impulse_n_s
-            frame = self._client.constants.WORLD_FRAME
-            force = (-more * STEPS_PER_SECOND * n).tolist()
-            self._client.applyExternalForce(body, link, force, at.tolist(), frame)
+            before = self._links.get(other)
+            struck: StruckBody | StruckLink = StruckLink(
+                self._client, other, at, before, strike.impulse_n_s
+            )
         else:
-            struck = _Struck(self._client, body, at)
-            mobility = 1.0 / self.mass_kg + struck.mobility(n)
-            out = float((self.velocity()[0] - struck.velocity) @ n)
-            into = strike.impulse_n_s * mobility - out
-            more = (restitution * into - out) / mobility
-            if into - pressed < BOUNCES_FROM_M_S:
-                return 0.0
-            struck.push(-more * n)
-            # The engine would push out what is left of the depth by giving both more speed.
-            deep = strike.depth_m - out / STEPS_PER_SECOND
+            struck = StruckBody(self._client, body, at)
+        mobility = 1.0 / self.mass_kg + struck.mobility(n)
+        out = float((self.velocity()[0] - struck.velocity) @ n)
+        into = strike.impulse_n_s * mobility - out
+        more = (restitution * into - out) / mobility
+        if into - pressed < BOUNCES_FROM_M_S:
+            return 0.0
+        struck.push(-more * n)
         linear, angular = self.velocity()
+        # The engine would push out what is left of the depth by giving both more speed.
+        deep = strike.depth_m - out / STEPS_PER_SECOND
         if deep > 0.0:
             place, quat = self._client.getBasePositionAndOrientation(self._id)
             out_of_it = (np.asarray(place) + deep * n).tolist()
@@ -250,37 +236,3 @@ class MoverBody(Body):
     def _set_activation(self, state: str) -> None:
         value = getattr(self._client.constants, state)
         self._client.changeDynamics(self._id, LINK_OF_BASE, activationState=value)
-
-
-class _Struck:
-    """A rigid body at a point where it is struck; what is static has no mobility."""
-
-    def __init__(self, client: BulletClient, body: int, place_m: Floats) -> None:
-        self._client, self._body = client, body
-        linear, angular = client.getBaseVelocity(body)
-        self._linear, self._angular = np.asarray(linear), np.asarray(angular)
-        position, quat = client.getBasePositionAndOrientation(body)
-        self._arm = place_m - np.asarray(position)
-        mass_kg, _, inertia, *_ = client.getDynamicsInfo(body, LINK_OF_BASE)
-        self._per_mass, self._per_inertia = 0.0, np.zeros((3, 3))
-        if mass_kg:
-            turn = np.asarray(client.getMatrixFromQuaternion(quat)).reshape(3, 3)
-            self._per_mass = 1.0 / mass_kg
-            self._per_inertia = turn @ np.diag(1.0 / np.asarray(inertia)) @ turn.T
-
-    @property
-    def velocity(self) -> Floats:
-        """Of the point [m/s]."""
-        return self._linear + np.cross(self._angular, self._arm)
-
-    def mobility(self, normal: Floats) -> float:
-        """Return how much faster an impulse along a normal makes the point, along it [1/kg]."""
-        spin = self._per_inertia @ np.cross(self._arm, normal)
-        return float(self._per_mass + np.cross(spin, self._arm) @ normal)
-
-    def push(self, impulse_n_s: Floats) -> None:
-        """Give it an impulse at the point [N s]."""
-        if self._per_mass:
-            linear = self._linear + self._per_mass * impulse_n_s
-            angular = self._angular + self._per_inertia @ np.cross(self._arm, impulse_n_s)
-            self._client.resetBaseVelocity(self._body, linear.tolist(), angular.tolist())
