@@ -124,7 +124,7 @@ class _Bake:
         self._visibility = probe_visibility(geometry, scene, self._spots, settings.probe_rays)
         visible = visible_triangles(geometry, self._visibility.seen)
         layout = laid_out(geometry, settings, visible, stages.begin("surfaces", 0.14))
-        texels = facing_the_light(geometry, scene, rasterised(geometry, layout))
+        texels = facing_the_light(geometry, scene, rasterised(geometry, layout), stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         self._around = Surroundings(
             scene=scene,
