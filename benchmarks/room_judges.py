@@ -4,7 +4,8 @@
     python benchmarks/room_judges.py judge FOLDER                 # with mujoco and python-fcl alone
 
 `export` writes each room as MJCF, `<kind>_<seed>.xml`: static objects are geometry of the world,
-all others bodies with a free joint and the mass of their asset. Convex pieces are meshes. `judge`
+doors are on their hinges, all others are bodies with a free joint; masses are those of the assets.
+Convex pieces are meshes. `judge`
 steps each for two seconds with MuJoCo's default solver and tells how far each body has moved, then
 has FCL (https://github.com/flexible-collision-library/fcl) measure how deep shapes of different
 objects lie in each other. Parts of a room stand in one another by construction; those are left out.
@@ -29,6 +30,9 @@ Floats = NDArray[np.float64]
 SETTLE_S = 2.0
 MOST_MOVED_M = 0.005
 MOST_DEPTH_M = 0.002
+
+TURNING_FRICTION_M = 0.002
+"""Of what spins and rolls, as `sailenv_ros.world.bodies` has it."""
 
 
 def main() -> int:
@@ -78,8 +82,23 @@ def _described(body: Any) -> dict[str, Any]:
         "of_room": "room" in placement.asset.tags,
         "mass": mass,
         "friction": placement.friction,
+        "joint": _joint(placement),
         "pose": body.world_from_body().tolist(),
         "shapes": [_shape(shape, scale) for shape in placement.asset.collision],
+    }
+
+
+def _joint(placement: Any) -> dict[str, Any] | None:
+    """Return the joint of what hangs on the room."""
+    if placement.joint is None:
+        return None
+    spec = placement.joint.spec
+    return {
+        "type": spec.type,
+        "axis": list(spec.axis),
+        "origin": list(spec.origin),
+        "range": None if spec.limits is None else [end - spec.start for end in spec.limits],
+        "friction": spec.friction,
     }
 
 
@@ -112,11 +131,22 @@ def _mjcf(name: str, objects: list[dict[str, Any]]) -> str:
         geoms = "".join(_geoms(thing, number, assets))
         place = f'pos="{_text(pose[:3, 3])}" quat="{_text(_quaternion(pose[:3, :3]))}"'
         label = quoteattr(thing["name"])
-        joint = "" if thing["static"] else "<freejoint/>"
+        joint = "" if thing["static"] else _mjcf_joint(thing["joint"])
         world.append(f"<body name={label} {place}>{joint}{geoms}</body>")
     return (
-        f'<mujoco model={quoteattr(name)}><option timestep="0.002"/>'
+        f'<mujoco model={quoteattr(name)}><compiler angle="radian"/><option timestep="0.002"/>'
         f"<asset>{''.join(assets)}</asset><worldbody>{''.join(world)}</worldbody></mujoco>\n"
+    )
+
+
+def _mjcf_joint(joint: Mapping[str, Any] | None) -> str:
+    if joint is None:
+        return "<freejoint/>"
+    limits = "" if joint["range"] is None else f'range="{_text(np.asarray(joint["range"]))}"'
+    return (
+        f'<joint type="{joint["type"]}" axis="{_text(np.asarray(joint["axis"]))}" '
+        f'pos="{_text(np.asarray(joint["origin"]))}" frictionloss="{joint["friction"]:.6g}" '
+        f"{limits}/>"
     )
 
 
@@ -124,7 +154,8 @@ def _geoms(thing: Mapping[str, Any], number: int, assets: list[str]) -> Iterator
     count = len(thing["shapes"])
     # Parts of the room and static objects never touch each other: bits keep them from being asked.
     bits = 'contype="1" conaffinity="2"' if thing["static"] else 'contype="2" conaffinity="3"'
-    look = f'{bits} mass="{thing["mass"] / count:.6g}" friction="{2.0 * thing["friction"]:.3g}"'
+    friction = f"{2.0 * thing['friction']:.3g} {TURNING_FRICTION_M} {TURNING_FRICTION_M}"
+    look = f'{bits} mass="{thing["mass"] / count:.6g}" condim="6" friction="{friction}"'
     for place, shape in enumerate(thing["shapes"]):
         if shape["type"] == "mesh":
             mesh = f"m{number}_{place}"
@@ -199,16 +230,17 @@ def _judge(folder: Path) -> int:
 
 
 def _settled(file: Path) -> dict[str, float]:
-    """Return how far each free body has moved after two seconds, by MuJoCo [m]."""
+    """Return how far each body's frame or centre has moved after two seconds, by MuJoCo [m]."""
     import mujoco
 
     model = mujoco.MjModel.from_xml_path(str(file))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    before = data.xpos.copy()
+    before = np.stack([data.xpos, data.xipos])
     for _ in range(round(SETTLE_S / model.opt.timestep)):
         mujoco.mj_step(model, data)
-    moved = np.linalg.norm(data.xpos - before, axis=1)
+    after = np.stack([data.xpos, data.xipos])
+    moved = np.linalg.norm(after - before, axis=2).max(axis=0)
     return {
         model.body(number).name: float(moved[number])
         for number in range(1, model.nbody)
