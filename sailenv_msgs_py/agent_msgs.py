@@ -7,6 +7,7 @@ stands on its pose topic.
 from __future__ import annotations
 
 from sailenv_msgs.msg import AgentInfo
+from sailenv_msgs_py.mover_msgs import look_at_from_msg, look_at_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
@@ -32,6 +33,7 @@ def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
         following=spec.following,
         mover=spec.mover,
         picture=picture_to_msg(spec.picture),
+        look_at=look_at_to_msg(spec.look_at),
     )
 
 
@@ -60,4 +62,5 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
         mover=msg.mover,
         picture=picture_from_msg(msg.picture),
         pose=pose,
+        look_at=look_at_from_msg(msg.look_at),
     )

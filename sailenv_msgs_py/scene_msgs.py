@@ -6,24 +6,23 @@ data types' defaults for the rest (the colours of the sky).
 
 from __future__ import annotations
 
-from typing import Literal, cast
+from typing import cast
 
 from std_msgs.msg import ColorRGBA, Header
 
 import sailenv_msgs.msg as msgs
 from sailenv_msgs_py.agent_msgs import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
+from sailenv_msgs_py.mover_msgs import mover_from_msg, mover_to_msg
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import (
     point_to_msg,
-    pose_from_msg,
-    pose_to_msg,
     vector_to_msg,
     xyz_from_msg,
 )
 from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import LIGHT_LIMITS, Environment, Light, LightType
-from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.scene_info import SceneInfo, TimeMode
 
 __all__ = [
     "colour_to_msg",
@@ -55,7 +54,7 @@ def scene_info_to_msg(info: SceneInfo) -> msgs.SceneInfo:
         lights=[light_to_msg(light) for light in info.lights],
         environment=environment_to_msg(info.environment),
         agents=[agent_spec_to_msg(spec) for spec in info.agents],
-        movers=[_mover_to_msg(mover) for mover in info.movers],
+        movers=[mover_to_msg(mover) for mover in info.movers],
         renderer=info.renderer,
     )
 
@@ -79,7 +78,7 @@ def scene_info_from_msg(msg: msgs.SceneInfo) -> SceneInfo:
         lights=tuple(light_from_msg(light) for light in msg.lights),
         environment=_environment_from_msg(msg.environment),
         agents=tuple(agent_spec_from_msg(agent) for agent in msg.agents),
-        movers=tuple(_mover_from_msg(mover) for mover in msg.movers),
+        movers=tuple(mover_from_msg(mover) for mover in msg.movers),
         renderer=msg.renderer,
     )
 
@@ -163,26 +162,6 @@ def _environment_from_msg(msg: msgs.Environment) -> Environment:
         background="sky" if msg.sky else "colour",
         background_colour=rgb_from_msg(msg.background_colour),
         exposure=float(msg.exposure),
-    )
-
-
-def _mover_to_msg(mover: MoverInfo) -> msgs.Mover:
-    return msgs.Mover(
-        name=mover.name,
-        controller=mover.controller,
-        waypoints=[pose_to_msg(pose) for pose in mover.waypoints],
-        total_time=float(mover.total_time_s),
-        loop=mover.loop,
-    )
-
-
-def _mover_from_msg(msg: msgs.Mover) -> MoverInfo:
-    return MoverInfo(
-        name=msg.name,
-        controller=cast(Literal["waypoint", "rigidbody"], msg.controller),
-        waypoints=tuple(pose_from_msg(pose) for pose in msg.waypoints),
-        total_time_s=msg.total_time,
-        loop=msg.loop,
     )
 
 

@@ -64,7 +64,7 @@ class AgentSpec:
     pose : Pose or None
         Where it starts when it does not follow; None means at the mover.
     look_at : LookAt or None
-        What it faces from the start on; `set_look_at` changes that, not this.
+        What it faces: from the start on in what is registered, now in what is announced.
     """
 
     name: str

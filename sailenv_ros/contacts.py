@@ -17,8 +17,8 @@ class Contact:
     ----------
     first, second : int
         Instance ids, the first of which is the lower; 0 stands for a mover.
-    mover : str
-        Name of the mover where there is one; else empty.
+    mover, other_mover : str
+        Names of the movers where the first, or both, are movers; else empty.
     position_m : (3,) tuple of float
         Of the point where the impulse was strongest [m].
     normal : (3,) tuple of float
@@ -34,6 +34,7 @@ class Contact:
     first: int
     second: int
     mover: str = ""
+    other_mover: str = ""
     position_m: Vector3
     normal: Vector3
     impulse_n_s: float

@@ -17,6 +17,8 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import CategoryTable, Instance
 from sailenv_ros.lights import Environment, Light
+from sailenv_ros.look_at import LookAt
+from sailenv_ros.rigid_body import RigidBody
 
 __all__ = ["InstanceColumns", "MoverInfo", "SceneInfo", "SceneObject", "TimeMode"]
 
@@ -38,6 +40,10 @@ class MoverInfo:
         Time to run through all of them once [s].
     loop : bool
         True if the last waypoint leads on to the first.
+    body : RigidBody or None
+        None unless forces move it.
+    look_at : LookAt or None
+        What it faces now.
     """
 
     name: str
@@ -45,6 +51,8 @@ class MoverInfo:
     waypoints: tuple[Pose, ...] = ()
     total_time_s: float = 30.0
     loop: bool = True
+    body: RigidBody | None = None
+    look_at: LookAt | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

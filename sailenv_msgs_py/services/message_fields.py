@@ -12,6 +12,7 @@ from typing import Any
 
 from sailenv_msgs_py.agent_msgs import agent_spec_from_msg, agent_spec_to_msg
 from sailenv_msgs_py.changes import changes_from_msg, changes_to_msg
+from sailenv_msgs_py.mover_msgs import rigid_body_from_msg, rigid_body_to_msg
 from sailenv_msgs_py.object_msgs import behaviour_from_msg, behaviour_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
 from sailenv_msgs_py.scene_msgs import colour_to_msg, light_from_msg, light_to_msg, rgb_from_msg
@@ -50,6 +51,7 @@ _CONVERTERS: Mapping[str, tuple[Convert, Convert]] = {
     "sailenv_msgs/AgentInfo": (agent_spec_to_msg, agent_spec_from_msg),
     "sailenv_msgs/Behaviour": (behaviour_to_msg, behaviour_from_msg),
     "sailenv_msgs/Light": (light_to_msg, light_from_msg),
+    "sailenv_msgs/RigidBody": (rigid_body_to_msg, rigid_body_from_msg),
     "sailenv_msgs/PictureSettings": (picture_to_msg, picture_from_msg),
     "sequence<uint8>": (_bytes_to_msg, bytes),
     "sequence<rcl_interfaces/Parameter>": (changes_to_msg, changes_from_msg),

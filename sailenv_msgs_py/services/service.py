@@ -101,7 +101,10 @@ class Service:
         bound.apply_defaults()
         given: Arguments = dict(bound.arguments)
         given.pop("agent", None)
-        if "obj" in given:
+        either = "mover" in self._request_types and "mover" not in given
+        if either and _is_mover(given.get("obj"), info):
+            given.update(mover=given["obj"], obj=0)
+        elif "obj" in given:
             given["obj"] = _object_id(given["obj"], info)
         if self._write is not None:
             given = self._write(given)
@@ -180,6 +183,12 @@ class Service:
             return
         for field, type_ in self._response_types.items():
             write_field(response, field, type_, result)
+
+
+def _is_mover(obj: object, info: SceneInfo) -> bool:
+    """Return whether a name is that of a mover, and of no object."""
+    named = any(mover.name == obj for mover in info.movers)
+    return named and all(instance.name != obj for instance in info.instances)
 
 
 def _object_id(obj: int | str, info: SceneInfo) -> int:

@@ -62,8 +62,6 @@ _NO_CHANGE, _CLOSED, _OPEN = (
 
 def _write_agent(given: Arguments) -> Arguments:
     spec = given["spec"]
-    if spec.look_at is not None:
-        raise InvalidRequest("look_at", spec.look_at, "None over ROS; call set_look_at then")
     return {"agent_info": spec, "has_pose": spec.pose is not None, "pose": spec.pose}
 
 
@@ -201,8 +199,19 @@ def _write_wrench(given: Arguments) -> Arguments:
 
 
 def _read_wrench(given: Arguments) -> Arguments:
-    has_point, point = given.pop("has_point"), given.pop("point")
-    return {**given, "point_m": point if has_point else None}
+    has_point, point, mover = (given.pop(key) for key in ("has_point", "point", "mover"))
+    obj = given["obj"]
+    if mover and obj:
+        raise InvalidRequest("id", obj, "0 beside the name of a mover")
+    return {**given, "obj": mover or obj, "point_m": point if has_point else None}
+
+
+def _write_body(given: Arguments) -> Arguments:
+    return {**given, "release": given["body"] is None}
+
+
+def _read_body(given: Arguments) -> Arguments:
+    return {**given, "body": None} if given.pop("release") else given
 
 
 def _write_look_at(given: Arguments) -> Arguments:
@@ -436,6 +445,8 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
         },
     ),
     Service(Operations.turn_mover, srv.TurnMover),
+    Service(Operations.set_mover_body, srv.SetMoverBody, write=_write_body, read=_read_body),
+    Service(Operations.get_mover_velocity, srv.GetMoverVelocity),
     Service(
         Operations.set_mover_look_at,
         srv.SetMoverLookAt,

@@ -27,6 +27,9 @@ CHUNK_PATCHES = 4096
 FEWEST_RAYS = 2 * TURN
 """Of each texel count at least in a patch of many."""
 
+BLOCK = 8
+"""Channels that are added up at a time."""
+
 MOST_LEFT = 0.9
 """Share of its light that a bounce leaves to the next, at most."""
 
@@ -94,21 +97,23 @@ def bounced_radiance(
     channels = first.shape[1]
     start = patches.means(first, valid)
     share = np.tile(patches.means(albedo, valid), channels // 3)
-    members = np.argsort(patches.of_texel, kind="stable")
-    members = members[valid[members]].astype(np.int32)
+    order = np.argsort(patches.of_texel, kind="stable")
+    members = order[valid[order]].astype(np.int32)
     bounds = np.searchsorted(patches.of_texel[members], np.arange(patches.count + 1))
-    radiance, arriving = start, np.zeros_like(start)
+    ends, sources = _sources_of(members, bounds, seen, patches)
+    # Padded, so that channels are added up in blocks of a fixed size.
+    radiance = np.zeros((patches.count, -(-channels // BLOCK) * BLOCK), np.float32)
+    radiance[:, :channels] = start
+    arriving = np.zeros_like(start)
     grown = [np.ones(channels), np.ones(channels)]
     for _ in range(bounces):
         before, arriving = arriving, np.zeros_like(start)
 
-        def hand_on(
-            start: int, end: int, sent: Floats = radiance, arriving: Floats = arriving
-        ) -> None:
-            _hand_on(members, bounds, seen, patches.of_texel, sent, arriving, start, end)
+        def hand_on(first: int, end: int, arriving: Floats = arriving) -> None:
+            _hand_on(ends, sources, radiance, arriving, first, end)
 
         in_chunks(hand_on, patches.count, CHUNK_PATCHES, workers)
-        radiance = start + share * arriving
+        radiance[:, :channels] = start + share * arriving
         grown = [grown[1], np.sum(arriving - before, axis=0, dtype=np.float64)]
     if bounces > 1:
         # All further bounces shrink like the last: they are a geometric series.
@@ -117,28 +122,62 @@ def bounced_radiance(
     return first + np.tile(albedo, channels // 3) * arriving[patches.of_texel]
 
 
+def _sources_of(
+    members: NDArray[np.int32],
+    bounds: NDArray[np.intp],
+    seen: NDArray[np.int32],
+    patches: Patches,
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Return (count + 1,) where the rays of each patch end in a list, and which patches they met.
+
+    Rays that met nothing have -1.
+    """
+    size = np.diff(bounds)
+    turns = np.clip(size, 1, max(seen.shape[1] // FEWEST_RAYS, 1))
+    ends = np.concatenate([[0], np.cumsum(size * (seen.shape[1] // turns))]).astype(np.int64)
+    sources = np.empty(int(ends[-1]), np.int32)
+    _find_sources(members, bounds, seen, patches.of_texel, turns, ends, sources)
+    return ends, sources
+
+
 @numba.njit(cache=True, nogil=True)
-def _hand_on(  # type: ignore[no-untyped-def]
-    members, bounds, seen, of_texel, radiance, arriving, start, stop
+def _find_sources(  # type: ignore[no-untyped-def]
+    members, bounds, seen, of_texel, turns, ends, sources
 ):
-    rays = seen.shape[1]
-    channels = radiance.shape[1]
-    for patch in range(start, stop):
-        first, end = bounds[patch], bounds[patch + 1]
-        if first == end:
-            continue
+    for patch in range(len(bounds) - 1):
+        at = ends[patch]
         # Neighbours take turns with the rays: together they have all directions.
-        turns = max(min(rays // FEWEST_RAYS, end - first), 1)
-        size = rays // turns
-        number = 0
-        for place in range(first, end):
-            turn = (place - first) % turns
-            for m in range(turn * size, (turn + 1) * size):
+        rays = seen.shape[1] // turns[patch]
+        for place in range(bounds[patch], bounds[patch + 1]):
+            begin = (place - bounds[patch]) % turns[patch] * rays
+            for m in range(begin, begin + rays):
                 texel = seen[members[place], m]
-                number += 1
-                if texel >= 0:
-                    source = of_texel[texel]
-                    for c in range(channels):
-                        arriving[patch, c] += radiance[source, c]
-        for c in range(channels):
-            arriving[patch, c] /= number
+                sources[at] = of_texel[texel] if texel >= 0 else -1
+                at += 1
+
+
+@numba.njit(cache=True, nogil=True)
+def _hand_on(ends, sources, radiance, arriving, first, end):  # type: ignore[no-untyped-def]
+    channels = arriving.shape[1]
+    for patch in range(first, end):
+        rays = ends[patch + 1] - ends[patch]
+        if rays == 0:
+            continue
+        for begin in range(0, radiance.shape[1], BLOCK):
+            # In registers: eight sums in memory would wait for each other.
+            a = b = c = d = e = f = g = h = np.float32(0.0)
+            for place in range(ends[patch], ends[patch + 1]):
+                source = sources[place]
+                if source < 0:
+                    continue
+                a += radiance[source, begin]
+                b += radiance[source, begin + 1]
+                c += radiance[source, begin + 2]
+                d += radiance[source, begin + 3]
+                e += radiance[source, begin + 4]
+                f += radiance[source, begin + 5]
+                g += radiance[source, begin + 6]
+                h += radiance[source, begin + 7]
+            for k, total in enumerate((a, b, c, d, e, f, g, h)):
+                if begin + k < channels:
+                    arriving[patch, begin + k] = total / rays

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
-from sailenv_ros.bake.rays import RayScene
+from sailenv_ros.bake.rays import RayScene, in_chunks
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 
@@ -27,6 +27,8 @@ CLEARLY = 1.5
 
 LIFT_M = 1e-3
 
+CHUNK_TRIANGLES = 8192
+
 SPOTS = np.array(
     [[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [3, 3, 1], [1, 3, 3], [3, 1, 3]], np.float32
 )
@@ -34,14 +36,23 @@ SPOTS /= SPOTS.sum(axis=1, keepdims=True)
 """Points of a triangle, as weights of its corners."""
 
 
-def facing_the_light(geometry: StaticGeometry, scene: RayScene, texels: Texels) -> Texels:
+def facing_the_light(
+    geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int = 1
+) -> Texels:
     """Turn the texels of two-sided triangles whose back is the open side."""
-    asked = np.flatnonzero(geometry.two_sided)
+    shown = np.zeros(geometry.triangle_count, dtype=bool)
+    shown[texels.triangle] = True
+    asked = np.flatnonzero(geometry.two_sided & shown)
     if not len(asked):
         return texels
-    openness = [_openness(geometry, scene, asked, sign) for sign in (1.0, -1.0)]
     turned = np.zeros(geometry.triangle_count, dtype=bool)
-    turned[asked] = openness[1] > CLEARLY * openness[0]
+
+    def find(first: int, end: int) -> None:
+        own = asked[first:end]
+        front, back = (_openness(geometry, scene, own, sign) for sign in (1.0, -1.0))
+        turned[own] = back > CLEARLY * front
+
+    in_chunks(find, len(asked), CHUNK_TRIANGLES, workers)
     sign = np.where(turned[texels.triangle], np.float32(-1.0), np.float32(1.0))[:, None]
     return replace(texels, normals=texels.normals * sign, faces=texels.faces * sign)
 

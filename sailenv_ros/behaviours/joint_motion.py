@@ -20,7 +20,8 @@ from sailenv_ros.behaviours.base import (
     RunningBehaviour,
     behaviour,
 )
-from sailenv_ros.scene.field_types import Number, Several
+from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.fields import JointLimits
 
 __all__ = ["JointMotion", "OpenAndClose", "joint_motion", "open_and_close", "running_motion"]
 
@@ -29,8 +30,6 @@ ARRIVED = 1e-3
 
 CATCHES_UP = 2.0
 """What was held up is moved this much faster than the motion's greatest speed at most."""
-
-_Coordinate = Annotated[float, Number(least=-1e4, most=1e4)]
 
 
 class JointMotion(BehaviourParameters):
@@ -52,12 +51,7 @@ class OpenAndClose(BehaviourParameters):
     period: Annotated[float, Number(least=0.1, most=1e4, unit="s")] = Field(
         default=8.0, description="time to open and close once [s]"
     )
-    limits: (
-        Annotated[
-            tuple[_Coordinate, _Coordinate], Several(2, "two numbers [low, high] in [rad] or [m]")
-        ]
-        | None
-    ) = Field(
+    limits: JointLimits | None = Field(
         default=None,
         description="between which positions [rad] or [m]; the joint's own limits if left out",
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["add_allow_modules"]
+__all__ = ["add_allow_modules", "add_light"]
 
 
 def add_allow_modules(parser: Any) -> None:
@@ -13,4 +13,15 @@ def add_allow_modules(parser: Any) -> None:
         "--allow-modules",
         action="store_true",
         help="let scene files have behaviours of Python modules, whose code then runs",
+    )
+
+
+def add_light(parser: Any, default: str) -> None:
+    """Add the argument of every command whose pictures must not depend on what is baked by now."""
+    parser.add_argument(
+        "--light",
+        choices=("baked", "plain"),
+        default=default,
+        help="of a room: with bounced light, baked first where it is not yet, or without"
+        " (default: %(default)s)",
     )

@@ -13,7 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.cli.arguments import add_allow_modules
+from sailenv_ros.cli.arguments import add_allow_modules, add_light
 from sailenv_ros.cli.node_process import become_node
 from sailenv_ros.recording.progress import progress_line, size_in_bytes
 from sailenv_ros.recording.topics import RecordingOptions
@@ -61,6 +61,7 @@ def _add_lockstep(group: Any) -> None:
     group.add_argument("--height", type=int, default=480, help="of an agent made here [px]")
     group.add_argument("--rate", type=float, default=30.0, help="of an agent made here [Hz]")
     add_allow_modules(group)
+    add_light(group, "baked")
     group.add_argument("--backend", choices=("auto", "native", "gl", "tiny"), default="auto")
 
 
@@ -83,21 +84,28 @@ def run(args: argparse.Namespace) -> int:
 def _lockstep(args: argparse.Namespace, output: Path, options: RecordingOptions) -> int:
     from sailenv_ros.agents import AgentSpec
     from sailenv_ros.camera import CameraIntrinsics
+    from sailenv_ros.cli.scene_bake import ensure_baked
     from sailenv_ros.recording.lockstep import record_lockstep
-    from sailenv_ros.recording.writer import RecordingWriter
+    from sailenv_ros.recording.writer import RecordingWriter, check_free
     from sailenv_ros.simulation import Simulation
+    from sailenv_ros.simulation.scenes import default_scene
 
     if args.frames is None:
         print("sailenv record: --lockstep needs --frames N", file=sys.stderr)
         return 2
     intrinsics = CameraIntrinsics(width=args.width, height=args.height)
     spec = AgentSpec(name="agent", intrinsics=intrinsics, rate_hz=args.rate)
+    scene = args.scene or default_scene()
+    check_free(output)
+    if args.light == "baked":
+        ensure_baked(scene, allow_modules=args.allow_modules)
     with Simulation(
-        args.scene,
+        scene,
         mode="lockstep",
         seed=args.seed,
         backend=args.backend,
         allow_modules=args.allow_modules,
+        light=args.light,
     ) as simulation:
         if not simulation.info.agents:
             simulation.register_agent(spec)

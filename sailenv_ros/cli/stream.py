@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from sailenv_ros.cli.arguments import add_light
 from sailenv_ros.errors import InvalidRequest
 
 __all__ = ["add_parser", "run"]
@@ -52,14 +54,19 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=int, default=0, help="default: %(default)s")
     parser.add_argument("--views", nargs="+", default=[], metavar="VIEW", help="default: all six")
+    add_light(parser, "plain")
     parser.add_argument("--backend", choices=("auto", "native", "gl", "tiny"), default="auto")
     parser.add_argument("--quiet", action="store_true", help="no progress line")
 
 
 def run(args: argparse.Namespace) -> int:
     """Make the stream; 0 if all is well."""
+    from sailenv_ros.cli.scene_bake import ensure_baked
     from sailenv_ros.streams import StreamJob, make_stream, stream_named
 
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # A shell starts what it puts into the background so; who sends it means it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     kind = stream_named(f"colof_{args.which}" if args.stream == "colof" else args.stream)
     frames = args.frames
     if frames is None and not kind.laps:
@@ -73,8 +80,12 @@ def run(args: argparse.Namespace) -> int:
         frames=frames,
         seed=args.seed,
         views=tuple(args.views),
+        light=args.light,
         backend=args.backend,
     )
+    if args.light == "baked":
+        # Here, where a bar shows how far it is.
+        ensure_baked(str(kind.scene), allow_modules=False)
     with _progress(frames, quiet=args.quiet) as tell:
         made = make_stream(job, args.output, on_frame=tell)
     print(f"{made}: {frames} frames at {kind.rate_hz:g} Hz")

@@ -24,8 +24,8 @@ from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
 from sailenv_ros.dataset.dataset_reader import Dataset, DatasetFrame, open_dataset
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
+from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
 from sailenv_ros.dataset.stores import FolderStore
-from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
@@ -77,9 +77,7 @@ def save_preview(folder: str | Path, path: str | Path, *, split: str = "", frame
         If the page cannot be written.
     """
     with open_dataset(folder, split) as dataset:
-        if not len(dataset):
-            raise RecordingError(f"{folder} has no frames")
-        numbers = np.unique(np.linspace(0, len(dataset) - 1, frames).astype(int)).tolist()
+        numbers = shown_frames(dataset, frames)
         page = preview_html(dataset, numbers)
     with storage_errors("the page", Path(path)):
         write_file(Path(path), page.encode())
@@ -91,12 +89,8 @@ def preview_html(dataset: Dataset, numbers: list[int]) -> str:
     store = FolderStore(dataset.folder)
     shards = done_shards(store)
     counts = content_counts(frame_records(store, shards))
-    table = CategoryTable(load_categories().values())
-    first = dataset[numbers[0]].frame
-    views = [view for view in VIEWS if view in first.views]
-    if dataset.recipe.clip.frames == 1:
-        # Single pictures have no motion.
-        views = [view for view in views if not VIEWS[view].needs_past_depth and view != "flow"]
+    table = load_categories()
+    views = shown_views(dataset, VIEWS)
     total_bytes = sum(file.bytes for one in shards.values() for file in one.files.values())
     told = {
         "views": views,

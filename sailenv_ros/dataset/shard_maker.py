@@ -19,9 +19,6 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.agents import AgentSpec
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import light_folder, load_baked, store_baked
-from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.cpu_render.mesh_store import MeshStore
 from sailenv_ros.cpu_render.part_table import PartTable
@@ -40,16 +37,12 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.recording.lockstep import STEPS_PER_S, due_steps
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.space.free_space import named_generator
-from sailenv_ros.system.files import file_lock
 from sailenv_ros.viewpoints import sample_cameras
-from sailenv_ros.world.world import World
 
 __all__ = ["ShardMaker"]
-
-BAKE_TIMEOUT_S = 3600.0
-"""How long to wait for another process that bakes the same room [s]."""
 
 
 class ShardMaker:
@@ -278,7 +271,7 @@ class ShardMaker:
         )
         try:
             if self._baked:
-                _bake_missing(core.world)
+                bake_missing(core.world)
             if self._recipe.randomise:
                 things = [
                     one.model_dump(mode="json", exclude_defaults=True)
@@ -305,21 +298,3 @@ class ShardMaker:
 def _agent_name(camera: AnyCamera) -> str:
     """Return the name of a camera's agent, which no agent of a scene has."""
     return f"dataset_{camera.name}"
-
-
-def _bake_missing(world: World) -> None:
-    """Load the baked light of a room's world; bake it if it is not there."""
-    if world.contents.baked is not None or world.described is None:
-        return
-    if world.described.room is None:
-        return
-    snapshot = world.snapshot()
-    name = fingerprint(snapshot)
-    # Another worker may be baking it: then its light is waited for.
-    lock = light_folder() / f".baking-{name[0]}.lock"
-    with file_lock(lock, "baked light", timeout_s=BAKE_TIMEOUT_S):
-        baked = load_baked(name)
-        if baked is None:
-            baked = bake(snapshot)
-            store_baked(baked)
-    world.set_baked(baked)

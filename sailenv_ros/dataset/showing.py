@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.dataset.dataset_reader import open_dataset
-from sailenv_ros.errors import RecordingError
-from sailenv_ros.labels import CategoryTable
+from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
 
@@ -45,15 +42,10 @@ def save_sheet(folder: str | Path, path: str | Path, *, split: str = "", frames:
     """
     pictures = {}
     with open_dataset(folder, split) as dataset:
-        if not len(dataset):
-            raise RecordingError(f"{folder} has no frames")
-        numbers = np.unique(np.linspace(0, len(dataset) - 1, frames).astype(int))
-        first = dataset[0].frame
-        views = [view for view in SHOWN_VIEWS if view in first.views]
-        table = CategoryTable([*load_categories().values()])
-        if dataset.recipe.clip.frames == 1 and "flow" in views:
-            views.remove("flow")  # single pictures have none
-        for number in numbers.tolist():
+        numbers = shown_frames(dataset, frames)
+        views = shown_views(dataset, SHOWN_VIEWS)
+        table = load_categories()
+        for number in numbers:
             one = dataset[number]
             for view in views:
                 label = f"{one.number} {one.split} {one.frame.scene}" if view == "rgb" else view

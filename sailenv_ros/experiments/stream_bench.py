@@ -97,6 +97,7 @@ def bench_stream(
         "label": kind.title,
         "pairs": pairs,
         "factor": factor.factor,
+        "factor_error": factor.error,
         "factor_pixels": factor.pixels,
         "left": {name: _median(values) for name, values in left.items()},
         "published": dict(PUBLISHED.get(kind.name, {})),

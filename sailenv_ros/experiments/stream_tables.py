@@ -24,7 +24,8 @@ def stream_tables(data: Mapping[str, Any]) -> list[Table]:
             notes=(
                 "left: share of the difference of two pictures, on what moves, that is left after"
                 " warping the earlier one (median over pairs; 1 = no warp)",
-                "factor: by which flow must be multiplied to leave least; 1 is exact",
+                "factor: by which flow must be multiplied to leave least; 1 is exact"
+                " (± standard error)",
             ),
         )
     ]  # fmt: skip
@@ -62,7 +63,7 @@ def _flow_row(entry: Mapping[str, Any]) -> tuple[str, ...]:
     there = entry["published"]
     return (
         entry["label"],
-        number(entry["factor"], 3),
+        f"{number(entry['factor'], 3)} ± {number(entry.get('factor_error'), 3)}",
         number(entry["left"]["ours"], 2),
         number(entry["left"]["dis"], 2),
         number(there.get("factor"), 1),

@@ -33,7 +33,6 @@ from sailenv_ros.generation.scene_text import scene_text
 from sailenv_ros.generation.shells import shell_of
 from sailenv_ros.generation.stock import Stock
 from sailenv_ros.generation.things import lay_things
-from sailenv_ros.labels import CategoryTable
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.scene.room_rules import WALLS, room_part_names
 from sailenv_ros.scene.spec import EnvironmentSpec, SceneSpec
@@ -99,7 +98,7 @@ class Generator:
         library = AssetLibrary(installed_sources(installed_packs())) if assets is None else assets
         self._stock = Stock(library)
         self._rules = rules_of() if rules is None else rules
-        self._categories = CategoryTable([*load_categories().values()])
+        self._categories = load_categories()
 
     @property
     def rules(self) -> Rules:

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
-from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.geometry import look_at
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
@@ -51,20 +52,14 @@ class StandingWorld(ViewScene):
         super().__init__(world.snapshot(), lens)
         self._world = world
         self._backend = backend
-        self._last: tuple[Pose, Mapping[str, NDArray[Any]]] | None = None
 
-    def instances(self, pose: Pose) -> NDArray[np.uint16]:
-        """Return the (H, W) instance view from a pose."""
-        return self._surfaces(pose)["instance"]
+    def draw(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
+        """Return these views of the world."""
+        return self._backend.render(self.snapshot, None, camera, views).views
 
-    def depth_m(self, pose: Pose) -> NDArray[np.float32]:
-        """Return the (H, W) depth view from a pose [m]."""
-        return self._surfaces(pose)["depth"]
-
-    def whole_pixels(self, pose: Pose, only: int = 0) -> Mapping[int, int]:
-        """Return how many pixels each object would cover alone; see `ViewScene`."""
-        masks = AloneRenderer().draw(self.snapshot, self.camera(pose), only)
-        return dict(zip(masks.ids.tolist(), masks.whole_pixels.tolist(), strict=True))
+    def draw_alone(self, camera: Camera, only: int) -> AmodalMasks:
+        """Return each object drawn alone, or only the one of that id."""
+        return AloneRenderer().draw(self.snapshot, camera, only)
 
     def free_space(self, body: BodySize) -> FreeSpace:
         """Return where a body can stand."""
@@ -76,13 +71,6 @@ class StandingWorld(ViewScene):
             )
         )
         return map_free_space(solids, body)
-
-    def _surfaces(self, pose: Pose) -> Mapping[str, NDArray[Any]]:
-        """Return depth and ids, which cost no more than one of them."""
-        if self._last is None or self._last[0] is not pose:
-            camera, wanted = self.camera(pose), ("depth", "instance")
-            self._last = pose, self._backend.render(self.snapshot, None, camera, wanted).views
-        return self._last[1]
 
 
 def agent_entries(scene: StandingWorld, count: int, seed: int) -> list[dict[str, Any]]:

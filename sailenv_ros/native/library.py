@@ -37,7 +37,7 @@ __all__ = [
 
 _log = logging.getLogger(__name__)
 
-ABI_VERSION = 3
+ABI_VERSION = 4
 """`SAILENV_ABI_VERSION` of src/abi.h."""
 
 INSTRUCTION_SETS = ("portable", "avx2", "avx512")

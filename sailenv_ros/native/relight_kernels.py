@@ -34,7 +34,7 @@ _SMOOTH = Kernel(
 )
 _PROBES = Kernel(
     "gather_probe_change",
-    *("integer", "array", "integer", "array", "integer", "array", "array", "array"),
+    *("integer", "array", "integer", "array", "integer", "array", "integer", "array", "array"),
 )
 _SHINE = Kernel(
     "shine_change",
@@ -152,9 +152,22 @@ def smooth_change(
 
 
 def gather_probe_change(
-    scene: NDArray[np.void], positions: Floats, directions: Floats, *, threads: int
+    scene: NDArray[np.void],
+    positions: Floats,
+    directions: Floats,
+    *,
+    with_far: bool = True,
+    threads: int,
 ) -> tuple[Floats, Floats]:
     """Gather the change of light at points in the air.
+
+    Parameters
+    ----------
+    scene : (1,) RAY_SCENE
+    positions, directions : (N, 3), (M, 3) float32
+        World frame [m].
+    with_far : bool
+        False leaves `far` at 0, which saves nearly all the work.
 
     Returns
     -------
@@ -167,7 +180,7 @@ def gather_probe_change(
     checked("directions", directions, np.float32, (None, 3))
     far = np.zeros((count, 4, channels), np.float32)
     near = np.zeros_like(far)
-    _PROBES(threads, scene, count, positions, len(directions), directions, far, near)
+    _PROBES(threads, scene, count, positions, len(directions), directions, int(with_far), far, near)
     return far, near
 
 

@@ -1,18 +1,13 @@
-"""What touches what → the topic `contacts`, while somebody subscribes to it.
-
-Called from the simulation's loop thread after physics advanced, as `announcements` is.
-"""
+"""What touches what → the topic `contacts`, while somebody subscribes to it."""
 
 from __future__ import annotations
-
-import threading
-from collections.abc import Callable
 
 from rclpy.node import Node
 
 from sailenv_msgs.msg import Contacts
 from sailenv_msgs_py.contact_msgs import contacts_to_msg
 from sailenv_ros.nodes.qos import frame_qos
+from sailenv_ros.nodes.simulation_topic import SimulationTopic
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["ContactTopic"]
@@ -21,7 +16,7 @@ MOST_S = 1.0
 """Longest time that one message tells of; an advance is a tenth of it [s]."""
 
 
-class ContactTopic:
+class ContactTopic(SimulationTopic):
     """Publishes contacts.
 
     Parameters
@@ -30,31 +25,18 @@ class ContactTopic:
     """
 
     def __init__(self, node: Node) -> None:
+        super().__init__()
         self._topic = node.create_publisher(Contacts, "contacts", frame_qos())
-        self._publishing = threading.Lock()
-        self._ended = False
         self._told_ns = 0
-        self._unsubscribe: Callable[[], None] = lambda: None
-
-    def begin(self, simulation: Simulation) -> None:
-        """Follow a simulation from now on."""
-        self._unsubscribe = simulation.on_step(lambda now_ns: self._publish(simulation, now_ns))
-
-    def end(self) -> None:
-        """Stop following; nothing is published after this returns."""
-        with self._publishing:
-            self._ended = True
-        self._unsubscribe()
 
     def _publish(self, simulation: Simulation, now_ns: int) -> None:
-        with self._publishing:
-            since_ns, self._told_ns = self._told_ns, now_ns
-            if self._ended or not self._topic.get_subscription_count():
-                return
-            # At a reset time begins at 0 again.
-            seconds = min(MOST_S, max(0.0, (now_ns - since_ns) * 1e-9))
-            touching = simulation.contacts_of_steps(seconds)
-            if touching:
-                self._topic.publish(
-                    contacts_to_msg(touching, sim_time_ns=now_ns, revision=simulation.info.revision)
-                )
+        since_ns, self._told_ns = self._told_ns, now_ns
+        if not self._topic.get_subscription_count():
+            return
+        # At a reset time begins at 0 again.
+        seconds = min(MOST_S, max(0.0, (now_ns - since_ns) * 1e-9))
+        touching = simulation.contacts_of_steps(seconds)
+        if touching:
+            self._topic.publish(
+                contacts_to_msg(touching, sim_time_ns=now_ns, revision=simulation.info.revision)
+            )

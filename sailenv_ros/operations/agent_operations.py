@@ -93,8 +93,10 @@ class AgentOperations(Caller):
         A set pose is motion, which flow shows; `teleport` makes the next frame one without flow.
         What agent and mover faced by `set_look_at` and `set_mover_look_at`, they face no more.
         """
-        core.agents.turn_freely(core.agents[agent].spec.name, core.world)
+        ended = core.agents.turn_freely(core.agents[agent].spec.name, core.world)
         _put(core, pose, agent, teleport=teleport)
+        if ended:
+            core.announce()
 
     @operation(position=vector, teleport=check.flag)
     @staticmethod

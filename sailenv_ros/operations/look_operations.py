@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
+from sailenv_ros.errors import UnknownName
 from sailenv_ros.geometry import POSITION_LIMIT_M
 from sailenv_ros.look_at import LookAt
 from sailenv_ros.operations import argument_checks as check
@@ -74,6 +75,23 @@ class LookOperations(Caller):
         >>> agent.set_look_at("football")  # doctest: +SKIP
         """
         core.agents.look_at(agent, _gaze(core, obj, point_m), core.world)
+        core.announce()
+
+    def get_look_at(self, *, agent: str | None = None) -> LookAt | None:
+        """Return what an agent faces, as announced; None if nothing.
+
+        An object that is gone is told as the point where it was last.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such agent.
+        """
+        specs = {spec.name: spec for spec in self.info.agents}
+        name = agent or self.own_agent or next(iter(specs), "")
+        if name not in specs:
+            raise UnknownName("agent", name, specs)
+        return specs[name].look_at
 
     @operation(
         obj=check.optional(check.object_reference),
@@ -108,3 +126,18 @@ class LookOperations(Caller):
         """
         found = core.world.mover(mover)
         found.face(_gaze(core, obj, point_m), core.world.sim_time_ns)
+        core.announce()
+
+    def get_mover_look_at(self, mover: str = "") -> LookAt | None:
+        """Return what a mover faces, as announced; None if nothing.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such mover.
+        """
+        infos = {info.name: info for info in self.info.movers}
+        name = mover or next(iter(infos))
+        if name not in infos:
+            raise UnknownName("mover", name, infos)
+        return infos[name].look_at

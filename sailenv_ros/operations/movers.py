@@ -78,7 +78,11 @@ class MoverOperations(Caller):
         mover : str
             Its controller must be ``rigidbody``.
         """
+        found = core.world.mover(mover)
+        before = found.gaze
         core.world.drive(mover, linear_m_s, angular_rad_s)
+        if found.gaze is not before:
+            core.announce()
 
     @operation(pitch_rad=check.number, yaw_rad=check.number, mover=check.text)
     @staticmethod
@@ -86,7 +90,11 @@ class MoverOperations(Caller):
         core: SimulationCore, pitch_rad: float = 0.0, yaw_rad: float = 0.0, mover: str = ""
     ) -> None:
         """Turn a mover at once: pitch (down is positive), yaw (left is positive) [rad]."""
-        core.world.mover(mover).turn(pitch_rad, yaw_rad)
+        found = core.world.mover(mover)
+        before = found.gaze
+        found.turn(pitch_rad, yaw_rad)
+        if found.gaze is not before:
+            core.announce()
 
     @operation(waypoints=check.track, mover=check.text, total_time_s=check.optional(_track_time))
     @staticmethod

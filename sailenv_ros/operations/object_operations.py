@@ -253,19 +253,20 @@ class ObjectOperations(Caller):
         point_m: ArrayLike | None = None,
         duration_s: float = 0.0,
     ) -> None:
-        """Push and twist an object for some simulated time.
+        """Push and twist an object, or a mover that is a body, for some simulated time.
 
         Parameters
         ----------
         obj : int or str
-            Not a static one.
+            Not a static one; or the name of a mover, where no object has it.
         force_n : (3,) array-like
             World frame, each within 1e6 [N].
         torque_nm : (3,) array-like
             World frame, each within 1e6 [N m].
         point_m : (3,) array-like or None
             Where the force acts, in the object's own frame, its scale applied [m]; it moves with
-            the object. None is the centre of mass.
+            the object. None is the centre of mass. A mover's own frame is that of its body, which
+            what it faces does not turn.
         duration_s : float
             0 to 1e6 [s]; 0 is one physics step.
 
@@ -281,7 +282,7 @@ class ObjectOperations(Caller):
         }
         if point_m is not None:
             parameters["point"] = point_m
-        core.editor.apply_wrench(core.world.find(obj), parameters)
+        core.editor.apply_wrench(obj, parameters)
 
     @operation(seconds=_contact_time)
     @staticmethod
@@ -296,8 +297,8 @@ class ObjectOperations(Caller):
         Returns
         -------
         contacts : tuple of Contact
-            One for each pair of objects, in the order of their ids; a mover that is driven has the
-            id 0.
+            One for each pair, in the order of their ids; a mover that is driven, or is a body, has
+            the id 0.
 
         Notes
         -----

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sailenv_ros.operations.agent_operations import AgentOperations
+from sailenv_ros.operations.body_operations import BodyOperations
 from sailenv_ros.operations.chance_operations import ChanceOperations
 from sailenv_ros.operations.clock_operations import ClockOperations
 from sailenv_ros.operations.environment import EnvironmentOperations
@@ -36,6 +37,7 @@ class WorldOperations(
     LightOperations,
     EnvironmentOperations,
     MoverOperations,
+    BodyOperations,
     SpaceOperations,
     SavingOperations,
     ClockOperations,

@@ -81,8 +81,8 @@ _LITTLE_ENDIAN_CDR = b"\x00\x01"
 _NEWER_FIELD = "string lesson"
 """What the definition of `FrameInfo` got last; version 0.2.0 had not that before it either."""
 
-_NEWER_FIELD_OF_OBJECTS = "painted"
-"""What the definition of `Instance`, a part of `SceneInfo`, did not have in version 0.2.0."""
+_NEWER_PART_OF_SCENES = "sailenv_msgs/RigidBody"
+"""What the definition of `SceneInfo` got last within its parts; version 0.2.0 had it not."""
 
 _LONGEST_APPENDIX = 64
 """Bytes that all newer fields take where they are empty, and more [B]."""
@@ -182,7 +182,7 @@ def present_form(topic: RecordedTopic, data: Buffer) -> Buffer:
 
 def is_present_form(topic: RecordedTopic) -> bool:
     """Return whether a topic's messages can be read: `SceneInfo` has changed since 0.2.0."""
-    return topic.type != SCENE_INFO or _NEWER_FIELD_OF_OBJECTS in topic.schema
+    return topic.type != SCENE_INFO or _NEWER_PART_OF_SCENES in topic.schema
 
 
 def _deserialize(type_name: str, data: Buffer) -> Any:

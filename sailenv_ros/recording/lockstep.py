@@ -1,13 +1,13 @@
 """A lockstep `Simulation` → a recording, without DDS: every frame exactly once, as fast as it goes.
 
-The same scene, seed and options give the same bytes. While one frame is written the next one is
-being rendered.
+The same scene, seed and options give the same bytes, if the simulation was made with ``light`` of
+``baked`` or ``plain``. While one frame is written the next one is being rendered.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 
@@ -28,7 +28,14 @@ from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
 
-__all__ = ["FrameRecorder", "due_steps", "record_lockstep"]
+__all__ = [
+    "FRAME_TIMEOUT_S",
+    "FrameRecorder",
+    "due_steps",
+    "record_lockstep",
+    "rendered",
+    "rendered_ahead",
+]
 
 STEPS_PER_S = 240
 """Physics steps per simulated second."""
@@ -99,6 +106,34 @@ def due_steps(rate_hz: float, count: int) -> list[int]:
     return [math.ceil(number * STEPS_PER_S / rate_hz - 1e-9) for number in range(count)]
 
 
+def rendered_ahead(asked: Iterable[Future[Frame]]) -> Iterator[Frame]:
+    """Return frames in order; each is asked for before the one before is used.
+
+    Parameters
+    ----------
+    asked : iterable of Future
+        Asks for a frame when it is asked itself.
+
+    Raises
+    ------
+    DeadlineExceeded
+        If a frame takes longer than `FRAME_TIMEOUT_S`.
+    """
+    before: Future[Frame] | None = None
+    for following in asked:
+        if before is not None:
+            yield rendered(before)
+        before = following
+    if before is not None:
+        yield rendered(before)
+
+
+def rendered(asked: Future[Frame]) -> Frame:
+    """Wait for a frame that was asked for; see `rendered_ahead`."""
+    frame: Frame = wait_for(asked, "a frame to be rendered", FRAME_TIMEOUT_S)
+    return frame
+
+
 def record_lockstep(
     simulation: Simulation,
     writer: RecordingWriter,
@@ -160,7 +195,7 @@ def record_lockstep(
     count = 0
     try:
         late = tuple(view for view in wanted or () if view in FORWARD_VIEWS)
-        made = _frames(simulation, shots, _rendered(wanted))
+        made = rendered_ahead(_asked(simulation, shots, _views_to_render(wanted)))
         for frame in with_forward_motion(made, late) if late else made:
             # The next frame is being made: what is told for it must not come before this one.
             while infos and infos[0].revision <= frame.revision:
@@ -187,7 +222,7 @@ def _chosen(info: SceneInfo, names: Sequence[str]) -> list[AgentSpec]:
     return chosen
 
 
-def _rendered(views: tuple[str, ...] | None) -> tuple[str, ...] | None:
+def _views_to_render(views: tuple[str, ...] | None) -> tuple[str, ...] | None:
     """Return the views to render: those that are known later are made of depth and ids."""
     rendered = tuple(view for view in views or () if view not in FORWARD_VIEWS)
     if views is None or rendered == views:
@@ -195,24 +230,12 @@ def _rendered(views: tuple[str, ...] | None) -> tuple[str, ...] | None:
     return checked_views((*rendered, "depth", "instance"))
 
 
-def _frames(
+def _asked(
     simulation: Simulation, shots: Sequence[_Shot], views: tuple[str, ...] | None
-) -> Iterator[Frame]:
-    """Return the frames in order; each is asked for before the one before is used."""
+) -> Iterator[Future[Frame]]:
     step = 0
-    asked: Future[Frame] | None = None
     for shot in shots:
         if shot.step > step:
             simulation.step.submit(shot.step - step)
             step = shot.step
-        following = simulation.capture.submit(views, agent=shot.spec.name)
-        if asked is not None:
-            yield _await(asked)
-        asked = following
-    if asked is not None:
-        yield _await(asked)
-
-
-def _await(asked: Future[Frame]) -> Frame:
-    frame: Frame = wait_for(asked, "a frame to be rendered", FRAME_TIMEOUT_S)
-    return frame
+        yield simulation.capture.submit(views, agent=shot.spec.name)

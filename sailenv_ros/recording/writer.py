@@ -7,6 +7,7 @@ them. Used by one thread at a time. Knows no ROS.
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ from sailenv_ros.recording.mcap.chunks import Buffer, ChunkBuilder
 from sailenv_ros.recording.mcap.file_writer import McapFile
 from sailenv_ros.recording.topics import RecordedTopic, RecordingOptions
 
-__all__ = ["RecordingWriter", "WriterStatistics"]
+__all__ = ["RecordingWriter", "WriterStatistics", "check_free"]
 
 _log = logging.getLogger(__name__)
 
@@ -269,13 +270,28 @@ class RecordingWriter:
         return Metadata(name="rosbag2", metadata={"serialized_metadata": text})
 
 
+def check_free(folder: Path) -> None:
+    """Refuse a recording's folder that is there already.
+
+    Raises
+    ------
+    RecordingError
+    """
+    if os.path.lexists(folder):
+        raise _exists_already(folder)
+
+
+def _exists_already(folder: Path) -> RecordingError:
+    return RecordingError(
+        f"{folder} exists already; a recording is never overwritten, choose another name"
+    )
+
+
 def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True)
     except FileExistsError:
-        raise RecordingError(
-            f"{folder} exists already; a recording is never overwritten, choose another name"
-        ) from None
+        raise _exists_already(folder) from None
     except (OSError, ValueError) as problem:  # a NUL in the name is no OSError
         why = getattr(problem, "strerror", None) or str(problem)
         raise RecordingError(f"{str(folder)!r} cannot be made: {why}") from None

@@ -108,6 +108,10 @@ class BakedScene:
         Means of the layers' bounced light, the three colours of each layer in turn.
     direct : (P, L) float32
         Means of the layers' direct light.
+    sent : (P, C) float32
+        What patches send out by these; see `radiance`.
+    brightest : float
+        Bounced light of all layers that nine patches of ten do not exceed.
     materials : tuple of Material
     panes : Panes or None
     sky : (H, 2 H, 3) float32
@@ -223,6 +227,8 @@ class BakedScene:
                 self.irradiance[:, 3 * number + colour] = self.patches.means(bounced[:, colour])
             direct = layer.direct.reshape(-1)[self.places].astype(np.float32)
             self.direct[:, number] = self.patches.means(direct)
+        self.sent = self.radiance(self.irradiance, self.direct)
+        self.brightest = float(np.percentile(self.irradiance.sum(axis=1), 90))
 
     def _places(self, geometry: StaticGeometry) -> Floats:
         """Return (T, 3, 2) float32: the corners of the triangles in the map [texels]."""

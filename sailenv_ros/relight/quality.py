@@ -26,6 +26,9 @@ class Quality:
         Objects that may take less of a patch's view than this share change nothing there.
     bounces : int
         How often light is sent on between surfaces whose colour has changed.
+    with_far : bool
+        False leaves out what comes from surfaces that became brighter or darker, as long as none
+        has another material.
     by_texels : bool
         True traces shadows of lamps and sun from each texel, False from each patch.
     least_far : float
@@ -41,6 +44,7 @@ class Quality:
     smoothing: int
     least: float
     bounces: int
+    with_far: bool
     by_texels: bool
     least_far: float
 
@@ -52,8 +56,9 @@ QUICK = Quality(
     light_rays=4,
     probe_rays=16,
     smoothing=3,
-    least=0.01,
+    least=0.02,
     bounces=4,
+    with_far=False,
     by_texels=False,
     least_far=0.012,
 )
@@ -68,6 +73,7 @@ FINE = Quality(
     smoothing=2,
     least=0.002,
     bounces=8,
+    with_far=True,
     by_texels=True,
     least_far=0.004,
 )

@@ -23,7 +23,7 @@ from sailenv_ros.relight.relighting import relit
 from sailenv_ros.relight.scene_changes import Change
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
-__all__ = ["Relighter"]
+__all__ = ["READY_FRAMES", "Relighter"]
 
 _log = logging.getLogger(__name__)
 
@@ -32,6 +32,10 @@ REST_NS = 500_000_000
 
 STILL_NS, STILL_FRAMES = 250_000_000, 5
 """In real time, what moved a second time rests again after this time or so many frames."""
+
+READY_FRAMES = 3
+"""In lockstep a scene is made ready for moves once so many frames were rendered: what renders
+fewer does not pay for it."""
 
 SMALLEST_M = 0.15
 """Objects that came and are smaller in two directions change no light but their own."""
@@ -76,6 +80,7 @@ class Relighter:
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
         self._preparing: Future[BakedScene] | None = None
+        self._rendered = 0
         self._original: SceneContents | None = None
         self._scene: BakedScene | None = None
         self._places: dict[int, _Place] = {}
@@ -102,7 +107,7 @@ class Relighter:
             return
         self._scene, self._light, self._seen, self._of = None, None, None, None
         self._places, self._refining, self._changes, self._painted = {}, None, [], {}
-        self._preparing = None
+        self._preparing, self._rendered = None, 0
 
     def lit(
         self,
@@ -130,8 +135,10 @@ class Relighter:
         if self._original is None or not self._usable:
             return snapshot
         if wanted:
-            if not lockstep and self._scene is None and self._preparing is None:
-                # The first move then finds everything ready; in lockstep nobody waits for it.
+            self._rendered += 1
+            soon = not lockstep or self._rendered > READY_FRAMES
+            if soon and self._scene is None and self._preparing is None:
+                # Beside the frames, so that the first move finds everything ready.
                 self._preparing = self._background().submit(_scene_of, self._original, 1)
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
         if self._light is None:

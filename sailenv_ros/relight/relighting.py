@@ -81,9 +81,15 @@ class _Relighting:
         self._area, self._area_lights = [n for n, _ in area], [light for _, light in area]
         self._move()
         self._bounces = quality.bounces if painted else 0
-        self._albedo, self._emission = scene.looks_with(painted)
-        self._before = scene.radiance(scene.irradiance, scene.direct)
-        self._after = scene.radiance(scene.irradiance, scene.direct, self._albedo, self._emission)
+        self._far = quality.with_far or bool(painted)
+        self._albedo, self._emission = scene.patches.albedo, scene.patches.emission
+        self._before, self._after = scene.sent, scene.sent.copy()
+        if painted:
+            self._albedo, self._emission = scene.looks_with(painted)
+            self._before = scene.sent.copy()
+            self._after = scene.radiance(
+                scene.irradiance, scene.direct, self._albedo, self._emission
+            )
         self._world = ray_world(scene, changes, self._before, self._after, self._radiance_of_new)
         self._rays = self._world.record
 
@@ -101,13 +107,13 @@ class _Relighting:
             wanted = np.where(found == 2, 2, self._wanted)
             found, change, area = self._gather(wanted, quality.rays)
         found_far, change, far, near = self._bounced(found, change, direct)
-        layers = self._spread(found_far, change, area)
         if quality.by_texels:
             layers = [
-                self._with_direct(layer, shone.get(number)) for number, layer in enumerate(layers)
+                self._with_direct(layer, shone.get(number))
+                for number, layer in enumerate(self._spread(found_far, change, area, {}))
             ]
         else:
-            layers = self._with_patches_direct(layers, shone)
+            layers = self._spread(found_far, change, area, shone)
         layers = self._with_probes(layers, far, near)
         return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
 
@@ -124,7 +130,8 @@ class _Relighting:
         for left in range(self._bounces, -1, -1):
             far, near = self._probe_change()
             found_far, changed = found.copy(), change.copy()
-            self._add_far(found_far, changed, far, share)
+            if self._far:
+                self._add_far(found_far, changed, far, share)
             if left:
                 irradiance = self._scene.irradiance.copy()
                 _take(irradiance, found_far, changed)
@@ -283,8 +290,9 @@ class _Relighting:
         grid = self._scene.baked.probes
         points = _probe_points(grid)
         far, near = gather_probe_change(
-            self._rays, points, fibonacci_sphere(self._quality.probe_rays), threads=self._threads
-        )
+            self._rays, points, fibonacci_sphere(self._quality.probe_rays),
+            with_far=self._far, threads=self._threads,
+        )  # fmt: skip
         near[self._inside(points)] = 0.0
         shape = (*grid.shape, 4, far.shape[-1])
         return far.reshape(shape), near.reshape(shape)
@@ -315,24 +323,61 @@ class _Relighting:
         light = self._of_probes(far, self._patch_positions, self._patch_normals)
         if share is not None:
             light *= share
-        brightest = float(np.percentile(self._scene.irradiance.sum(axis=1), 90))
-        seen = np.abs(light).sum(axis=1) > self._quality.least_far * brightest
+        seen = np.abs(light).sum(axis=1) > self._quality.least_far * self._scene.brightest
         chosen = seen & (found < 2) & (self._wanted == 1)
         change[chosen] += light[chosen]
         found[chosen] = 1
 
     # -- results -------------------------------------------------------------------------------
 
-    def _spread(self, found: NDArray[np.uint8], change: Floats, area: Floats) -> list[LightLayer]:
+    def _spread(
+        self,
+        found: NDArray[np.uint8],
+        change: Floats,
+        area: Floats,
+        shone: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
+    ) -> list[LightLayer]:
+        """Bring texels up to date by what was found at patches.
+
+        Parameters
+        ----------
+        shone : dict of int to tuple
+            What lamps and sun give to patches, by layer; see `_shine`.
+        """
         bounced = [layer.bounced.copy() for layer in self._layers]
         direct = {number: self._layers[number].direct.copy() for number in self._area}
+        columns = [change, area]
+        shares: dict[int, NDArray[np.float16]] = {}
+        for number, (state, value, share) in shone.items():
+            if not state.any():
+                continue
+            # What is worked out anew is so for all lights alike.
+            found = np.maximum(found, state)
+            layer = self._layers[number]
+            direct[number] = layer.direct.copy()
+            columns.append(np.where(state > 0, value, np.float32(0.0))[:, None])
+            if layer.visibility is not None:
+                shares[number] = layer.visibility.astype(np.float16)
+                columns.append(
+                    np.where(state > 0, np.float32(255.0) * share, np.float32(0.0))[:, None]
+                )
+        maps = [*bounced]
+        for number, texels in direct.items():
+            maps.append(texels)
+            if number in shares:
+                maps.append(shares[number])
         # In one go: they share their neighbours.
-        both = np.concatenate([change, area], axis=1)
-        self._spread_over(found, both, [*bounced, *direct.values()])
-        return [
-            replace(layer, bounced=texels, direct=direct.get(number, layer.direct))
-            for number, (layer, texels) in enumerate(zip(self._layers, bounced, strict=True))
-        ]
+        self._spread_over(found, np.concatenate(columns, axis=1), maps)
+        result = []
+        for number, (layer, texels) in enumerate(zip(self._layers, bounced, strict=True)):
+            lit = replace(layer, bounced=texels)
+            if number in shares:
+                bytes_ = np.rint(np.minimum(shares[number], np.float16(255.0))).astype(np.uint8)
+                lit = _shown(lit, direct[number], bytes_)
+            elif number in direct:
+                lit = replace(lit, direct=direct[number])
+            result.append(lit)
+        return result
 
     def _spread_over(
         self,
@@ -360,37 +405,6 @@ class _Relighting:
         visibility = layer.visibility.copy()
         _put(visibility, self._scene.places, state, 255.0 * share, 255.0)
         return _shown(layer, direct, visibility)
-
-    def _with_patches_direct(
-        self,
-        layers: list[LightLayer],
-        shone: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
-    ) -> list[LightLayer]:
-        """Bring lamps and sun up to date by what was found at patches."""
-        numbers = [number for number, (state, _, _) in shone.items() if state.any()]
-        if not numbers:
-            return layers
-        # What is worked out anew is so for all lights alike.
-        found = np.maximum.reduce([shone[number][0] for number in numbers])
-        texels: list[NDArray[np.float16]] = []
-        columns: list[Floats] = []
-        for number in numbers:
-            layer, (state, value, share) = layers[number], shone[number]
-            texels.append(layer.direct.copy())
-            columns.append(np.where(state > 0, value, np.float32(0.0)))
-            if layer.visibility is not None:
-                texels.append(layer.visibility.astype(np.float16))
-                columns.append(np.where(state > 0, np.float32(255.0) * share, np.float32(0.0)))
-        self._spread_over(found, np.stack(columns, axis=1), texels)
-        result, rest = list(layers), iter(texels)
-        for number in numbers:
-            layer, direct = layers[number], next(rest)
-            if layer.visibility is None:
-                result[number] = replace(layer, direct=direct)
-                continue
-            bytes_ = np.rint(np.minimum(next(rest), np.float16(255.0))).astype(np.uint8)
-            result[number] = _shown(layer, direct, bytes_)
-        return result
 
     def _with_probes(self, layers: list[LightLayer], far: Floats, near: Floats) -> list[LightLayer]:
         result = []

@@ -20,6 +20,8 @@ __all__ = [
     "Direction",
     "Force",
     "Fraction",
+    "JointCoordinate",
+    "JointLimits",
     "LinearColour",
     "MetresPerSecond",
     "Name",
@@ -122,4 +124,8 @@ Torque: TypeAlias = Annotated[
 ]
 DegreesPerSecond: TypeAlias = Annotated[
     tuple[_Turn, _Turn, _Turn], Several(3, "three numbers [x, y, z] in [deg/s]")
+]
+JointCoordinate: TypeAlias = Annotated[float, Number(least=-1e4, most=1e4)]
+JointLimits: TypeAlias = Annotated[
+    tuple[JointCoordinate, JointCoordinate], Several(2, "two numbers [low, high] in [rad] or [m]")
 ]

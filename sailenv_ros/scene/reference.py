@@ -32,6 +32,7 @@ _TITLES = {
     "LessonSpec": "A lesson",
     "LessonsSpec": "Lessons",
     "JointSpec": "A joint",
+    "BodySpec": "A body",
     "LookAtSpec": "What is faced",
     "MaterialSpec": "A material",
     "MoverSpec": "A mover",

@@ -17,6 +17,7 @@ from sailenv_ros.geometry import Pose, quat_xyzw_from_rpy_deg
 from sailenv_ros.lights import Light
 from sailenv_ros.look_at import LookAt
 from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.scene.spec_cameras import AgentSpecModel
 from sailenv_ros.scene.spec_surroundings import (
@@ -32,6 +33,7 @@ __all__ = [
     "PLACE_KEYS",
     "VELOCITY_KEYS",
     "agent_entry",
+    "body_entry",
     "changed_light_entry",
     "light_entry",
     "look_at_entry",
@@ -144,6 +146,23 @@ def look_at_entry(look_at: LookAt) -> dict[str, Any]:
         return {"point": list(look_at.point_m)}
     at_origin = not any(look_at.point_m)
     return {"object": look_at.obj, **({} if at_origin else {"point": list(look_at.point_m)})}
+
+
+def body_entry(
+    rigid: RigidBody, linear_m_s: Sequence[float], angular_rad_s: Sequence[float]
+) -> dict[str, Any]:
+    """Return the keys of a mover's body that differ from the defaults, and of its motion."""
+    usual = RigidBody()
+    names = [f.name for f in fields(RigidBody) if getattr(rigid, f.name) != getattr(usual, f.name)]
+    entry = {
+        name.removesuffix("_kg").removesuffix("_m").removesuffix("_per_s"): getattr(rigid, name)
+        for name in names
+    }
+    motion = {
+        "velocity": rounded(linear_m_s, LENGTH_DECIMALS),
+        "angular_velocity": rounded(np.degrees(angular_rad_s).tolist(), LENGTH_DECIMALS),
+    }
+    return {**entry, **{key: values for key, values in motion.items() if any(values)}}
 
 
 def rounded(numbers: Sequence[float], decimals: int) -> list[float]:

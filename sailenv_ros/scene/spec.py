@@ -28,6 +28,7 @@ from sailenv_ros.scene.rules import (
     parents_exist,
     walls_need_a_room,
 )
+from sailenv_ros.scene.spec_body import BodySpec
 from sailenv_ros.scene.spec_cameras import AgentSpecModel, MoverSpec, WaypointSpec
 from sailenv_ros.scene.spec_joints import JointSpec, joints_hold
 from sailenv_ros.scene.spec_lessons import LessonSpec, LessonsSpec
@@ -49,6 +50,7 @@ __all__ = [
     "AgentSpecModel",
     "AreaLightSpec",
     "BehaviourSpec",
+    "BodySpec",
     "CategorySpec",
     "DirectionalLightSpec",
     "EnvironmentSpec",

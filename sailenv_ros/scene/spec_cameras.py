@@ -14,6 +14,7 @@ from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_where_placed
+from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
 from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 
@@ -45,6 +46,8 @@ class WaypointSpec(Aimed):
 class MoverSpec(Aimed):
     """A mover: a rig that moves and that agents follow."""
 
+    rules: ClassVar[tuple[Rule, ...]] = (*Aimed.rules, forces_or_waypoints)
+
     name: Name = Field(default="mover", description="unique among the movers of the scene")
     position: Position | None = Field(
         default=None, description="where it starts without waypoints [m]; (0, 0, 1) if left out"
@@ -64,6 +67,9 @@ class MoverSpec(Aimed):
     )
     keep_looking_at: LookAtSpec | None = Field(
         default=None, description="what it faces all the time, instead of where its track turns it"
+    )
+    body: BodySpec | None = Field(
+        default=None, description="makes it a rigid body, moved by forces instead of waypoints"
     )
 
     @property

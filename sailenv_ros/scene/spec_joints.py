@@ -8,8 +8,16 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Several
-from sailenv_ros.scene.fields import Direction, Name, Position, Rule, SceneModel
+from sailenv_ros.scene.field_types import Choice, Number
+from sailenv_ros.scene.fields import (
+    Direction,
+    JointCoordinate,
+    JointLimits,
+    Name,
+    Position,
+    Rule,
+    SceneModel,
+)
 from sailenv_ros.scene.messages import shown, shown_number, suggestion
 from sailenv_ros.scene.rules import Faults
 from sailenv_ros.validation import is_finite_number
@@ -17,7 +25,6 @@ from sailenv_ros.validation import is_finite_number
 __all__ = ["JointSpec", "joints_hold", "on_a_joint"]
 
 _JOINTS = ("hinge", "slide", "fixed")
-_Coordinate = Annotated[float, Number(least=-1e4, most=1e4)]
 _FOR_MOVING = ("axis", "limits", "position", "velocity", "damping", "friction", "effort")
 _PLACED_OTHERWISE = ("on", "wall", "velocity", "angular_velocity")
 
@@ -76,22 +83,17 @@ class JointSpec(SceneModel):
         description="a point of a hinge's axis in the object's own frame, which its scale does "
         "not change [m]",
     )
-    limits: (
-        Annotated[
-            tuple[_Coordinate, _Coordinate], Several(2, "two numbers [low, high] in [rad] or [m]")
-        ]
-        | None
-    ) = Field(
+    limits: JointLimits | None = Field(
         default=None,
         description="least and greatest position of the joint: [rad] of a hinge, [m] of a slide; "
         "left out: it turns or moves without end",
     )
-    position: _Coordinate | None = Field(
+    position: JointCoordinate | None = Field(
         default=None,
         description="at the start [rad] or [m]; 0, where the object's position and rotation put "
         "it, or the nearest limit, if left out",
     )
-    velocity: _Coordinate = Field(default=0.0, description="at the start [rad/s] or [m/s]")
+    velocity: JointCoordinate = Field(default=0.0, description="at the start [rad/s] or [m/s]")
     damping: Annotated[float, Number(least=0.0, most=1e6)] = Field(
         default=0.0, description="against its speed [N m s/rad] or [N s/m]"
     )

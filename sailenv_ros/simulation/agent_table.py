@@ -121,8 +121,11 @@ class AgentTable:
 
     @property
     def specs(self) -> tuple[AgentSpec, ...]:
-        """What the agents are now."""
-        return tuple(record.spec for record in self)
+        """What the agents are now, and face."""
+        return tuple(
+            replace(record.spec, look_at=None if gaze is None else gaze.described())
+            for record, gaze in ((record, record.gaze) for record in self)
+        )
 
     def add(self, spec: AgentSpec, world: World) -> AgentSpec:
         """Register an agent; return the spec as accepted, with its mover's name filled in.
@@ -186,12 +189,16 @@ class AgentTable:
             record.pose = self.camera(record, world).pose
         record.gaze = gaze
 
-    def turn_freely(self, name: str, world: World) -> None:
-        """End what an agent faces, and what the mover that it follows does."""
+    def turn_freely(self, name: str, world: World) -> bool:
+        """End what an agent faces, and what the mover that it follows does; say if it was so."""
         record = self[name]
-        record.gaze = None
-        if record.spec.following:
-            world.mover(record.spec.mover).face(None, world.sim_time_ns)
+        faced, record.gaze = record.gaze, None
+        if not record.spec.following:
+            return faced is not None
+        mover = world.mover(record.spec.mover)
+        ended = faced is not None or mover.gaze is not None
+        mover.face(None, world.sim_time_ns)
+        return ended
 
     def put(self, name: str, pose: Pose, world: World, *, teleport: bool) -> None:
         """Move an agent; one that follows moves its mover, and with it all that follow it.

@@ -175,6 +175,8 @@ class SimulationCore(WorldOperations):
                     waypoints=mover.waypoints,
                     total_time_s=mover.total_time_s,
                     loop=mover.loop,
+                    body=None if mover.body is None else mover.body.rigid,
+                    look_at=None if mover.gaze is None else mover.gaze.described(),
                 )
                 for mover in self.world.movers.values()
             ),

@@ -139,9 +139,12 @@ class SceneEditor:
         body.attach(running)
         self._core.announce()
 
-    def apply_wrench(self, instance_id: int, parameters: Mapping[str, Any]) -> None:
-        """Let a force and a torque act upon an object from now on, by the keys of `wrench`."""
-        body = self._core.world.body(instance_id)
+    def apply_wrench(self, obj: int | str, parameters: Mapping[str, Any]) -> None:
+        """Let a force and a torque act from now on, by the keys of `wrench`.
+
+        Upon an object, by its id or name, or upon the mover of that name.
+        """
+        body = self._core.world.pushed(obj)
         body.push(
             start_behaviour(
                 "wrench",

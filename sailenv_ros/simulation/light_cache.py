@@ -6,13 +6,19 @@ Never bakes: a simulator that runs must not be held up for minutes.
 from __future__ import annotations
 
 import logging
+from typing import Literal, TypeAlias
 
 from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.bake.light_files import load_baked, load_draft
 from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.errors import InvalidState
 from sailenv_ros.world.world import World
 
-__all__ = ["BAKE_COMMAND", "LightCache"]
+__all__ = ["BAKE_COMMAND", "LightCache", "LightChoice"]
+
+LightChoice: TypeAlias = Literal["newest", "baked", "plain"]
+"""``newest``: what is baked by now, or is being baked, if anything is; ``baked``: the finished
+light of a room, and nothing else; ``plain``: without bounced light, whatever is baked."""
 
 BAKE_COMMAND = "sailenv scene bake"
 
@@ -28,11 +34,14 @@ class LightCache:
         False loads none.
     drafts : bool
         False loads no draft: what is rendered must not depend on how far a bake is.
+    required : bool
+        True refuses worlds whose light is not baked.
     """
 
-    def __init__(self, *, wanted: bool = True, drafts: bool = True) -> None:
+    def __init__(self, *, wanted: bool = True, drafts: bool = True, required: bool = False) -> None:
         self._wanted = wanted
         self._drafts = drafts
+        self._required = required
         self._last: BakedLight | None = None
         self._is_draft = False
 
@@ -52,6 +61,11 @@ class LightCache:
             Just built.
         scene : str
             The name or file by which a user asks for it.
+
+        Raises
+        ------
+        InvalidState
+            If light is required, and not baked.
         """
         if not self._wanted:
             return
@@ -66,6 +80,10 @@ class LightCache:
         if self._last is not None:
             world.set_baked(self._last)
             return
+        if self._required:
+            raise InvalidState(
+                f"the light of scene {scene} is not baked; bake it with: {BAKE_COMMAND} {scene}"
+            )
         _log.info(
             "the light of scene %s is not baked yet and is worked out from frame to frame; "
             "for bounced light and soft shadows: %s %s",

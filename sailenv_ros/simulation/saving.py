@@ -19,6 +19,7 @@ from sailenv_ros.scene.serialisation import (
     PLACE_KEYS,
     VELOCITY_KEYS,
     agent_entry,
+    body_entry,
     changed_light_entry,
     light_entry,
     look_at_entry,
@@ -373,6 +374,7 @@ def _mover(mover: Mover, described: MoverSpec, time_ns: int) -> Entry:
         entry.pop("keep_looking_at", None)
         if gaze is not None:
             entry["keep_looking_at"] = look_at_entry(gaze)
+    entry.update(_body(entry.pop("body", None), mover, described))
     is_led = mover.controller == "waypoint" and bool(poses)
     pose = mover.own_pose_at(time_ns)
     if not is_led and (pose != described.pose or poses != described.waypoint_poses):
@@ -380,6 +382,18 @@ def _mover(mover: Mover, described: MoverSpec, time_ns: int) -> Entry:
             entry.pop(key, None)
         entry.update(pose_entry(pose))
     return entry
+
+
+def _body(entry: Entry | None, mover: Mover, described: MoverSpec) -> Entry:
+    """Return the body of a mover as its file has it, or as it is now; nothing if it is none."""
+    if mover.body is None:
+        return {}
+    rigid, (linear, angular) = mover.body.rigid, mover.body.motion
+    begun = described.body
+    at_first = begun and (begun.to_rigid_body(), begun.velocity, begun.angular_velocity_rad_s)
+    if at_first == (rigid, linear, angular):
+        return {"body": entry}
+    return {"body": body_entry(rigid, linear, angular)}
 
 
 def _agents(

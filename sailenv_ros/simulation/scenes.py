@@ -97,6 +97,8 @@ class SceneLibrary:
         False leaves worlds without baked light, whether there is any or not.
     drafts : bool
         False takes no rough light in the meantime, while a bake is not finished.
+    require_light : bool
+        True refuses to build rooms whose light is not baked.
     """
 
     def __init__(
@@ -106,13 +108,14 @@ class SceneLibrary:
         allow_modules: bool = False,
         baked_light: bool = True,
         drafts: bool = True,
+        require_light: bool = False,
     ) -> None:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._open_packs()
         self._assets = AssetLibrary(installed_sources(self._packs))
-        self._light_cache = LightCache(wanted=baked_light, drafts=drafts)
+        self._light_cache = LightCache(wanted=baked_light, drafts=drafts, required=require_light)
         self._generated = GeneratedScenes(self._assets)
         self._uploads = 0
         self._uploaded: set[str] = set()
@@ -219,7 +222,11 @@ class SceneLibrary:
             skies=self._skies,
             materials=self.materials_of(spec.name),
         )
-        self._load_light(world, str(scene))
+        try:
+            self._load_light(world, str(scene))
+        except BaseException:
+            world.close()
+            raise
         self._agents[spec.name] = tuple(agent.to_agent_spec() for agent in spec.agents)
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self.path(scene)

@@ -33,6 +33,7 @@ from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.frame_stream import FrameStream
+from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.model_workers import ModelWorkers
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
@@ -80,13 +81,18 @@ class Simulation(Operations):
         More folders with scenes.
     allow_modules : bool
         True lets scene files have behaviours of Python modules, whose code then runs here.
+    light : {'newest', 'baked', 'plain'}
+        Of rooms. ``newest``: what is baked by now, if anything is; in realtime mode a draft too,
+        while it is being baked. ``baked``: the finished light, or it does not start. ``plain``:
+        without bounced light, whatever is baked. With the last two what is seen does not depend
+        on what else happened on the machine.
     agent : AgentSpec or None
         An agent to begin with, and the one that operations mean if none is named; None means the
         scene's first.
 
     Raises
     ------
-    SceneError, UnknownName, InvalidRequest, ContextError
+    SceneError, UnknownName, InvalidRequest, InvalidState, ContextError
         If it cannot start; nothing is left running then.
 
     Attributes
@@ -107,6 +113,7 @@ class Simulation(Operations):
         render_device: int | None = None,
         scene_paths: Sequence[Path] = (),
         allow_modules: bool = False,
+        light: LightChoice = "newest",
         agent: AgentSpec | None = None,
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
@@ -139,7 +146,14 @@ class Simulation(Operations):
             renderer = make_backend(backend, render_device)
             try:
                 return SimulationCore(
-                    SceneLibrary(scene_paths, allow_modules=allow_modules),
+                    SceneLibrary(
+                        scene_paths,
+                        allow_modules=allow_modules,
+                        baked_light=light != "plain",
+                        # How far a bake is by now must not show where time is stepped.
+                        drafts=light == "newest" and mode == "realtime",
+                        require_light=light == "baked",
+                    ),
                     default_scene() if scene is None else scene,
                     renderer,
                     mode=mode,

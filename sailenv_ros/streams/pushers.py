@@ -6,12 +6,10 @@ velocities are such that objects and camera move as far from picture to picture 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose, look_at
+from sailenv_ros.geometry import look_at
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["FurniturePusher", "LaptopPusher", "RoamingPusher"]
@@ -106,24 +104,14 @@ class FurniturePusher:
 class RoamingPusher:
     """Pushes the furniture, and a camera that is a body and looks at a point.
 
-    The camera's body is a ball of a mass, with drag, that bounces off the sides of a box in which
-    nothing stands.
+    The scene's mover is the camera's body: a small ball that floats, with drag, and bounces off
+    whatever it strikes.
 
     Parameters
     ----------
     seed : int
     """
 
-    EYE_M = np.array([-1.9, 0.6, 1.81])
-    """Where it begins [m]; the scene's agent has this pose."""
-
-    TARGET_M = (1.6, 0.0, 0.87)
-    LEAST_M, MOST_M = np.array([-2.2, -1.5, 1.4]), np.array([-0.8, 1.5, 2.3])
-    """The box [m]."""
-
-    MASS_KG = 0.125
-    DRAG_PER_S = 5e-4
-    RESTITUTION = 0.4
     IMPULSES_N_S = (0.8 * SLOWER, 1.1 * SLOWER)
     EVERY = 200
     """Frames between two pushes."""
@@ -135,34 +123,32 @@ class RoamingPusher:
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng([seed, 3])
         self._furniture = FurniturePusher(seed)
-        self._place = self.EYE_M.copy()
-        self._velocity = np.zeros(3)
         self._slow = 0
         self._last: tuple[int, float] | None = None
 
     def push(self, simulation: Simulation, number: int) -> None:
-        """Push all, and move the camera on by a frame."""
+        """Push all: the camera against its way if it is fast, else along an axis if it is time."""
         self._furniture.push(simulation, number)
-        simulation.set_pose(self.pose_after(number))
+        velocity = np.asarray(simulation.get_mover_velocity()[0])
+        impulse = self._impulse(velocity, number)
+        if impulse.any():
+            mover = simulation.info.movers[0].name
+            simulation.apply_wrench(mover, force_n=impulse / STEP_S)
 
-    def pose_after(self, number: int) -> Pose:
-        """Return the camera's next pose; called once a frame, in order."""
+    def _impulse(self, velocity: Vector, number: int) -> Vector:
+        """Return the impulse before a frame [N s]; asked once a frame, in order."""
+        # Drawn in every frame, so that how fast it is changes nothing later.
         impulse = float(self._rng.uniform(*self.IMPULSES_N_S))
         direction = self._other_direction()
-        speed = float(np.linalg.norm(self._velocity))
+        speed = float(np.linalg.norm(velocity))
         self._slow = self._slow + 1 if speed < self.SLOW_M_S else 0
+        pushed = np.zeros(3)
         if speed > self.FAST_M_S:
-            self._velocity = self._velocity * (1.0 - impulse / self.MASS_KG / speed)
+            pushed = -impulse / speed * velocity
         elif number % self.EVERY == 0 or self._slow >= self.SLOW_FRAMES:
             self._last = direction
-            self._velocity = self._velocity.copy()
-            self._velocity[direction[0]] += direction[1] * impulse / self.MASS_KG
-        self._velocity = self._velocity * math.exp(-self.DRAG_PER_S * FRAME_S)
-        self._place = self._place + self._velocity * FRAME_S
-        out = (self._place < self.LEAST_M) | (self._place > self.MOST_M)
-        self._place = np.clip(self._place, self.LEAST_M, self.MOST_M)
-        self._velocity = np.where(out, -self.RESTITUTION * self._velocity, self._velocity)
-        return look_at(self._place, self.TARGET_M)
+            pushed[direction[0]] = direction[1] * impulse
+        return pushed
 
     def _other_direction(self) -> tuple[int, float]:
         """Draw an axis and a sign, not those of the last push."""

@@ -1,8 +1,8 @@
 """A stream's script → a bag, part by part, so that one that was broken off goes on where it was.
 
 A lockstep simulation, every frame exactly once; the same stream, seed and options give the same
-messages, whether or not it was broken off (but for `render_s`). What is not whole lies in a folder
-beside, which `stream_parts` keeps.
+messages, whether or not it was broken off (but for `render_s`), and whatever light lies in the
+cache. What is not whole lies in a folder beside, which `stream_parts` keeps.
 """
 
 from __future__ import annotations
@@ -15,15 +15,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.motion import FORWARD_VIEWS
-from sailenv_ros.recording.lockstep import FrameRecorder, due_steps
+from sailenv_ros.recording.lockstep import (
+    FRAME_TIMEOUT_S,
+    FrameRecorder,
+    due_steps,
+    rendered,
+    rendered_ahead,
+)
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.render.backend import BackendName
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.light_cache import LightChoice
+from sailenv_ros.streams.stream_content import scene_content
 from sailenv_ros.streams.stream_parts import StreamFolder
 from sailenv_ros.streams.stream_table import StreamKind
 from sailenv_ros.system.futures import wait_for
@@ -32,8 +39,6 @@ __all__ = ["PART_FRAMES", "StreamJob", "make_stream", "stream_pairs"]
 
 PART_FRAMES = 500
 """Frames in each file of the bag: what is lost at most when it is broken off."""
-
-FRAME_TIMEOUT_S = 120.0
 
 MOST_FRAMES = 10_000_000
 
@@ -51,6 +56,8 @@ class StreamJob:
         Of the simulation, and of what pushes.
     views : tuple of str
         Views of every frame; none means those of the scene's agent.
+    light : {'plain', 'baked'}
+        Of a stream with a room: without bounced light, or with, baked first where it is not yet.
     backend : str
         Renderer, as of `Simulation`.
     """
@@ -59,6 +66,7 @@ class StreamJob:
     frames: int
     seed: int = 0
     views: tuple[str, ...] = ()
+    light: LightChoice = "plain"
     backend: BackendName = "auto"
 
     def __post_init__(self) -> None:
@@ -78,12 +86,22 @@ class StreamJob:
             raise InvalidRequest(
                 "view", late[0], "a view of a frame alone; export makes the others"
             )
+        if self.light not in ("plain", "baked"):
+            raise InvalidRequest("light", self.light, "'plain' or 'baked'")
         if self.views:
             checked_views(self.views)
 
     @property
+    def wanted_views(self) -> tuple[str, ...] | None:
+        """Views to ask for; None asks for those of the scene's agent."""
+        return checked_views(self.views) if self.views else None
+
+    @property
     def identity(self) -> dict[str, Any]:
-        """What a stream that was broken off must agree in to be gone on with."""
+        """What a stream that was broken off must agree in to be gone on with.
+
+        Besides light and models, see `scene_content`.
+        """
         scene = self.kind.scene.read_bytes()
         return {
             "stream": self.kind.name,
@@ -119,7 +137,10 @@ def make_stream(
     RecordingError
         If `output` or the unfinished folder beside it is another's, or cannot be written.
     """
-    folder = StreamFolder(Path(output), job.identity)
+    # What is another's is refused now, not after light was baked for it.
+    StreamFolder(Path(output), job.identity)
+    content = scene_content(job.kind.scene, job.seed, job.light)
+    folder = StreamFolder(Path(output), {**job.identity, **content})
     with folder.opened():
         if folder.is_whole:
             on_frame(job.frames)
@@ -154,22 +175,12 @@ def stream_pairs(job: StreamJob, pairs: int) -> Iterator[tuple[int, Frame, Frame
     if not 1 <= pairs <= job.frames // 2:
         raise InvalidRequest("pairs", pairs, f"1 to {job.frames // 2}")
     numbers = {1 + place * (job.frames - 1) // pairs for place in range(pairs)}
-    views = checked_views(job.views) if job.views else None
-    pusher = job.kind.pusher(job.seed) if job.kind.pusher is not None else None
-    with Simulation(
-        job.kind.scene, mode="lockstep", seed=job.seed, backend=job.backend
-    ) as simulation:
-        spec, step = simulation.info.agents[0], 0
+    with _opened(job) as simulation:
         before: Frame | None = None
-        for number, due in enumerate(due_steps(job.kind.rate_hz, max(numbers) + 1)):
-            if pusher is not None and number:
-                pusher.push(simulation, number)
-            if due > step:
-                simulation.step.submit(due - step)
-                step = due
+        for number in _walk(job, simulation, max(numbers) + 1):
             if number not in numbers and number + 1 not in numbers:
                 continue
-            frame = _await(simulation.capture.submit(views, agent=spec.name))
+            frame = rendered(_asked(job, simulation))
             if number in numbers and before is not None:
                 yield number, before, frame, simulation.info
             before = frame
@@ -178,11 +189,9 @@ def stream_pairs(job: StreamJob, pairs: int) -> Iterator[tuple[int, Frame, Frame
 def _make_parts(
     job: StreamJob, folder: StreamFolder, begin: int, on_frame: Callable[[int], None]
 ) -> None:
-    with Simulation(
-        job.kind.scene, mode="lockstep", seed=job.seed, backend=job.backend
-    ) as simulation:
-        spec = simulation.info.agents[0]
-        frames = _frames(job, simulation, spec, begin)
+    with _opened(job) as simulation:
+        depth_range_m = simulation.info.agents[0].depth_range_m
+        frames = rendered_ahead(_asked_from(job, simulation, begin))
         for first in range(begin, job.frames, PART_FRAMES):
             last = min(first + PART_FRAMES, job.frames)
             with folder.part() as draft, RecordingWriter(draft) as writer:
@@ -193,36 +202,44 @@ def _make_parts(
                         # As if it had been announced now: log times never go back.
                         info = dataclasses.replace(simulation.info, sim_time_ns=frame.stamp_ns)
                         recorder.write_info(info)
-                    recorder.write_frame(frame, spec.depth_range_m)
+                    recorder.write_frame(frame, depth_range_m)
                     on_frame(number + 1)
 
 
-def _frames(job: StreamJob, simulation: Simulation, spec: AgentSpec, begin: int) -> Iterator[Frame]:
-    """Return the frames from `begin` on; each is asked for before the one before is used."""
-    views = checked_views(job.views) if job.views else None
+def _opened(job: StreamJob) -> Simulation:
+    return Simulation(
+        job.kind.scene, mode="lockstep", seed=job.seed, backend=job.backend, light=job.light
+    )
+
+
+def _walk(job: StreamJob, simulation: Simulation, count: int) -> Iterator[int]:
+    """Lead the simulation from frame to frame, and yield the number of each when it is due."""
     pusher = job.kind.pusher(job.seed) if job.kind.pusher is not None else None
-    step = 0
-    asked: Future[Frame] | None = None
-    for number, due in enumerate(due_steps(job.kind.rate_hz, job.frames)):
+    step, stepped = 0, None
+    for number, due in enumerate(due_steps(job.kind.rate_hz, count)):
         if pusher is not None and number:
             pusher.push(simulation, number)
         if due > step:
-            simulation.step.submit(due - step)
+            if stepped is not None:
+                # Where frames are passed over, the deadline is one frame's, not of the whole way.
+                wait_for(stepped, "physics to step to a frame", FRAME_TIMEOUT_S)
+            stepped = simulation.step.submit(due - step)
             step = due
-        if number < begin - 1:
-            continue
-        following = simulation.capture.submit(views, agent=spec.name)
-        if asked is not None:
-            yield _await(asked)
-        if number < begin:
+        yield number
+
+
+def _asked(job: StreamJob, simulation: Simulation) -> Future[Frame]:
+    asked: Future[Frame] = simulation.capture.submit(
+        job.wanted_views, agent=simulation.info.agents[0].name
+    )
+    return asked
+
+
+def _asked_from(job: StreamJob, simulation: Simulation, begin: int) -> Iterator[Future[Frame]]:
+    """Ask for the frames from `begin` on."""
+    for number in _walk(job, simulation, job.frames):
+        if number == begin - 1:
             # Flow of the first frame that is kept is measured from this one on.
-            _await(following)
-            continue
-        asked = following
-    if asked is not None:
-        yield _await(asked)
-
-
-def _await(asked: Future[Frame]) -> Frame:
-    frame: Frame = wait_for(asked, "a frame to be rendered", FRAME_TIMEOUT_S)
-    return frame
+            rendered(_asked(job, simulation))
+        elif number >= begin:
+            yield _asked(job, simulation)

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.errors import RecordingError
+from sailenv_ros.errors import RecordingError, SailenvError
 from sailenv_ros.recording.bag_metadata import METADATA_FILE
 from sailenv_ros.recording.bag_recovery import restore_metadata
 from sailenv_ros.system.files import (
@@ -92,6 +92,8 @@ class StreamFolder:
                 write_file(self._growing / IDENTITY_FILE, identity.encode())
                 shutil.rmtree(self._draft, ignore_errors=True)
                 yield
+        except SailenvError:  # some of them are OSErrors too
+            raise
         except OSError as problem:
             raise _refused(self._growing, problem) from None
 

@@ -22,6 +22,7 @@ from sailenv_ros.viewer.command_context import Command, CommandContext, CommandT
 from sailenv_ros.viewer.joint_commands import JOINT_COMMANDS
 from sailenv_ros.viewer.lesson_commands import LESSON_COMMANDS
 from sailenv_ros.viewer.light_commands import LIGHT_COMMANDS
+from sailenv_ros.viewer.look_commands import LOOK_COMMANDS
 from sailenv_ros.viewer.material_commands import MATERIAL_COMMANDS
 from sailenv_ros.viewer.object_overlay import overlay_of
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
@@ -43,6 +44,7 @@ _commands = CommandTable(
         **JOINT_COMMANDS,
         **CHANCE_COMMANDS,
         **LESSON_COMMANDS,
+        **LOOK_COMMANDS,
     }
 )
 

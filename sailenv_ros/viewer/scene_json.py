@@ -18,6 +18,7 @@ from sailenv_ros.behaviours import BehaviourKind, behaviour_kinds
 from sailenv_ros.geometry import Pose
 from sailenv_ros.labels import UNLABELLED_CATEGORY
 from sailenv_ros.lights import Light
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.picture_settings import LIMITS, NAMES, PictureSettings
 from sailenv_ros.scene_info import MoverInfo, SceneInfo
@@ -92,6 +93,7 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
                 "following": agent.following,
                 "mover": agent.mover,
                 "picture": asdict(agent.picture),
+                "look_at": _look_at(agent.look_at),
             }
             for agent in info.agents
         ],
@@ -185,7 +187,12 @@ def _mover(mover: MoverInfo) -> dict[str, Any]:
         "waypoints": [pose_to_json(pose) for pose in waypoints],
         "total_time_s": mover.total_time_s,
         "loop": mover.loop,
+        "is_body": mover.body is not None,
     }
+
+
+def _look_at(faced: LookAt | None) -> dict[str, Any] | None:
+    return None if faced is None else {"object": faced.obj, "point": list(faced.point_m)}
 
 
 def _plain(value: Any) -> Any:

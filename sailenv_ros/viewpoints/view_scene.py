@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
+from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.snapshot import WorldSnapshot
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
@@ -54,21 +55,31 @@ class ViewScene(ABC):
     def __init__(self, snapshot: WorldSnapshot, lens: CameraIntrinsics) -> None:
         self.snapshot = snapshot
         self.lens = lens
+        self._last: tuple[Pose, Mapping[str, NDArray[Any]]] | None = None
 
     @abstractmethod
+    def draw(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
+        """Return these views of the scene, with no motion in them."""
+
+    @abstractmethod
+    def draw_alone(self, camera: Camera, only: int) -> AmodalMasks:
+        """Return each object drawn alone, or only the one of that id; 0 for all."""
+
     def instances(self, pose: Pose) -> NDArray[np.uint16]:
         """Return the (H, W) instance view from a pose."""
+        return self._surfaces(pose)["instance"]
 
-    @abstractmethod
     def depth_m(self, pose: Pose) -> NDArray[np.float32]:
         """Return the (H, W) depth view from a pose [m]."""
+        return self._surfaces(pose)["depth"]
 
-    @abstractmethod
     def whole_pixels(self, pose: Pose, only: int = 0) -> Mapping[int, int]:
         """Return how many pixels each object would cover alone, by its id; or only one object.
 
         The part beyond the picture's borders is counted, up to a picture's size on each side.
         """
+        masks = self.draw_alone(self.camera(pose), only)
+        return dict(zip(masks.ids.tolist(), masks.whole_pixels.tolist(), strict=True))
 
     @abstractmethod
     def free_space(self, body: BodySize) -> FreeSpace:
@@ -97,6 +108,12 @@ class ViewScene(ABC):
     def camera(self, pose: Pose) -> Camera:
         """Return the lens at a pose."""
         return Camera(intrinsics=self.lens, pose=pose)
+
+    def _surfaces(self, pose: Pose) -> Mapping[str, NDArray[Any]]:
+        """Return depth and ids; rules ask for both, and what they cost is to draw the surfaces."""
+        if self._last is None or self._last[0] is not pose:
+            self._last = pose, self.draw(self.camera(pose), "depth", "instance")
+        return self._last[1]
 
 
 class RuleSettings(BaseModel):

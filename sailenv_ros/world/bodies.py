@@ -252,7 +252,7 @@ class Body:
         self.forces()  # forgets those that have ended
         if len(self._wrenches) >= MAX_WRENCHES:
             raise InvalidState(
-                f"{MAX_WRENCHES} wrenches act upon object {name!r}, which is the most; "
+                f"{MAX_WRENCHES} wrenches act upon {name!r}, which is the most; "
                 "wait until one has ended"
             )
         # The engine takes one step to wake what sleeps, and applies no force in it.

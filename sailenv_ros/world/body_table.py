@@ -5,7 +5,7 @@ Knows neither time nor lights: what is changed here, `World` tells.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,6 +69,8 @@ class BodyTable:
     ----------
     waiting : WaitingRoom
         Objects that are nowhere now.
+    others : callable
+        Returns bodies that are in the engine too, and no objects.
     """
 
     def __init__(
@@ -79,6 +81,7 @@ class BodyTable:
     ) -> None:
         self._client = client
         self.waiting = WaitingRoom()
+        self.others: Callable[[], Iterable[Body]] = tuple
         self.joints = JointTable(client)
         self._bodies: dict[int, Body] = {}
         self._parts: dict[int, tuple[int, ...]] = {}
@@ -383,7 +386,7 @@ class BodyTable:
     def rouse_beside(self, body: Body) -> None:
         """Wake what sleeps beside or upon a body that is about to leave its place."""
         touching = body.touching_ids()
-        for other in self:
+        for other in (*self, *self.others()):
             if other is not body and other.bullet_id in touching:
                 other.wake()
 

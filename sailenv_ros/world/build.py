@@ -233,11 +233,16 @@ def _mover(entry: MoverSpec) -> Mover:
         track = WaypointTrack(
             waypoints=entry.waypoint_poses, total_time_s=entry.total_time, loop=entry.loop
         )
+    body = entry.body
+    begins_as = None
+    if body is not None:
+        begins_as = body.to_rigid_body(), (body.velocity, body.angular_velocity_rad_s)
     return Mover(
         name=entry.name,
         start=entry.pose,
         track=track,
         controller=entry.controller,
+        begins_as=begins_as,
         total_time_s=entry.total_time,
         loop=entry.loop,
     )

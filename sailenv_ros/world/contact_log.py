@@ -7,7 +7,7 @@ has asked: reading the points of every step would cost more than the step where 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from sailenv_ros.contacts import Contact
@@ -43,10 +43,14 @@ class ContactLog:
     Parameters
     ----------
     client : BulletClient
+    gain : callable
+        ``gain(first, second)`` returns by what the last step's impulse between two bodies was
+        multiplied outside of the engine.
     """
 
-    def __init__(self, client: BulletClient) -> None:
+    def __init__(self, client: BulletClient, gain: Callable[[Piece, Piece], float]) -> None:
         self._client = client
+        self._gain = gain
         self._until_step = -1
         self._steps: deque[tuple[int, list[Point]]] = deque(
             maxlen=round(MAX_WINDOW_S * STEPS_PER_SECOND)
@@ -87,14 +91,15 @@ class ContactLog:
             for touch in touches.values()
             if all(body in ids or body in movers for body in touch.point[:2])
         ]
-        return tuple(sorted(found, key=lambda c: (c.first, c.second, c.mover)))
+        return tuple(sorted(found, key=lambda c: (c.first, c.second, c.mover, c.other_mover)))
 
     def _points(self) -> list[Point]:
-        return [
+        points = [
             ((p[1], p[3]), (p[2], p[4]), p[5], p[7], p[8], p[9] / STEPS_PER_SECOND)
             for p in self._client.getContactPoints()
             if p[9] > 0.0 or p[8] <= 0.0
         ]
+        return [(*p[:5], p[5] * self._gain(p[0], p[1])) for p in points]
 
 
 def _add(touches: dict[tuple[Piece, Piece], _Touch], step: int, point: Point) -> None:
@@ -110,15 +115,18 @@ def _add(touches: dict[tuple[Piece, Piece], _Touch], step: int, point: Point) ->
 
 def _contact(touch: _Touch, ids: Mapping[Piece, int], movers: Mapping[Piece, str]) -> Contact:
     a, b, position, normal, distance_m, _ = touch.point
-    sign, first, second = 1.0, ids.get(a, 0), ids.get(b, 0)
-    if first > second:
-        sign, first, second = -1.0, second, first
+    # What is no object is named: a mover before an object, two movers by their names.
+    one, two = (ids.get(a, 0), movers.get(a, "")), (ids.get(b, 0), movers.get(b, ""))
+    sign = 1.0
+    if one > two:
+        sign, one, two = -1.0, two, one
     x, y, z = position
     nx, ny, nz = normal
     return Contact(
-        first=first,
-        second=second,
-        mover=movers.get(a, movers.get(b, "")),
+        first=one[0],
+        second=two[0],
+        mover=one[1],
+        other_mover=two[1],
         position_m=(x, y, z),
         normal=(sign * nx, sign * ny, sign * nz),
         impulse_n_s=touch.impulse_n_s,

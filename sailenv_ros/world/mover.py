@@ -3,6 +3,7 @@
 While its waypoints drive it, its pose is a pure function of the simulated time it has run, so
 reading it twice gives the same bytes. Once it is put somewhere by hand it stays there until a
 command moves it (`world.collision_proxy` says how far) or the waypoints are given control again.
+One that is a rigid body (`world.mover_body`) is where the engine has brought it.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from typing import Literal, get_args
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.geometry import Pose, interpolate
+from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.validation import vector
 from sailenv_ros.world.gaze import Gaze
+from sailenv_ros.world.mover_body import MoverBody
 
 __all__ = [
     "COMMAND_LASTS_NS",
@@ -26,6 +29,8 @@ __all__ = [
 ]
 
 Controller = Literal["waypoint", "rigidbody"]
+
+Vector3 = tuple[float, float, float]
 
 COMMAND_LASTS_NS = 500_000_000
 """Simulated time after which a command that was not given again ends [ns]."""
@@ -134,6 +139,9 @@ class Mover:
         ``waypoint`` without a track stays at the start.
     total_time_s, loop
         Of the track that it may be given, if it has none.
+    begins_as : (RigidBody, (linear, angular)) or None
+        What it is in the engine from the start on, and its velocities then, world frame [m/s],
+        [rad/s]; None if it is no rigid body.
     """
 
     def __init__(
@@ -145,8 +153,11 @@ class Mover:
         controller: Controller,
         total_time_s: float = 30.0,
         loop: bool = True,
+        begins_as: tuple[RigidBody, tuple[Vector3, Vector3]] | None = None,
     ) -> None:
         self.name = name
+        self.begins_as = begins_as
+        self._body: MoverBody | None = None
         self._track = track
         self._total_time_s = total_time_s if track is None else track.total_time_s
         self._loop = loop if track is None else track.loop
@@ -207,22 +218,67 @@ class Mover:
 
         One that stands stays turned as it is.
         """
-        if gaze is None:
-            self._held = self.pose_at(time_ns) if self._stands else self._held
+        if gaze is None and self._gaze is not None and self._stands:
+            self._turn_to(self.pose_at(time_ns))
         self._gaze = gaze
+
+    @property
+    def body(self) -> MoverBody | None:
+        """What it is in the engine; None if it is no rigid body."""
+        return self._body
+
+    def embody(self, body: MoverBody | None, time_ns: int) -> None:
+        """Let a body carry it from now on, or none any more: it stays where it is then."""
+        self.control("rigidbody", time_ns)
+        self._body = body
+
+    def require_untracked(self) -> None:
+        """Refuse to make a rigid body of what waypoints drive.
+
+        Raises
+        ------
+        InvalidState
+        """
+        if self._controller == "waypoint" and self._track is not None:
+            raise InvalidState(
+                f"waypoints drive mover {self.name!r}; to make it a body, make its controller "
+                "'rigidbody' by set_mover_controller"
+            )
+
+    def require_body(self) -> MoverBody:
+        """Return what it is in the engine.
+
+        Raises
+        ------
+        InvalidState
+            If it is no rigid body.
+        """
+        if self._body is None:
+            raise InvalidState(
+                f"mover {self.name!r} is not a body; make it one by set_mover_body, or by body: "
+                "in the scene file"
+            )
+        return self._body
 
     @property
     def _stands(self) -> bool:
         return self._controller == "rigidbody" or self._track is None
 
     def hold(self, pose: Pose, time_ns: int) -> None:
-        """Put it somewhere and keep it there: waypoints no longer drive it."""
+        """Put it somewhere and keep it there: waypoints no longer drive it; a body is stopped."""
         self.control("rigidbody", time_ns)
         self._held = pose
+        if self._body is not None:
+            self._body.put(pose)
 
     def moved(self, pose: Pose) -> None:
-        """Take note of where a command has brought it."""
+        """Take note of where a command, or the engine, has brought it."""
         self._held = pose
+
+    def _turn_to(self, pose: Pose) -> None:
+        self._held = pose
+        if self._body is not None:
+            self._body.turn(pose)
 
     def turn(self, pitch_rad: float, yaw_rad: float) -> None:
         """Turn it where it stands: pitch down, yaw to the left [rad]; it faces nothing then.
@@ -241,7 +297,7 @@ class Mover:
             )
         given = vector("angles to turn by", (0.0, pitch_rad, yaw_rad), limit=math.pi)
         self.face(None, 0)  # where it stands does not depend on the time
-        self._held = turned(self._held, given[1], given[2])
+        self._turn_to(turned(self._held, given[1], given[2]))
 
     def command(self, command: MoverCommand, time_ns: int) -> None:
         """Have it walk, until another command comes or `COMMAND_LASTS_NS` are over.
@@ -251,12 +307,17 @@ class Mover:
         Raises
         ------
         InvalidState
-            If its waypoints drive it.
+            If its waypoints drive it, or it is a rigid body.
         """
         if self._controller != "rigidbody":
             raise InvalidState(
                 f"waypoints drive mover {self.name!r}; to drive it, make its controller "
                 "'rigidbody' by set_mover_controller"
+            )
+        if self._body is not None:
+            raise InvalidState(
+                f"mover {self.name!r} is a body, which forces move; push it by apply_wrench, or "
+                "make it none by set_mover_body"
             )
         if any(command.angular_rad_s):
             self.face(None, time_ns)
@@ -297,9 +358,16 @@ class Mover:
         ------
         UnknownName
             If there is no such controller.
+        InvalidState
+            If waypoints shall drive a rigid body.
         """
         if controller not in get_args(Controller):
             raise UnknownName("controller", str(controller), get_args(Controller))
+        if controller == "waypoint" and self._body is not None:
+            raise InvalidState(
+                f"mover {self.name!r} is a body, which forces move; make it none by "
+                "set_mover_body before waypoints drive it"
+            )
         self._command = None
         if controller == self._controller:
             return

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.contacts import Contact
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.joints import JointState
@@ -26,17 +25,18 @@ from sailenv_ros.labels import PART_MARK, CategoryTable, Instance, Keypoint
 from sailenv_ros.lights import Environment, Light
 from sailenv_ros.look_at import LookAt
 from sailenv_ros.objects import ObjectState
+from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.scene.spec import RoomSpec, SceneSpec
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable, LabelledPiece
-from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient, sim_time_ns
-from sailenv_ros.world.collision_proxy import CollisionProxy
+from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.lit_lamps import lit_by
 from sailenv_ros.world.mover import Mover, MoverCommand
+from sailenv_ros.world.moving_stands import MovingStands
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
 from sailenv_ros.world.waiting_room import WaitingRoom
@@ -107,10 +107,9 @@ class World:
         self._lights = tuple(lights)
         self._environment = environment or Environment()
         self._baked: BakedLight | None = None
-        self._movers = {mover.name: mover for mover in movers}
         self._client = BulletClient()
-        self._proxies: dict[str, CollisionProxy] = {}
-        self._contact_log = ContactLog(self._client)
+        self._stands = MovingStands(self._client, movers)
+        self._contact_log = ContactLog(self._client, self._stands.gain)
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
@@ -121,7 +120,9 @@ class World:
             self._configure()
             self._client.gravity = gravity
             self._bodies = BodyTable(self._client, placements, waiting)
+            self._bodies.others = lambda: self._stands.bodies
             begin_at_rest(self._client, self.bodies, settled=settled)
+            self._stands.enter()
         except BaseException:
             self.close()
             raise
@@ -141,15 +142,14 @@ class World:
 
     def step(self, count: int = 1) -> None:
         """Advance by so many steps of 1/240 s."""
-        actions = StepActions(self._client, self._bodies, self.frustum_planes)
+        pushed = (*self._bodies, *self._stands.bodies)
+        actions = StepActions(self._client, pushed, self.frustum_planes)
         for _ in range(count):
             actions.act(self._step / STEPS_PER_SECOND)
-            for proxy in self._proxies.values():
-                proxy.before_step(self.sim_time_ns)
+            self._stands.before_step(self.sim_time_ns)
             self._bodies.joints.before_step()
             self._client.stepSimulation()
-            for proxy in self._proxies.values():
-                proxy.after_step(self.sim_time_ns)
+            self._stands.after_step(self.sim_time_ns)
             self._step += 1
             if self._bodies.joints.after_step():
                 self._changed_step = self._step
@@ -192,7 +192,7 @@ class World:
     @property
     def movers(self) -> Mapping[str, Mover]:
         """The movers by name, in the scene's order; read-only."""
-        return MappingProxyType(self._movers)
+        return self._stands.by_name
 
     @property
     def missing_parts(self) -> frozenset[str]:
@@ -248,11 +248,7 @@ class World:
         ------
         UnknownName
         """
-        if not name:
-            return next(iter(self._movers.values()))
-        if not isinstance(name, str) or name not in self._movers:
-            raise UnknownName("mover", str(name), self._movers)
-        return self._movers[name]
+        return self._stands[name]
 
     def body(self, instance_id: int) -> Body:
         """Find the body of an object.
@@ -273,6 +269,20 @@ class World:
             If there is no such object now.
         """
         return self._bodies.find(obj)
+
+    def pushed(self, obj: int | str) -> Body:
+        """Find what a wrench acts upon: an object by its id or name, else a mover by its name.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest, InvalidState
+            If there is neither, or the mover is not a body.
+        """
+        if isinstance(obj, str) and obj in self._stands.by_name:
+            objects = [body.placement.name for body in self._bodies]
+            if obj not in (*objects, *self._bodies.waiting.names()):
+                return self._stands[obj].require_body()
+        return self.body(self.find(obj))
 
     def gaze(self, look_at: LookAt) -> Gaze:
         """Return a look-at constraint in this world.
@@ -303,9 +313,8 @@ class World:
         The first question hears of the last step alone: each step is kept only after it.
         """
         ids = {(body.bullet_id, body.link): id_ for id_, body in self._bodies.items()}
-        movers = {(proxy.bullet_id, LINK_OF_BASE): name for name, proxy in self._proxies.items()}
         count = max(1, round(seconds * STEPS_PER_SECOND))
-        return self._contact_log.contacts(self._step, count, ids, movers)
+        return self._contact_log.contacts(self._step, count, ids, self._stands.pieces)
 
     @property
     def waiting(self) -> WaitingRoom:
@@ -421,7 +430,7 @@ class World:
             If another object has the name of a part, or no ids are left; nothing is changed then.
         """
         self._bodies.replace_room(placements, without)
-        for body in self._bodies:
+        for body in (*self._bodies, *self._stands.bodies):
             body.wake()
         self._baked = None
         self.described = described
@@ -486,11 +495,20 @@ class World:
         UnknownName, InvalidRequest, InvalidState
             If there is no such mover, the command cannot be accepted, or waypoints drive it.
         """
-        driven = self.mover(mover)
         command = MoverCommand(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s)
-        driven.command(command, self.sim_time_ns)
-        if driven.name not in self._proxies:
-            self._proxies[driven.name] = CollisionProxy(self._client, driven)
+        self._stands.drive(mover, command, self.sim_time_ns)
+
+    def embody(self, mover: str, rigid: RigidBody | None) -> bool:
+        """Make a mover a rigid body, or none any more; return whether that changed anything.
+
+        It stays where it is. One that is another body already keeps its motion and what pushes it.
+
+        Raises
+        ------
+        UnknownName, InvalidState
+            If there is no such mover, or waypoints drive it; nothing is changed then.
+        """
+        return self._stands.embody(mover, rigid, self.sim_time_ns)
 
     def set_lights(self, lights: Sequence[Light]) -> None:
         """Replace the lights."""
@@ -514,7 +532,7 @@ class World:
 
     def set_gravity(self, gravity: tuple[float, float, float]) -> None:
         """Change the acceleration that pulls every body with gravity; what sleeps wakes."""
-        for body in self.bodies:
+        for body in (*self.bodies, *self._stands.bodies):
             body.wake()
         self._client.gravity = gravity  # bodies that sleep would keep the old one
 

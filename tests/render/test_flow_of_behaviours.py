@@ -15,9 +15,9 @@ import pytest
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
 from tests.render.test_scene_in_motion import check, seen
+from tests.support.lockstep_core import lockstep_core
 
 TRACK = [
     {"position": [0.0, -0.5, 1.5]},
@@ -77,15 +77,7 @@ def test_flow_is_exact_whatever_moves(type_: str, tmp_path: Path) -> None:
     """To 1e-3 px per frame, for a camera on waypoints and for one that commands drive."""
     path = tmp_path / "box.yaml"
     path.write_text(json.dumps(scene_of(type_)), encoding="utf-8")  # JSON is YAML, too
-    core = SimulationCore(
-        SceneLibrary(),
-        path,
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=2,
-        paused=False,
-    )
+    core = lockstep_core(path, renderer=NativeRenderer(), seed=2)
     lens = CameraIntrinsics(width=96, height=72, vertical_fov_deg=70.0)
     agents = ("on_rails", "driven")
     for agent, mover in zip(agents, ("rails", "cart"), strict=True):

@@ -10,10 +10,9 @@ from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.geometry import Pose
-from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
 from tests.render.test_flow_of_behaviours import scene_of
 from tests.render.test_scene_in_motion import check, seen
+from tests.support.lockstep_core import lockstep_core
 
 
 def test_flow_is_exact_before_a_camera_that_keeps_looking(tmp_path: Path) -> None:
@@ -22,15 +21,7 @@ def test_flow_is_exact_before_a_camera_that_keeps_looking(tmp_path: Path) -> Non
     scene["movers"][0]["keep_looking_at"] = {"object": "first", "point": [0.1, 0.0, 0.1]}
     path = tmp_path / "box.yaml"
     path.write_text(json.dumps(scene), encoding="utf-8")  # JSON is YAML, too
-    core = SimulationCore(
-        SceneLibrary(),
-        path,
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=2,
-        paused=False,
-    )
+    core = lockstep_core(path, renderer=NativeRenderer(), seed=2)
     lens = CameraIntrinsics(width=96, height=72, vertical_fov_deg=70.0)
     core.register_agent(AgentSpec(name="on_rails", intrinsics=lens, mover="rails"))
     here = Pose((-1.6, 0.3, 1.7))

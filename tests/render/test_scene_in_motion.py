@@ -13,8 +13,8 @@ from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
+from tests.support.lockstep_core import lockstep_core
 from tests.support.ray_cast import cast, flow_by_arithmetic
 
 VIEWS = ("depth", "instance", "category", "flow", "flow_valid")
@@ -23,15 +23,7 @@ FREE = Pose.from_rpy_deg((-4.0, 0.3, 1.3), (0.0, 2.0, 3.0))
 
 @pytest.fixture
 def core() -> Iterator[SimulationCore]:
-    made = SimulationCore(
-        SceneLibrary(),
-        "optical",
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    made = lockstep_core("optical", renderer=NativeRenderer())
     yield made
     made.close()
 

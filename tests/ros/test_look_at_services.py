@@ -20,7 +20,7 @@ from sailenv_msgs.srv import (
 )
 from sailenv_ros import Agent
 from sailenv_ros.agents import AgentSpec
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import UnknownName
 from sailenv_ros.look_at import LookAt
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
@@ -110,5 +110,23 @@ def test_an_agent_has_the_calls_of_a_simulation(probe: Probe) -> None:
         agent.set_mover_look_at()
         with pytest.raises(UnknownName):
             agent.set_look_at("pots")
-        with pytest.raises(InvalidRequest, match="set_look_at"):
-            agent.register_agent(AgentSpec(name="other", look_at=LookAt(obj="post")))
+        faces = LookAt(obj="post", point_m=(0.0, 0.0, 0.5))
+        agent.register_agent(AgentSpec(name="other", look_at=faces))
+        assert agent.get_look_at(agent="other") == faces
+        agent.delete_agent("other")
+
+
+def test_what_is_faced_is_announced(probe: Probe) -> None:
+    """In the latched scene_info that the response's revision names, and by the agent's methods."""
+    with Agent(name="onlooker", namespace=NAMESPACE, following=False) as agent:
+        assert agent.get_look_at() is None
+        agent.set_look_at("post", point_m=(0.0, 0.0, 0.5))
+        assert agent.get_look_at() == LookAt(obj="post", point_m=(0.0, 0.0, 0.5))
+        (told,) = (spec for spec in agent.info.agents if spec.name == "onlooker")
+        assert told.look_at == agent.get_look_at()
+        agent.set_rotation((0.0, 0.0, 5.0))
+        assert agent.get_look_at() is None
+        agent.set_mover_look_at(point_m=(-5.0, 0.0, 1.0))
+        assert agent.get_mover_look_at() == LookAt(point_m=(-5.0, 0.0, 1.0))
+        agent.set_mover_look_at()
+        assert agent.get_mover_look_at() is None

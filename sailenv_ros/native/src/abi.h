@@ -8,7 +8,7 @@
 #include <cstdint>
 
 // Counted up whenever a function's arguments change; library.py holds the same number.
-#define SAILENV_ABI_VERSION 3
+#define SAILENV_ABI_VERSION 4
 
 #define SAILENV_EXPORT extern "C" __attribute__((visibility("default")))
 

@@ -73,13 +73,14 @@ struct Job {
 class Pool {
 public:
     void run(int64_t threads, int64_t tiles, TileFunction function, void* context) {
-        Job job{function, context, tiles, {}, std::min(threads, tiles) - 1};
+        const int64_t wanted = std::min(threads, tiles) - 1;
+        Job job{function, context, tiles, {}, wanted};
         {
             const std::lock_guard<std::mutex> lock(mutex_);
-            start_workers(job.free_slots);
+            start_workers(wanted);
             jobs_.push_back(&job);
         }
-        if (job.free_slots == 1) {
+        if (wanted == 1) {
             work_.notify_one();
         } else {
             work_.notify_all();

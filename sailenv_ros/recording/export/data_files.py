@@ -24,6 +24,7 @@ __all__ = [
     "open_draft",
     "png_bytes",
     "write_bytes",
+    "write_errors",
     "write_json",
     "write_png",
 ]
@@ -63,6 +64,15 @@ def make_folder(folder: Path) -> None:
         raise RecordingError(f"{folder} is not empty; nothing is overwritten, choose another")
 
 
+@contextlib.contextmanager
+def write_errors(path: Path) -> Iterator[None]:
+    """Turn an `OSError` of the block into a `RecordingError` that names what was being written."""
+    try:
+        yield
+    except OSError as problem:
+        raise RecordingError(f"{path} cannot be written: {problem.strerror or problem}") from None
+
+
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a file, whole or not at all, and the folder that it is in.
 
@@ -73,11 +83,9 @@ def write_bytes(path: Path, data: bytes) -> None:
     RecordingError
         If it cannot be written.
     """
-    try:
+    with write_errors(path):
         make_folder_of_files(path.parent)
         write_file(path, data, durable=False)
-    except OSError as problem:
-        raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
 
 
 def finish(folder: Path) -> None:
@@ -88,10 +96,8 @@ def finish(folder: Path) -> None:
     RecordingError
         If the disk refuses it.
     """
-    try:
+    with write_errors(folder):
         sync_file_system(folder)
-    except OSError as problem:
-        raise RecordingError(f"{folder} cannot be written: {problem.strerror}") from None
 
 
 def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
@@ -104,11 +110,9 @@ def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
     RecordingError
         If it cannot be written.
     """
-    try:
+    with write_errors(path):
         make_folder_of_files(path.parent)
         return drafts.enter_context(written_file(path, durable=False))
-    except OSError as problem:
-        raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
 
 
 class _BrokenOff(Exception):
@@ -134,12 +138,11 @@ def write_json(path: Path, value: Any) -> None:
     drafts = ExitStack()
     file = open_draft(drafts, path)
     try:
-        for piece in json_pieces(value):
-            file.write(piece.encode())
-        file.write(b"\n")
-        drafts.close()
-    except OSError as problem:
-        raise RecordingError(f"{path} cannot be written: {problem.strerror}") from None
+        with write_errors(path):
+            for piece in json_pieces(value):
+                file.write(piece.encode())
+            file.write(b"\n")
+            drafts.close()
     finally:
         discard_drafts(drafts)
 

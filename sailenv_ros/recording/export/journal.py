@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.recording.export.data_files import finish
+from sailenv_ros.recording.export.data_files import finish, write_errors
 from sailenv_ros.recording.export.dataset_format import Made
 
 __all__ = ["JOURNAL", "Entry", "Journal"]
@@ -86,10 +86,8 @@ class Journal:
         """Bring the frames' files to the disk, and then what was noted of them."""
         if self._waiting:
             finish(self._folder)
-            try:
+            with write_errors(self._path):
                 self._append(self._waiting)
-            except OSError as problem:
-                raise RecordingError(f"{self._path}: {problem.strerror}") from None
             self._waiting = []
 
     def remove(self) -> None:

@@ -7,9 +7,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.errors import RecordingError
 from sailenv_ros.extras import need
-from sailenv_ros.recording.export.data_files import open_draft
+from sailenv_ros.recording.export.data_files import open_draft, write_errors
 
 __all__ = ["ROWS_PER_GROUP", "RowTable"]
 
@@ -70,7 +69,5 @@ class RowTable:
         rows, self._rows = self._rows, []
         if rows:
             table = self._table.from_pylist(rows, schema=self._schema)
-            try:
+            with write_errors(self._path):
                 self._writer.write_table(table)
-            except OSError as problem:
-                raise RecordingError(f"{self._path} cannot be written: {problem}") from None

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RecordingError
+from sailenv_ros.recording.export.data_files import write_errors
 from sailenv_ros.system.files import begin_write_back
 
 __all__ = ["Content", "TarWriter"]
@@ -79,8 +79,6 @@ class TarWriter:
 
     def _write(self, data: Content) -> None:
         view = memoryview(data) if isinstance(data, bytes) else data.reshape(-1).view(np.uint8).data
-        try:
+        with write_errors(self._path):
             self._file.write(view)
-        except OSError as problem:
-            raise RecordingError(f"{self._path} cannot be written: {problem.strerror}") from None
         self._bytes += len(view)

@@ -15,6 +15,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.recording.export.data_files import write_errors
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
 from sailenv_ros.system.files import make_folder
 
@@ -59,12 +60,8 @@ class VideoExport(DatasetFormat):
             self._begin(1.0)
         if self._writer is not None:
             self._writer.release()
-            try:
+            with write_errors(self._path):
                 self._draft.replace(self._path)
-            except OSError as problem:
-                raise RecordingError(
-                    f"{self._path} cannot be written: {problem.strerror}"
-                ) from None
 
     def _begin(self, rate_hz: float) -> None:
         height, width = self._waiting[0].shape[:2]

@@ -4,6 +4,7 @@ import { AddPanel } from "./add_panel.js";
 import { $, download, el, fixed, icon, put, toast } from "./dom.js";
 import { LightPanel } from "./light_panel.js";
 import { Link } from "./link.js";
+import { LookSelect } from "./look_select.js";
 import { ObjectPanel } from "./object_panel.js";
 import { PathPanel } from "./path_panel.js";
 import { PicturePanel } from "./picture_panel.js";
@@ -48,6 +49,7 @@ class App {
     this.#tabs();
     this.#bar();
     this.walker = new Walker(this);
+    this.look = new LookSelect(this, $("look-at"));
     this.#pointing();
     const on = (type, listener) => this.link.addEventListener(type, ({ detail }) => listener(detail));
     on("hello", ({ message }) => this.#greeted(message));
@@ -115,8 +117,10 @@ class App {
     $("play").title = scene.paused ? "Let time run" : "Pause time";
     $("play").disabled = scene.mode === "lockstep";
     $("step").disabled = !stands;
+    this.look.update();
     const walks = this.mover?.controller === "rigidbody";
-    $("controller").replaceChildren(icon(walks ? "keys" : "route"), walks ? "You drive" : "Waypoints drive");
+    const driver = this.mover?.is_body ? "Forces drive" : walks ? "You drive" : "Waypoints drive";
+    $("controller").replaceChildren(icon(walks ? "keys" : "route"), driver);
     $("controller").classList.toggle("on", walks);
     document.body.dataset.controller = this.mover?.controller ?? "";
     if (other && this.selected) this.select(0);
@@ -149,7 +153,10 @@ class App {
   #watch() {
     if (!this.link.open) return;
     put($("agent"), this.agent);
-    if (this.scene) this.picture.update(this.scene);
+    if (this.scene) {
+      this.picture.update(this.scene);
+      this.look.update();
+    }
     this.try("watch", { agent: this.agent, views: this.stage.views });
   }
 

@@ -56,7 +56,8 @@ export class Walker {
   }
 
   get drives() {
-    return this.app.control && this.app.mover?.controller === "rigidbody";
+    const { mover } = this.app;
+    return this.app.control && mover?.controller === "rigidbody" && !mover.is_body;
   }
 
   async toggle() {
@@ -77,6 +78,7 @@ export class Walker {
   /** Turn by angles [deg]: to the left, down. */
   turn(yaw, pitch) {
     if (!this.#mayDrive()) return;
+    this.app.look.release();
     this.turnBy[0] += yaw;
     this.turnBy[1] += pitch;
     this.sendTurn(true);
@@ -87,7 +89,9 @@ export class Walker {
     const now = performance.now();
     if (this.app.control && now - (this.warned ?? -1e9) > 4000) {
       this.warned = now;
-      toast("The waypoints drive the camera. Press Tab to drive it yourself.");
+      toast(this.app.mover?.is_body
+        ? "The mover is a body, which forces move: it cannot be driven."
+        : "The waypoints drive the camera. Press Tab to drive it yourself.");
     }
     return false;
   }
@@ -140,7 +144,7 @@ export class Walker {
 
   async #lock() {
     if (!this.app.mover) return;
-    if (!this.drives) await this.toggle();
+    if (!this.drives && !this.app.mover.is_body) await this.toggle();
     try {
       await $("stage").requestPointerLock();
     } catch {

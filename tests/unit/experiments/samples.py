@@ -62,7 +62,8 @@ DATA: dict[str, dict[str, Any]] = {
     "streams": {
         "seed": 0,
         "streams": [
-            {"name": "solid", "label": "Solid", "pairs": 4, "factor": 0.998, "factor_pixels": 900,
+            {"name": "solid", "label": "Solid", "pairs": 4, "factor": 0.998,
+             "factor_error": 0.002, "factor_pixels": 900,
              "left": {"ours": 0.2, "dis": 0.3},
              "published": {"factor": 5.4, "left_stored": 0.9, "left_best": 0.2, "left_dis": 0.2,
                            "f1": 0.18},

@@ -44,6 +44,23 @@ def test_the_factor_of_flow_is_found(unit: float) -> None:
     assert found.pixels > 5000
 
 
+def test_light_that_stays_where_it_is_does_not_change_the_factor() -> None:
+    """What moves comes out of broad shadows and into them; three pairs tell how certain it is."""
+    v, u = np.mgrid[:SIZE, :SIZE].astype(np.float64)
+    light = (0.7 + 0.3 * np.sin(u / 15.0 + v / 23.0))[..., None]
+    found = FlowFactor()
+    for shift in (0.0, 5.0, 11.0):
+        first, second = (
+            np.rint(texture(shift + part * WAY[0], part * WAY[1]) * light).astype(np.uint8)
+            for part in (0.0, 1.0)
+        )
+        backward = np.broadcast_to(-np.array(WAY, np.float32), (SIZE, SIZE, 2)).copy()
+        ids = np.ones((SIZE, SIZE), np.uint16)
+        found.add(first, second, backward, ids, ids)
+    assert found.factor == pytest.approx(1.0, abs=0.01)
+    assert 0.0 < found.error < 0.005
+
+
 def test_nothing_is_told_by_what_does_not_move() -> None:
     before, _, backward, ids = pair()
     found = FlowFactor()

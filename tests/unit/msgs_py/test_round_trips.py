@@ -55,9 +55,11 @@ from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
 from sailenv_ros.lessons import LessonPhase, LessonState
 from sailenv_ros.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.object_truth import AmodalMasks
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.picture_settings import LIMITS, PictureSettings
+from sailenv_ros.rigid_body import RIGID_BODY_LIMITS, RigidBody
 from sailenv_ros.scene_info import MoverInfo, SceneInfo
 
 pytestmark = pytest.mark.ros
@@ -85,6 +87,7 @@ CONTACTS = st.builds(
     first=st.integers(0, 2**16 - 1),
     second=st.integers(0, 2**16 - 1),
     mover=TEXTS,
+    other_mover=TEXTS,
     position_m=TRIPLES,
     normal=TRIPLES,
     impulse_n_s=st.floats(0, 1e6),
@@ -133,6 +136,12 @@ ENVIRONMENTS = st.builds(
     background_colour=COLOURS,
     exposure=st.floats(-16.0, 16.0, width=32),
 )
+LOOK_ATS = st.builds(LookAt, obj=TEXTS, point_m=TRIPLES)
+RIGID_BODIES = st.builds(
+    RigidBody,
+    gravity=st.booleans(),
+    **{name: st.floats(low, high) for name, (low, high, _) in RIGID_BODY_LIMITS.items()},
+)
 MOVERS = st.builds(
     MoverInfo,
     name=TEXTS,
@@ -140,6 +149,8 @@ MOVERS = st.builds(
     waypoints=st.lists(POSES, max_size=3).map(tuple),
     total_time_s=st.floats(0.1, 1e6),
     loop=st.booleans(),
+    body=st.none() | RIGID_BODIES,
+    look_at=st.none() | LOOK_ATS,
 )
 PICTURES = st.builds(
     PictureSettings,
@@ -171,6 +182,7 @@ AGENTS = st.builds(
     following=st.booleans(),
     mover=TEXTS,
     picture=PICTURES,
+    look_at=st.none() | LOOK_ATS,
 )
 JSON_VALUES = st.recursive(
     st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False) | TEXTS,

@@ -44,6 +44,26 @@ def test_the_sanitizers_would_complain(tmp_path: Path) -> None:
     assert "self_test.cpp" in done.stderr
 
 
+def test_threads_of_the_pool_do_not_race(tmp_path: Path) -> None:
+    """By ThreadSanitizer, which sees accesses without a lock even where nothing went wrong."""
+    program = tmp_path / "many_callers"
+    sources = [Path(__file__).with_name("many_callers.cpp"), SOURCES / "threads.cpp"]
+    flags = ("-std=c++17", "-O1", "-g1", "-fsanitize=thread", "-pthread", f"-I{SOURCES}")
+    compiler = native_compile.find_compiler()
+    subprocess.run([*compiler, *flags, *map(str, sources), "-o", str(program)], check=True)
+    done = subprocess.run([str(program)], capture_output=True, text=True, timeout=300, check=False)
+    if "unexpected memory mapping" in done.stderr:
+        # Older versions of the sanitizer cannot begin where addresses are very random.
+        done = subprocess.run(
+            ["setarch", "-R", str(program)],
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+    assert done.returncode == 0, done.stderr[:6000]
+
+
 def _driven(folder: Path, sources: Path) -> subprocess.CompletedProcess[str]:
     """Run the drivers against a build with sanitizers."""
     output = folder / native_compile.LIBRARY_NAME

@@ -9,6 +9,7 @@ from mcap.reader import make_reader
 
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.recording.channels import AGENT_TOPICS, IMAGE, SCENE_INFO, message_of
@@ -109,6 +110,29 @@ def test_the_command_makes_a_bag(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "exists already" in capsys.readouterr().err
     assert main(["record", "--lockstep", "-o", str(tmp_path / "b")]) == 2
     assert main(["record", "--frames", "3", "-o", str(tmp_path / "b")]) == 2
+
+
+def test_the_command_bakes_first_unless_it_is_told_not_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A folder that is taken is refused before anything is baked."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
+    scene, bag = tmp_path / "cell.yaml", tmp_path / "bag"
+    scene.write_text("version: 1\ntitle: Cell\nroom: {size: [2, 2, 2]}\n")
+    asked: list[str] = []
+    monkeypatch.setattr(
+        scene_bake, "ensure_baked", lambda scene, *, allow_modules: asked.append(scene)
+    )
+    words = ["record", "--lockstep", "--frames", "2", "--width", "16", "--height", "12"]
+    words += ["--scene", str(scene), "--backend", "tiny", "-o", str(bag), "--quiet"]
+    assert main(words) != 0  # nothing was baked by what stands in for the bake
+    assert "is not baked" in capsys.readouterr().err
+    assert asked == [str(scene)]
+    assert not bag.exists()
+    assert main([*words, "--light", "plain"]) == 0
+    assert main(words) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert asked == [str(scene)]
 
 
 def test_the_progress_line_tells_all() -> None:

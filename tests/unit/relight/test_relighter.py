@@ -13,7 +13,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light
 from sailenv_ros.relight import relighter as module
 from sailenv_ros.relight.quality import FINE, QUICK
-from sailenv_ros.relight.relighter import Relighter
+from sailenv_ros.relight.relighter import READY_FRAMES, Relighter
 from sailenv_ros.relight.relighting import relit
 from sailenv_ros.snapshot import WorldSnapshot
 from tests.support.bake_scenes import COARSE, ground, still
@@ -156,13 +156,16 @@ def test_what_goes_leaves_no_shadow(baked: WorldSnapshot) -> None:
     assert relighter.lit(unbaked, wanted=True, lockstep=True) is unbaked
 
 
-def test_in_real_time_the_first_move_finds_all_ready(baked: WorldSnapshot) -> None:
-    """What relighting needs is made beside frames that move nothing, and is what lockstep makes."""
+@pytest.mark.parametrize(("lockstep", "frames"), [(False, 1), (True, READY_FRAMES + 1)])
+def test_the_first_move_finds_all_ready(baked: WorldSnapshot, lockstep: bool, frames: int) -> None:
+    """What relighting needs is made beside frames that move nothing, and is what a frame makes."""
     relighter, other = Relighter(), Relighter()
-    relighter.lit(baked, wanted=True, lockstep=False)
+    for _ in range(frames):
+        assert relighter._preparing is None
+        relighter.lit(baked, wanted=True, lockstep=lockstep)
     assert relighter._preparing is not None
     relighter._preparing.result(timeout=60.0)
-    first = light_of(relighter.lit(at(baked, -0.5), wanted=True, lockstep=False))
+    first = light_of(relighter.lit(at(baked, -0.5), wanted=True, lockstep=lockstep))
     other.watch(baked)
     second = light_of(other.lit(at(baked, -0.5), wanted=True, lockstep=True))
     for one, two in zip(first.layers, second.layers, strict=True):

@@ -71,6 +71,14 @@ waypoints: Entries = st.tuples(
     st.fixed_dictionaries({"position": positions}), turns | st.just({"look_at": [500.0, 0.0, 0.0]})
 ).map(_merged)
 
+bodies = some(
+    mass=st.floats(0.001, 1000),
+    drag=st.floats(0, 1000),
+    restitution=st.floats(0, 1),
+    gravity=st.booleans(),
+    velocity=positions,
+)
+
 surfaces = st.sampled_from(["plaster", "oak_planks"]) | some(
     material=st.just("white_tiles"),
     colour=st.none() | colours,
@@ -116,6 +124,7 @@ scenes: Entries = st.fixed_dictionaries(
         "lights": st.lists(lights, max_size=3, unique_by=_name),
         "room": rooms,
         "objects": st.lists(objects, max_size=3, unique_by=_name),
-        "mover": some(waypoints=st.lists(waypoints, max_size=3), total_time=st.floats(0.1, 1e4)),
+        "mover": some(waypoints=st.lists(waypoints, max_size=3), total_time=st.floats(0.1, 1e4))
+        | some(position=positions, body=bodies),
     },
 )

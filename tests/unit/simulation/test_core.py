@@ -26,17 +26,15 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
 from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 SMALL = CameraIntrinsics(width=16, height=12)
 
 
 def make_core(**kwargs: object) -> tuple[SimulationCore, BlankRenderer]:
     renderer = BlankRenderer()
-    settings = {"mode": "lockstep", "real_time_factor": 1.0, "seed": 0, "paused": False, **kwargs}
-    core = SimulationCore(SceneLibrary(), "optical", renderer, **settings)  # type: ignore[arg-type]  # settings of a test
-    return core, renderer
+    return lockstep_core(renderer=renderer, **kwargs), renderer
 
 
 @pytest.fixture

@@ -15,8 +15,7 @@ from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken, UnknownN
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 ROOM = """
 version: 1
@@ -40,15 +39,7 @@ mover:
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimulationCore]:
     folder: Path = tmp_path_factory.mktemp("scenes")
     (folder / "den.yaml").write_text(ROOM, encoding="utf-8")
-    core = SimulationCore(
-        SceneLibrary([folder]),
-        "den",
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    core = lockstep_core("den", folder)
     yield core
     core.close()
 

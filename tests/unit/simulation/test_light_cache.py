@@ -15,6 +15,10 @@ from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
+from sailenv_ros.errors import InvalidState
+from sailenv_ros.scene_info import TimeMode
+from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import SceneContents
 from tests.support.bake_scenes import COARSE
@@ -106,6 +110,29 @@ def test_what_must_not_depend_on_a_bake_takes_no_draft(cell: Path) -> None:
     assert contents(SceneLibrary(), cell).baked is not None
     store_baked(light)
     assert contents(library, cell).baked is not None
+
+
+def lit(scene: Path, light: LightChoice, mode: TimeMode = "lockstep") -> bool:
+    """Whether a simulation that begins has baked light."""
+    with Simulation(scene, mode=mode, backend="tiny", light=light) as simulation:
+        return simulation.contents.baked is not None
+
+
+def test_finished_light_is_required_or_left_out(cell: Path) -> None:
+    """In lockstep no draft is shown; `baked` does not begin with one, `plain` has no light."""
+    with pytest.raises(InvalidState, match="is not baked; bake it with: sailenv scene bake"):
+        lit(cell, "baked")
+    light = quick_bake(SceneLibrary(), cell)
+    store_draft(light)
+    assert lit(cell, "newest", "realtime")
+    assert not lit(cell, "newest")
+    assert not lit(cell, "plain")
+    with pytest.raises(InvalidState, match="is not baked"):
+        lit(cell, "baked")
+    store_baked(light)
+    assert lit(cell, "newest")
+    assert lit(cell, "baked")
+    assert not lit(cell, "plain")
 
 
 def test_a_room_without_light_is_told_how_to_get_it(

@@ -18,7 +18,7 @@ from sailenv_ros.geometry import Pose, facing
 from sailenv_ros.look_at import LookAt
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 STAGE = """
 version: 1
@@ -60,15 +60,7 @@ def stage(tmp_path: Path) -> Path:
 
 
 def make(scene: str | Path, *paths: Path) -> SimulationCore:
-    return SimulationCore(
-        SceneLibrary(paths),
-        scene,
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    return lockstep_core(scene, *paths)
 
 
 @pytest.fixture

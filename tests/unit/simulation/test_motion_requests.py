@@ -17,9 +17,8 @@ from sailenv_ros.errors import InvalidRequest, InvalidState, SailenvError, Unkno
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.view_planes import view_planes
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 SMALL = CameraIntrinsics(width=16, height=12)
 
@@ -74,15 +73,7 @@ def hall(tmp_path: Path) -> Path:
 
 
 def make_core(scene: str | Path, *paths: Path) -> SimulationCore:
-    return SimulationCore(
-        SceneLibrary(paths),
-        scene,
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    return lockstep_core(scene, *paths)
 
 
 @pytest.fixture

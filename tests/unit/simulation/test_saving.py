@@ -21,7 +21,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.serialisation import light_entry
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 from tests.support.upload_files import box_zip
 
 EXAMPLES = 30
@@ -78,15 +78,7 @@ def core(shared: SimulationCore) -> SimulationCore:
 
 
 def make_core(folder: Path) -> SimulationCore:
-    return SimulationCore(
-        SceneLibrary([folder]),
-        "studio",
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    return lockstep_core("studio", folder)
 
 
 def begin(core: SimulationCore, scene: str) -> None:

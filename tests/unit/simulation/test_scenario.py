@@ -15,8 +15,7 @@ from sailenv_ros.errors import SailenvError
 from sailenv_ros.scene.entries import read_document
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenario import SCENARIO_KEYS, scenario_entries
-from sailenv_ros.simulation.scenes import SceneLibrary
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 TRACK = {"waypoints": [{"position": {"x": 0}}, {"position": {"x": 1}}], "total_time": 2.0}
 
@@ -33,15 +32,7 @@ def starts(timings: Any, *objects: dict[str, Any]) -> list[float]:
 
 @pytest.fixture
 def core() -> Iterator[SimulationCore]:
-    made = SimulationCore(
-        SceneLibrary(),
-        "optical",
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    made = lockstep_core()
     made.register_agent(AgentSpec(name="eye"))
     yield made
     made.close()

@@ -16,7 +16,7 @@ from sailenv_ros.labels import Instance
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.edit_records import EditOperations
 from sailenv_ros.simulation.scenes import SceneLibrary
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 ROOM = """
 version: 1
@@ -34,15 +34,7 @@ objects:
 @pytest.fixture
 def core(tmp_path: Path) -> Iterator[SimulationCore]:
     (tmp_path / "den.yaml").write_text(ROOM, encoding="utf-8")
-    core = SimulationCore(
-        SceneLibrary([tmp_path]),
-        "den",
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    core = lockstep_core("den", tmp_path)
     yield core
     core.close()
 

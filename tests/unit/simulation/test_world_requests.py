@@ -24,22 +24,13 @@ from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import Pose
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenes import SceneLibrary
-from tests.support.blank_renderer import BlankRenderer
+from tests.support.lockstep_core import lockstep_core
 
 AHEAD = Pose((2.0, 0.0, 1.0))
 
 
 def make_core() -> SimulationCore:
-    core = SimulationCore(
-        SceneLibrary(),
-        "optical",
-        BlankRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    core = lockstep_core()
     core.register_agent(AgentSpec(name="eye", intrinsics=CameraIntrinsics(width=16, height=16)))
     return core
 

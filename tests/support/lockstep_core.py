@@ -1,0 +1,29 @@
+"""A simulation in lockstep, without a thread of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.scenes import SceneLibrary
+from tests.support.blank_renderer import BlankRenderer
+
+
+def lockstep_core(scene: str | Path = "optical", *paths: Path, **settings: Any) -> SimulationCore:
+    """Return one that draws nothing, unless `settings` name another renderer.
+
+    `paths` are folders of scene files beside the package's.
+    """
+    return SimulationCore(
+        SceneLibrary(paths),
+        scene,
+        **{
+            "renderer": BlankRenderer(),
+            "mode": "lockstep",
+            "real_time_factor": 1.0,
+            "seed": 0,
+            "paused": False,
+            **settings,
+        },
+    )
