@@ -59,7 +59,8 @@ def regions_of(views: Mapping[str, NDArray[Any]]) -> NDArray[np.uint8]:
         variation > LEAST_VARIATION * (_blurred(colour) + 0.02),
         np.ones(depth.shape, np.bool_),
     )
-    return np.argmax(np.stack(fits), axis=0).astype(np.uint8)
+    regions: NDArray[np.uint8] = np.argmax(np.stack(fits), axis=0).astype(np.uint8)
+    return regions
 
 
 def _edges(ids: NDArray[Any], normals: NDArray[Any], nearness: NDArray[Any]) -> Mask:
@@ -89,7 +90,8 @@ def _shifts(image: NDArray[Any], reach: int) -> list[NDArray[Any]]:
 
 
 def _widened(mask: Mask) -> Mask:
-    return np.any(_shifts(mask, REACH_PX), axis=0)
+    wide: Mask = np.any(_shifts(mask, REACH_PX), axis=0)
+    return wide
 
 
 def _blurred(image: NDArray[Any]) -> NDArray[Any]:

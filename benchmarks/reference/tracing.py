@@ -145,7 +145,13 @@ def _last(name: str, view: str, film: Dict) -> Path | None:
     """Find the file that was written last for a camera's name and size."""
     found = sorted((HOME / "traces").glob(f"{name}-{view}-*.npz"), key=lambda f: f.stat().st_mtime)
     size = (film["height"], film["width"], 3)
-    return next((file for file in reversed(found) if _read(file).radiance.shape == size), None)
+    return next((file for file in reversed(found) if _is_of(file, size)), None)
+
+
+def _is_of(file: Path, size: tuple[int, int, int]) -> bool:
+    """Tell if a file is of a size, and not of before halves were kept."""
+    with np.load(file) as stored:
+        return "halves" in stored and stored["radiance"].shape == size
 
 
 def _trace(name: str, scene: Dict, views: Mapping[str, tuple[Dict, Path]], samples: int) -> None:
