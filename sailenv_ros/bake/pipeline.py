@@ -50,6 +50,9 @@ Floats = NDArray[np.float32]
 Report = Callable[[str, float], None]
 """Is told the name of the stage and which share of the whole is done, 0 to 1."""
 
+DRAFT_SMOOTHING = 5
+"""How often a draft is averaged over tiles: what few rays cannot tell is left out, not noisy."""
+
 Preview = Callable[[BakedLight], None]
 """Is given light of the same scene that is right, but rougher than what comes in the end."""
 
@@ -193,7 +196,7 @@ class _Bake:
         tiles = _tiles(texels, chosen)
         # Of patches that share a tile one is averaged: what is at edges stays as it is.
         alone = np.bincount(_places_of(tiles), minlength=1)[_places_of(tiles)] == 1
-        for _ in range(2):
+        for _ in range(DRAFT_SMOOTHING):
             # Few rays leave blotches, which are wider than what texels are averaged over.
             smooth = denoised(
                 self._geometry, tiles, solver.bounced, solver.valid & alone, solver.nearness,
