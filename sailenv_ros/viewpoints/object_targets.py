@@ -22,6 +22,7 @@ __all__ = [
     "between_deg",
     "boxes_of",
     "cameras",
+    "is_outside",
     "stands_in_something",
     "target_of_row",
     "targets_of",
@@ -152,6 +153,16 @@ def stands_in_something(target: Target, eye: NDArray[np.float64]) -> bool:
     """Return whether a camera is inside a wall or furniture: in a box that is not around both."""
     eye_in, middle_in = (_in_boxes(target, point) for point in (eye, target.middle))
     return bool((eye_in & ~middle_in).any())
+
+
+def is_outside(target: Target, eye: NDArray[np.float64]) -> bool:
+    """Return whether a scene has floors, and none of them is above or below a camera."""
+    drawn = target.snapshot.contents.instances
+    floors = [row for row, entry in enumerate(drawn) if entry.instance.category == "floor"]
+    poses = target.snapshot.world_from_body[floors]
+    own = np.einsum("nij,ni->nj", poses[:, :3, :3], eye - poses[:, :3, 3])[:, :2]
+    low, high = target.boxes[floors, 0, :2], target.boxes[floors, 1, :2]
+    return bool(floors) and not ((low <= own) & (own <= high)).all(axis=1).any()
 
 
 def _in_boxes(target: Target, point: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -18,6 +18,7 @@ from sailenv_ros.viewpoints.object_targets import (
     Target,
     between_deg,
     cameras,
+    is_outside,
     stands_in_something,
     target_of_row,
 )
@@ -83,8 +84,8 @@ def views_in_turn(
 ) -> Iterator[SeenTarget | None]:
     """Choose views around objects, each object in its turn.
 
-    Cameras are drawn at random, each with a distance for a share of the picture, none in a wall or
-    in another object's box; the first that meets the rule is taken.
+    Cameras are drawn at random, each with a distance for a share of the picture, none in a wall, in
+    another object's box or outside a room; the first that meets the rule is taken.
 
     Parameters
     ----------
@@ -180,7 +181,8 @@ def _first_view(
     measure: Measure,
 ) -> SeenTarget | None:
     for azimuth_deg, camera, distance_m in cameras(target, rule, lens, random):
-        if stands_in_something(target, np.asarray(camera.pose.position_m)):
+        eye = np.asarray(camera.pose.position_m)
+        if stands_in_something(target, eye) or is_outside(target, eye):
             continue
         if any(between_deg(azimuth_deg, other) < rule.apart_deg for other in used_deg):
             continue

@@ -75,6 +75,30 @@ def test_objects_are_large_enough_and_little_hidden(simulation: Simulation) -> N
         assert abs(math.remainder(turns[0] - turns[1], math.tau)) >= math.radians(19.9)
 
 
+def test_objects_are_not_looked_at_from_outside(tmp_path: Path) -> None:
+    """Through a wall of glass they would be seen well; without a floor there is no outside."""
+    ball = "{name: ball, asset: sphere, scale: 0.4, position: [0.7, 0, 0.6], static: true}"
+    floor = (
+        "{name: floor, asset: cube, scale: [2, 2, 0.1], rotation: [0, 0, 30], "
+        "position: [0, 0, -0.05], category: floor, static: true}"
+    )
+    outside = {}
+    for name, objects in (("terrace", f"[{floor}, {ball}]"), ("space", f"[{ball}]")):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(f"version: 1\nobjects: {objects}\n", encoding="utf-8")
+        with Simulation(path, mode="lockstep", agent=AgentSpec(name="eye")) as simulation:
+            views = simulation.sample_cameras("object_view", 8, objects=("ball",), apart_deg=5.0)
+        assert len(views) == 8
+        places = np.array([view.pose.position_m[:2] for view in views])
+        turn = math.radians(30.0)
+        own = places @ np.array(
+            [[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]
+        )
+        outside[name] = int((np.abs(own) > 1.0).any(axis=1).sum())
+    assert outside["terrace"] == 0
+    assert outside["space"] > 0
+
+
 def test_objects_can_be_chosen(simulation: Simulation) -> None:
     """By name and by category."""
     ball, vase = (id_of(simulation, name) for name in ("ball", "vase"))
