@@ -27,6 +27,8 @@ from PIL import Image
 
 from benchmarks.reference.curve import matched_stops, picture_of
 from benchmarks.reference.parts import Parts
+from benchmarks.reference.regions import REGIONS, regions_of
+from benchmarks.reference.regions import VIEWS as SHOWN_BY
 from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
 from sailenv_ros.camera import Camera, CameraIntrinsics
@@ -42,6 +44,8 @@ from sailenv_ros.snapshot import WorldSnapshot
 RENDERERS: dict[str, Callable[[], RenderBackend]] = {"native": NativeRenderer, "opengl": Renderer}
 
 VIEWS = Path(__file__).with_name("views.yaml")
+
+MEANS = ("ssim", "psnr_db", "flip", "stops", "ssim_halves")
 
 Picture = NDArray[np.uint8]
 Row = dict[str, Any]
@@ -67,7 +71,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--scenes", nargs="+", default=None, help="of views.yaml; all of them")
     parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
-    parser.add_argument("--samples", type=int, default=64, help="per pixel of the reference")
+    parser.add_argument("--samples", type=int, default=128, help="per pixel of the reference")
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
     parser.add_argument(
         "--supersampling", type=int, default=1, metavar="N", help="of ours; 1: as by default"
@@ -136,18 +140,25 @@ def _compared(
         return []
     drawn = {name: cameras[name] for name in references}
     ours = _rendered(snapshot, drawn, RENDERERS[arguments.renderer])
+    regions = {name: regions_of(views) for name, views in ours.items()}
+    pictures = {name: views["rgb"] for name, views in ours.items()}
     stops = snapshot.contents.environment.exposure
-    return _measured(scene, ours, references, stops, arguments.output)
+    return _measured(scene, pictures, regions, references, stops, arguments.output)
 
 
 def _rendered(
     snapshot: WorldSnapshot, cameras: Mapping[str, Camera], make: Callable[[], RenderBackend]
-) -> dict[str, Picture]:
+) -> dict[str, dict[str, NDArray[Any]]]:
     renderer = make()
+    wanted = ("rgb", *SHOWN_BY)
     try:
-        return {
-            name: renderer.render(snapshot, None, camera, ("rgb",)).views["rgb"].copy()
+        made = {
+            name: renderer.render(snapshot, None, camera, wanted).views
             for name, camera in cameras.items()
+        }
+        return {
+            name: {view: array.copy() for view, array in views.items()}
+            for name, views in made.items()
         }
     finally:
         renderer.close()
@@ -156,6 +167,7 @@ def _rendered(
 def _measured(
     scene: str,
     ours: Mapping[str, Picture],
+    regions: Mapping[str, Picture],
     references: Mapping[str, Traced],
     stops: float,
     output: Path,
@@ -169,6 +181,9 @@ def _measured(
         matched = picture_of(traced.radiance, best)
         for kind, picture in (("matched", matched), ("plain", picture_of(traced.radiance, stops))):
             pairs[f"ours_{name}.{kind}"], pairs[f"reference_{name}.{kind}"] = ours[name], picture
+        pairs[f"regions_{name}.matched"] = regions[name]
+        halves = [picture_of(half, best) for half in traced.halves]
+        pairs[f"ours_{name}.halves"], pairs[f"reference_{name}.halves"] = halves
         rows.append({"scene": scene, "view": name, "stops": best - stops, "noise": traced.noise})
         rows[-1]["noise_denoised"] = traced.noise_denoised
         difference = np.abs(ours[name].astype(int) - matched.astype(int))
@@ -185,6 +200,7 @@ def _measured(
         row.update(figures[f"{row['view']}.matched"])
         plain = figures[f"{row['view']}.plain"]
         row.update({f"{key}_unmatched": value for key, value in plain.items()})
+        row["ssim_halves"] = figures[f"{row['view']}.halves"]["ssim"]
     save_contact_sheet(output / f"{scene}.png", _labelled(tiles, rows), columns=3)
     return rows
 
@@ -208,18 +224,26 @@ def _save(file: Path, picture: Picture) -> None:
 
 
 def _show(rows: list[Row], output: Path) -> None:
-    print(f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'noise':>8}   as it is: SSIM PSNR")
+    print(
+        f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'halves':>8}   as it is: SSIM PSNR"
+    )
     for row in rows:
         print(
             f"{row['scene'] + '/' + row['view']:22}{row['ssim']:8.3f}{row['psnr_db']:8.1f}"
-            f"{row['flip']:8.3f}{row['stops']:+8.2f}{row['noise_denoised']:8.1%}"
+            f"{row['flip']:8.3f}{row['stops']:+8.2f}{row['ssim_halves']:8.3f}"
             f"{row['ssim_unmatched']:18.3f}{row['psnr_db_unmatched']:5.1f}"
         )
     if rows:
-        mean = {key: float(np.mean([r[key] for r in rows])) for key in ("ssim", "psnr_db", "flip")}
+        mean = {key: float(np.mean([r[key] for r in rows])) for key in MEANS}
         lowest = min(row["ssim"] for row in rows)
-        print(f"{'mean':22}{mean['ssim']:8.3f}{mean['psnr_db']:8.1f}{mean['flip']:8.3f}")
+        print(
+            f"{'mean':22}{mean['ssim']:8.3f}{mean['psnr_db']:8.1f}{mean['flip']:8.3f}"
+            f"{mean['stops']:+8.2f}{mean['ssim_halves']:8.3f}"
+        )
         print(f"{'lowest SSIM':22}{lowest:8.3f}")
+        lost = np.mean([row["lost"] for row in rows], axis=0)
+        parts = ", ".join(f"{name} {part:.3f}" for name, part in zip(REGIONS, lost, strict=True))
+        print(f"of 1 - SSIM: {parts}")
     output.mkdir(parents=True, exist_ok=True)
     file = output / "comparison.json"
     file.write_text(json.dumps(rows, indent=1), encoding="utf-8")

@@ -22,7 +22,10 @@ from numpy.typing import NDArray
 PASS_SAMPLES = 32
 """Samples per pixel that are traced at once: memory grows with them."""
 
-GUIDE_SAMPLES = 16
+GUIDE_PASSES, GUIDE_SEED = 8, 100
+"""What guides the denoiser is seen so often that it has no noise of its own: with 16 samples the
+denoiser did not trust it, and blurred edges and textures."""
+
 _GUIDES = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal"}
 
 Dict = dict[str, Any]
@@ -65,7 +68,14 @@ def loaded(description: Any, parts: Path) -> Any:
 
 def traced(scene: Any, sensor: Any, samples: int) -> dict[str, Image]:
     """Trace one view; the two halves of its samples tell how noisy it is."""
-    guides = _shot(scene, sensor, mi.load_dict(_GUIDES), GUIDE_SAMPLES, 0)
+    seen = mi.load_dict(_GUIDES)
+    guides = np.mean(
+        [
+            _shot(scene, sensor, seen, PASS_SAMPLES, GUIDE_SEED + number)
+            for number in range(GUIDE_PASSES)
+        ],
+        axis=0,
+    )
     halves: list[list[Image]] = [[], []]
     for number in range(max(2, round(samples / PASS_SAMPLES))):
         shot = _shot(scene, sensor, scene.integrator(), PASS_SAMPLES, number)
@@ -78,6 +88,7 @@ def traced(scene: Any, sensor: Any, samples: int) -> dict[str, Image]:
     return {
         "radiance": clean,
         "raw": mean,
+        "halves": np.stack((clean_first, clean_second)),
         "noise": _noise(first, second),
         "noise_denoised": _noise(clean_first, clean_second),
     }
@@ -89,12 +100,13 @@ def _shot(scene: Any, sensor: Any, integrator: Any, samples: int, seed: int) -> 
 
 
 def denoised(radiance: Image, albedo: Image, normal: Image) -> Image:
-    """Denoise by Open Image Denoise, guided by what is seen first."""
+    """Denoise by Open Image Denoise, guided by what is seen first, which is without noise."""
     colour, first, second = (
         np.ascontiguousarray(np.nan_to_num(image), dtype=np.float32)
-        for image in (radiance, albedo, normal)
+        for image in (radiance, np.clip(albedo, 0.0, 1.0), normal)
     )
-    result: Image = np.maximum(pyoidn.denoise(colour, first, second, hdr=True), 0.0)
+    clean = pyoidn.denoise(colour, first, second, hdr=True, clean_aux=True)
+    result: Image = np.maximum(clean, 0.0)
     return result
 
 

@@ -25,7 +25,7 @@ __all__ = ["HOME", "ToolMissing", "Traced", "missing_views", "run_tool", "traced
 HERE = Path(__file__).resolve().parent
 HOME = cache_folder() / "reference"
 
-METHOD = 1
+METHOD = 2
 """Of `trace.py`: another number makes all traced pictures stale."""
 
 _ENVIRONMENT_S = 7200.0
@@ -45,6 +45,8 @@ class Traced:
     ----------
     radiance, raw : (H, W, 3) float32
         Linear, denoised and not.
+    halves : (2, H, W, 3) float32
+        Of either half of the samples by itself, denoised.
     noise, noise_denoised : float
         Median over the pixels of the estimated relative error of either.
     seconds : float
@@ -53,6 +55,7 @@ class Traced:
 
     radiance: NDArray[np.float32]
     raw: NDArray[np.float32]
+    halves: NDArray[np.float32]
     noise: float
     noise_denoised: float
     seconds: float
@@ -142,7 +145,13 @@ def _last(name: str, view: str, film: Dict) -> Path | None:
     """Find the file that was written last for a camera's name and size."""
     found = sorted((HOME / "traces").glob(f"{name}-{view}-*.npz"), key=lambda f: f.stat().st_mtime)
     size = (film["height"], film["width"], 3)
-    return next((file for file in reversed(found) if _read(file).radiance.shape == size), None)
+    return next((file for file in reversed(found) if _is_of(file, size)), None)
+
+
+def _is_of(file: Path, size: tuple[int, int, int]) -> bool:
+    """Tell if a file is of a size, and not of before halves were kept."""
+    with np.load(file) as stored:
+        return "halves" in stored and stored["radiance"].shape == size
 
 
 def _trace(name: str, scene: Dict, views: Mapping[str, tuple[Dict, Path]], samples: int) -> None:
@@ -169,6 +178,7 @@ def _read(file: Path) -> Traced:
         return Traced(
             radiance=stored["radiance"],
             raw=stored["raw"],
+            halves=stored["halves"],
             noise=float(stored["noise"]),
             noise_denoised=float(stored["noise_denoised"]),
             seconds=float(stored["seconds"]),

@@ -355,13 +355,18 @@ def test_without_the_tracer_one_is_told_how_to_get_it(
 def test_the_last_traced_picture_stands_in_where_that_is_wanted(
     parts: Parts, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of a changed scene the newest picture of a camera's name and size is taken, if asked for."""
+    """Of a changed scene the newest picture of a camera's name and size is taken, if asked for.
+
+    Files of before halves were kept are passed over.
+    """
     monkeypatch.setattr(tracing, "HOME", tmp_path)
     (tmp_path / "traces").mkdir()
-    for age, (number, height) in enumerate([(1, 48), (2, 480), (3, 480), (4, 48)]):
+    for age, (number, height) in enumerate([(1, 480), (2, 480), (3, 480), (4, 48)]):
         file = tmp_path / "traces" / f"test-front-{number}.npz"
         image = np.full((height, height * 4 // 3, 3), number, np.float32)
-        np.savez(file, radiance=image, raw=image, noise=0.1, noise_denoised=0.01, seconds=1.0)
+        noise = {"noise": 0.1, "noise_denoised": 0.01, "seconds": 1.0}
+        halves = {"halves": np.stack((image, image))} if number > 1 else {}
+        np.savez(file, radiance=image, raw=image, **halves, **noise)  # type: ignore[arg-type]
         os.utime(file, (1000 - age, 1000 - age))
     scene = export.scene_of(world_of(Material()), parts)
     sensors = {"front": export.sensor(Camera())}
