@@ -11,7 +11,7 @@ import io
 import json
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from itertools import chain
@@ -62,8 +62,11 @@ SUFFIX = ".light"
 DRAFT_SUFFIX = ".draft"
 """Of light that is right, but rough: what stands in until the light itself is baked."""
 
-MOST_FILES = 24
-"""The oldest are thrown away beyond it."""
+MOST_BYTES = 4 << 30
+"""Of light, some 100 rooms; what was not used for longest is thrown away beyond it."""
+
+MOST_NOTES = 1024
+"""Of which light belongs to which scene file."""
 
 _LAYER_ARRAYS = ("direct", "bounced", "probe_direct", "probe_bounced", "visibility")
 _EDGE_ARRAYS = ("index", "blocks")
@@ -208,15 +211,29 @@ def _is_fingerprint(text: str) -> bool:
     return len(text) == 32 and all(c in "0123456789abcdef" for c in text)
 
 
-def forget_oldest(folder: Path, most: int = MOST_FILES) -> None:
-    """Remove the files that have not been used for longest, so that `most` of a kind remain."""
-    for kind in (f"*{SUFFIX}", f"*{DRAFT_SUFFIX}", "*.known"):
-        ages = {}
-        for path in folder.glob(kind):
-            with suppress(OSError):
-                ages[path] = path.stat().st_mtime_ns
-        for path in sorted(ages, key=lambda p: (ages[p], p))[: max(len(ages) - most, 0)]:
-            path.unlink(missing_ok=True)
+def forget_oldest(folder: Path, most_bytes: int = MOST_BYTES) -> None:
+    """Remove the light that has not been used for longest beyond so many bytes of a kind.
+
+    What was used last remains, however large it is.
+    """
+    for kind in (f"*{SUFFIX}", f"*{DRAFT_SUFFIX}"):
+        total = 0
+        for number, (path, size) in enumerate(_latest_first(folder.glob(kind))):
+            total += size
+            if number and total > most_bytes:
+                path.unlink(missing_ok=True)
+    for path, _ in _latest_first(folder.glob("*.known"))[MOST_NOTES:]:
+        path.unlink(missing_ok=True)
+
+
+def _latest_first(paths: Iterable[Path]) -> list[tuple[Path, int]]:
+    """Return files and their sizes [bytes], those first that were used last."""
+    found = []
+    for path in paths:
+        with suppress(OSError):
+            status = path.stat()
+            found.append((-status.st_mtime_ns, path, status.st_size))
+    return [(path, size) for _, path, size in sorted(found)]
 
 
 def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:

@@ -143,14 +143,17 @@ def test_edges_that_are_not_there_are_refused(
     assert "edges of shadows" in caplog.text
 
 
-def test_old_files_are_thrown_away(tmp_path: Path) -> None:
-    """Those that were not used for longest."""
+@pytest.mark.parametrize(("most_bytes", "kept"), [(25, 2), (30, 3), (5, 1), (1000, 6)])
+def test_old_files_are_thrown_away(tmp_path: Path, most_bytes: int, kept: int) -> None:
+    """Those that were not used for longest, and never the last one; drafts count by themselves."""
     for age in range(6):
-        path = tmp_path / f"{age}.light"
-        path.write_bytes(b"")
-        os.utime(path, ns=(10**9 * (100 - age), 10**9 * (100 - age)))
-    files.forget_oldest(tmp_path, most=2)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["0.light", "1.light"]
+        for suffix in ("light", "draft"):
+            path = tmp_path / f"{age}.{suffix}"
+            path.write_bytes(bytes(10))
+            os.utime(path, ns=(10**9 * (100 - age), 10**9 * (100 - age)))
+    files.forget_oldest(tmp_path, most_bytes)
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == sorted(f"{age}.{suffix}" for age in range(kept) for suffix in ("light", "draft"))
 
 
 def test_a_scene_is_known_while_its_light_is_there(baked: BakedLight) -> None:
