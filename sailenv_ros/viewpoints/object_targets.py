@@ -156,13 +156,13 @@ def stands_in_something(target: Target, eye: NDArray[np.float64]) -> bool:
 
 
 def is_outside(target: Target, eye: NDArray[np.float64]) -> bool:
-    """Return whether a scene has floors, and none of them is above or below a camera."""
+    """Return whether a scene has ceilings, and none of them is above or below a camera."""
     drawn = target.snapshot.contents.instances
-    floors = [row for row, entry in enumerate(drawn) if entry.instance.category == "floor"]
-    poses = target.snapshot.world_from_body[floors]
+    ceilings = [row for row, entry in enumerate(drawn) if entry.instance.category == "ceiling"]
+    poses = target.snapshot.world_from_body[ceilings]
     own = np.einsum("nij,ni->nj", poses[:, :3, :3], eye - poses[:, :3, 3])[:, :2]
-    low, high = target.boxes[floors, 0, :2], target.boxes[floors, 1, :2]
-    return bool(floors) and not ((low <= own) & (own <= high)).all(axis=1).any()
+    low, high = target.boxes[ceilings, 0, :2], target.boxes[ceilings, 1, :2]
+    return bool(ceilings) and not ((low <= own) & (own <= high)).all(axis=1).any()
 
 
 def _in_boxes(target: Target, point: NDArray[np.float64]) -> NDArray[np.bool_]:

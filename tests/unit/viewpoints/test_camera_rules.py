@@ -76,14 +76,14 @@ def test_objects_are_large_enough_and_little_hidden(simulation: Simulation) -> N
 
 
 def test_objects_are_not_looked_at_from_outside(tmp_path: Path) -> None:
-    """Through a wall of glass they would be seen well; without a floor there is no outside."""
+    """Through a wall of glass they would be seen well; without a ceiling there is no outside."""
     ball = "{name: ball, asset: sphere, scale: 0.4, position: [0.7, 0, 0.6], static: true}"
-    floor = (
-        "{name: floor, asset: cube, scale: [2, 2, 0.1], rotation: [0, 0, 30], "
-        "position: [0, 0, -0.05], category: floor, static: true}"
+    ceiling = (
+        "{name: ceiling, asset: cube, scale: [2, 2, 0.1], rotation: [0, 0, 30], "
+        "position: [0, 0, 4], category: ceiling, static: true}"
     )
     outside = {}
-    for name, objects in (("terrace", f"[{floor}, {ball}]"), ("space", f"[{ball}]")):
+    for name, objects in (("pavilion", f"[{ceiling}, {ball}]"), ("space", f"[{ball}]")):
         path = tmp_path / f"{name}.yaml"
         path.write_text(f"version: 1\nobjects: {objects}\n", encoding="utf-8")
         with Simulation(path, mode="lockstep", agent=AgentSpec(name="eye")) as simulation:
@@ -95,7 +95,7 @@ def test_objects_are_not_looked_at_from_outside(tmp_path: Path) -> None:
             [[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]
         )
         outside[name] = int((np.abs(own) > 1.0).any(axis=1).sum())
-    assert outside["terrace"] == 0
+    assert outside["pavilion"] == 0
     assert outside["space"] > 0
 
 
