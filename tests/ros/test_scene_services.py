@@ -401,6 +401,7 @@ SERVICES = {
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(300)  # 2,000 requests and more, some of them for large pictures
 @settings(
     max_examples=100,
     deadline=None,
