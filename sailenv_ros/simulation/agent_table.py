@@ -13,6 +13,7 @@ from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
 from sailenv_ros.geometry import Pose
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.snapshot import Observation
@@ -56,6 +57,11 @@ class AgentRecord:
     earlier: Observation | None = None
     due_count: int = 0
     streams: list[FrameStream] = field(default_factory=list)
+
+    @property
+    def look_at(self) -> LookAt | None:
+        """What it faces, as it is told; None if nothing."""
+        return None if self.gaze is None else self.gaze.described()
 
     def past(self, sim_time_ns: int) -> Observation | None:
         """Return the last observation before that instant."""
@@ -122,10 +128,7 @@ class AgentTable:
     @property
     def specs(self) -> tuple[AgentSpec, ...]:
         """What the agents are now, and face."""
-        return tuple(
-            replace(record.spec, look_at=None if gaze is None else gaze.described())
-            for record, gaze in ((record, record.gaze) for record in self)
-        )
+        return tuple(replace(record.spec, look_at=record.look_at) for record in self)
 
     def add(self, spec: AgentSpec, world: World) -> AgentSpec:
         """Register an agent; return the spec as accepted, with its mover's name filled in.
@@ -305,9 +308,7 @@ class AgentTable:
 
     def _gaze_in(self, record: AgentRecord, world: World, *, as_registered: bool) -> Gaze | None:
         """Return what an agent faces in a world that has just begun; nothing that it lacks."""
-        faced = record.spec.look_at
-        if not as_registered:
-            faced = None if record.gaze is None else record.gaze.described()
+        faced = record.spec.look_at if as_registered else record.look_at
         try:
             return None if faced is None else world.gaze(faced)
         except UnknownName:

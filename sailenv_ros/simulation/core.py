@@ -176,7 +176,7 @@ class SimulationCore(WorldOperations):
                     total_time_s=mover.total_time_s,
                     loop=mover.loop,
                     body=None if mover.body is None else mover.body.rigid,
-                    look_at=None if mover.gaze is None else mover.gaze.described(),
+                    look_at=mover.look_at,
                 )
                 for mover in self.world.movers.values()
             ),

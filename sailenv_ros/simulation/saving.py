@@ -368,12 +368,11 @@ def _mover(mover: Mover, described: MoverSpec, time_ns: int) -> Entry:
     for key, value in now.items():
         if value != getattr(described, key):
             entry[key] = value
-    gaze = None if mover.gaze is None else mover.gaze.described()
     begun = described.keep_looking_at
-    if gaze != (begun and begun.to_look_at()):
+    if mover.look_at != (begun and begun.to_look_at()):
         entry.pop("keep_looking_at", None)
-        if gaze is not None:
-            entry["keep_looking_at"] = look_at_entry(gaze)
+        if mover.look_at is not None:
+            entry["keep_looking_at"] = look_at_entry(mover.look_at)
     entry.update(_body(entry.pop("body", None), mover, described))
     is_led = mover.controller == "waypoint" and bool(poses)
     pose = mover.own_pose_at(time_ns)
@@ -409,8 +408,7 @@ def _agents(
 
 
 def _agent(record: AgentRecord, described: AgentSpecModel | None, world: World) -> Entry:
-    gaze = None if record.gaze is None else record.gaze.described()
-    spec = replace(record.spec, look_at=gaze)
+    spec = replace(record.spec, look_at=record.look_at)
     first = world.mover("").name
     if described is not None:
         begun = described.to_agent_spec()

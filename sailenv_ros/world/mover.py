@@ -14,10 +14,11 @@ from typing import Literal, get_args
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.geometry import Pose, interpolate
+from sailenv_ros.look_at import LookAt
 from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.validation import vector
 from sailenv_ros.world.gaze import Gaze
-from sailenv_ros.world.mover_body import MoverBody
+from sailenv_ros.world.mover_body import Motion, MoverBody
 
 __all__ = [
     "COMMAND_LASTS_NS",
@@ -29,8 +30,6 @@ __all__ = [
 ]
 
 Controller = Literal["waypoint", "rigidbody"]
-
-Vector3 = tuple[float, float, float]
 
 COMMAND_LASTS_NS = 500_000_000
 """Simulated time after which a command that was not given again ends [ns]."""
@@ -153,7 +152,7 @@ class Mover:
         controller: Controller,
         total_time_s: float = 30.0,
         loop: bool = True,
-        begins_as: tuple[RigidBody, tuple[Vector3, Vector3]] | None = None,
+        begins_as: tuple[RigidBody, Motion] | None = None,
     ) -> None:
         self.name = name
         self.begins_as = begins_as
@@ -212,6 +211,11 @@ class Mover:
     def gaze(self) -> Gaze | None:
         """What it faces; None if nothing."""
         return self._gaze
+
+    @property
+    def look_at(self) -> LookAt | None:
+        """What it faces, as it is told; None if nothing."""
+        return None if self._gaze is None else self._gaze.described()
 
     def face(self, gaze: Gaze | None, time_ns: int) -> None:
         """Face something from now on; without anything, waypoints or commands alone turn it.

@@ -30,7 +30,7 @@ from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClien
 from sailenv_ros.world.placement import Placement
 from sailenv_ros.world.struck import LinkMotion, Strike, StruckBody, StruckLink, links_near
 
-__all__ = ["BOUNCES_FROM_M_S", "MoverBody"]
+__all__ = ["AT_REST", "BOUNCES_FROM_M_S", "Motion", "MoverBody"]
 
 BOUNCES_FROM_M_S = 0.05
 """What strikes more slowly stays where it is [m/s]; gravity gives a resting body 0.04 in a step."""
@@ -44,7 +44,10 @@ Piece = tuple[int, int]
 
 Vector3 = tuple[float, float, float]
 
-_STILL: Vector3 = (0.0, 0.0, 0.0)
+Motion = tuple[Vector3, Vector3]
+"""Velocity [m/s] and angular velocity [rad/s], world frame."""
+
+AT_REST: Motion = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
 class MoverBody(Body):
@@ -57,8 +60,8 @@ class MoverBody(Body):
         The mover's.
     rigid : RigidBody
     pose : Pose
-    linear_velocity, angular_velocity : (3,) tuple of float
-        World frame [m/s], [rad/s].
+    motion : (linear, angular) tuple of (3,) tuples of float
+        At first, world frame [m/s], [rad/s].
 
     Attributes
     ----------
@@ -71,9 +74,7 @@ class MoverBody(Body):
         name: str,
         rigid: RigidBody,
         pose: Pose,
-        *,
-        linear_velocity: Vector3 = _STILL,
-        angular_velocity: Vector3 = _STILL,
+        motion: Motion,
     ) -> None:
         ball = Asset(
             name="mover",
@@ -83,6 +84,7 @@ class MoverBody(Body):
             collision=(SphereShape(radius_m=rigid.radius_m),),
         )
         self.rigid = rigid
+        linear, angular = motion
         super().__init__(
             client,
             Placement(
@@ -93,13 +95,13 @@ class MoverBody(Body):
                 mass_kg=rigid.mass_kg,
                 gravity=rigid.gravity,
                 friction=rigid.friction,
-                linear_velocity=linear_velocity,
-                angular_velocity=angular_velocity,
+                linear_velocity=linear,
+                angular_velocity=angular,
             ),
         )
         decays = rigid.drag_per_s, rigid.angular_drag_per_s
         self._decay, self._angular_decay = (math.exp(-rate / STEPS_PER_SECOND) for rate in decays)
-        self._before: Floats = np.asarray(linear_velocity)
+        self._before: Floats = np.asarray(linear)
         self._flies = False
         self._links: dict[Piece, LinkMotion] = {}
 
@@ -163,7 +165,7 @@ class MoverBody(Body):
         return Pose(here.position_m, before.orientation_xyzw)
 
     @property
-    def motion(self) -> tuple[Vector3, Vector3]:
+    def motion(self) -> Motion:
         """Velocity [m/s] and angular velocity [rad/s], world frame."""
         (vx, vy, vz), (wx, wy, wz) = self._client.getBaseVelocity(self._id)
         return (vx, vy, vz), (wx, wy, wz)

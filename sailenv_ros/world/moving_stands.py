@@ -13,7 +13,7 @@ from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.mover import Mover, MoverCommand
-from sailenv_ros.world.mover_body import MoverBody
+from sailenv_ros.world.mover_body import AT_REST, Motion, MoverBody
 
 __all__ = ["MovingStands"]
 
@@ -41,17 +41,7 @@ class MovingStands:
         """Put those into the engine that begin as rigid bodies."""
         for mover in self._movers.values():
             if mover.begins_as is not None:
-                rigid, (linear, angular) = mover.begins_as
-                pose = mover.own_pose_at(0)
-                body = MoverBody(
-                    self._client,
-                    mover.name,
-                    rigid,
-                    pose,
-                    linear_velocity=linear,
-                    angular_velocity=angular,
-                )
-                mover.embody(body, 0)
+                mover.embody(self._ball(mover, *mover.begins_as, 0), 0)
 
     def __getitem__(self, name: str) -> Mover:
         """Find a mover; the empty name means the first.
@@ -136,20 +126,13 @@ class MovingStands:
         if old is not None and old.rigid == rigid:
             return False
         mover.require_untracked()
-        pose = mover.own_pose_at(time_ns)
-        if old is None:
-            mover.embody(MoverBody(self._client, mover.name, rigid, pose), time_ns)
-            return True
-        linear, angular = old.motion
-        new = MoverBody(
-            self._client,
-            mover.name,
-            rigid,
-            pose,
-            linear_velocity=linear,
-            angular_velocity=angular,
-        )
-        new.take_wrenches(old)
-        old.remove()
+        new = self._ball(mover, rigid, AT_REST if old is None else old.motion, time_ns)
+        if old is not None:
+            new.take_wrenches(old)
+            old.remove()
         mover.embody(new, time_ns)
         return True
+
+    def _ball(self, mover: Mover, rigid: RigidBody, motion: Motion, time_ns: int) -> MoverBody:
+        """Put a ball into the engine where a mover is at a simulated time [ns]."""
+        return MoverBody(self._client, mover.name, rigid, mover.own_pose_at(time_ns), motion)
