@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
@@ -16,11 +17,22 @@ from sailenv_ros.validation import vector
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
+    from sailenv_ros.world.mover import Mover
 
 __all__ = ["MoverOperations"]
 
 MAX_WAYPOINTS = 1000
 MAX_TIME_S = 1e6
+
+
+@contextmanager
+def _telling_what_is_faced(core: SimulationCore, name: str) -> Iterator[Mover]:
+    """Announce the scene if what is done to a mover ends what it faces."""
+    mover = core.world.mover(name)
+    before = mover.gaze
+    yield mover
+    if mover.gaze is not before:
+        core.announce()
 
 
 def _track_time(what: str, value: object) -> float:
@@ -78,11 +90,8 @@ class MoverOperations(Caller):
         mover : str
             Its controller must be ``rigidbody``.
         """
-        found = core.world.mover(mover)
-        before = found.gaze
-        core.world.drive(mover, linear_m_s, angular_rad_s)
-        if found.gaze is not before:
-            core.announce()
+        with _telling_what_is_faced(core, mover):
+            core.world.drive(mover, linear_m_s, angular_rad_s)
 
     @operation(pitch_rad=check.number, yaw_rad=check.number, mover=check.text)
     @staticmethod
@@ -90,11 +99,8 @@ class MoverOperations(Caller):
         core: SimulationCore, pitch_rad: float = 0.0, yaw_rad: float = 0.0, mover: str = ""
     ) -> None:
         """Turn a mover at once: pitch (down is positive), yaw (left is positive) [rad]."""
-        found = core.world.mover(mover)
-        before = found.gaze
-        found.turn(pitch_rad, yaw_rad)
-        if found.gaze is not before:
-            core.announce()
+        with _telling_what_is_faced(core, mover) as found:
+            found.turn(pitch_rad, yaw_rad)
 
     @operation(waypoints=check.track, mover=check.text, total_time_s=check.optional(_track_time))
     @staticmethod
