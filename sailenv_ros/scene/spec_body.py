@@ -7,9 +7,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from sailenv_ros.rigid_body import RigidBody
+from sailenv_ros.rigid_body import RIGID_BODY_LIMITS, RigidBody
 from sailenv_ros.scene.field_types import Number, Switch
-from sailenv_ros.scene.fields import DegreesPerSecond, Fraction, MetresPerSecond, SceneModel
+from sailenv_ros.scene.fields import DegreesPerSecond, MetresPerSecond, SceneModel
 from sailenv_ros.scene.rules import Entry, Faults
 
 __all__ = ["BodySpec", "forces_or_waypoints"]
@@ -17,28 +17,33 @@ __all__ = ["BodySpec", "forces_or_waypoints"]
 _DEFAULTS = RigidBody()
 
 
+def _within_limits(name: str) -> Number:
+    low, high, unit = RIGID_BODY_LIMITS[name]
+    return Number(least=low, most=high, unit=unit)
+
+
 class BodySpec(SceneModel):
     """A ball that wrenches, gravity and collisions move, and the mover with it."""
 
-    mass: Annotated[float, Number(least=0.001, most=1000.0, unit="kg")] = Field(
+    mass: Annotated[float, _within_limits("mass_kg")] = Field(
         default=_DEFAULTS.mass_kg, description="[kg]"
     )
-    radius: Annotated[float, Number(least=0.01, most=1.0, unit="m")] = Field(
+    radius: Annotated[float, _within_limits("radius_m")] = Field(
         default=_DEFAULTS.radius_m, description="of the ball, which is never drawn [m]"
     )
-    drag: Annotated[float, Number(least=0.0, most=1000.0, unit="1/s")] = Field(
+    drag: Annotated[float, _within_limits("drag_per_s")] = Field(
         default=_DEFAULTS.drag_per_s, description="rate at which its velocity decays [1/s]"
     )
-    angular_drag: Annotated[float, Number(least=0.0, most=1000.0, unit="1/s")] = Field(
+    angular_drag: Annotated[float, _within_limits("angular_drag_per_s")] = Field(
         default=_DEFAULTS.angular_drag_per_s,
         description="rate at which its angular velocity decays [1/s]",
     )
-    friction: Annotated[float, Number(least=0.0, most=10.0)] = Field(
+    friction: Annotated[float, _within_limits("friction")] = Field(
         default=_DEFAULTS.friction,
         description="coefficient of sliding friction; without any, nothing that it touches turns "
         "it",
     )
-    restitution: Fraction = Field(
+    restitution: Annotated[float, _within_limits("restitution")] = Field(
         default=_DEFAULTS.restitution,
         description="bounce, from 0 (none) to 1 (all the speed is kept), whatever it strikes",
     )
