@@ -159,19 +159,21 @@ def is_outside(target: Target, eye: NDArray[np.float64]) -> bool:
     """Return whether a scene has ceilings, and none of them is above or below a camera."""
     drawn = target.snapshot.contents.instances
     ceilings = [row for row, entry in enumerate(drawn) if entry.instance.category == "ceiling"]
-    poses = target.snapshot.world_from_body[ceilings]
-    own = np.einsum("nij,ni->nj", poses[:, :3, :3], eye - poses[:, :3, 3])[:, :2]
-    low, high = target.boxes[ceilings, 0, :2], target.boxes[ceilings, 1, :2]
-    return bool(ceilings) and not ((low <= own) & (own <= high)).all(axis=1).any()
+    return bool(ceilings) and not _between_sides(target, eye)[ceilings, :2].all(axis=1).any()
 
 
 def _in_boxes(target: Target, point: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return (N,) in which objects' boxes, each in its own axes, a point of the world lies."""
+    inside: NDArray[np.bool_] = np.asarray(_between_sides(target, point).all(axis=1))
+    return inside
+
+
+def _between_sides(target: Target, point: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return (N, 3) along which of its own axes each box has a point of the world between sides."""
     poses = target.snapshot.world_from_body
     own = np.einsum("nij,ni->nj", poses[:, :3, :3], point - poses[:, :3, 3])
-    low, high = target.boxes[:, 0], target.boxes[:, 1]
-    inside: NDArray[np.bool_] = ((low <= own) & (own <= high)).all(axis=1)
-    return inside
+    between: NDArray[np.bool_] = (target.boxes[:, 0] <= own) & (own <= target.boxes[:, 1])
+    return between
 
 
 def between_deg(first: float, second: float) -> float:
