@@ -109,8 +109,8 @@ def bounced_radiance(
     for _ in range(bounces):
         before, arriving = arriving, np.zeros_like(start)
 
-        def hand_on(first: int, end: int, arriving: Floats = arriving) -> None:
-            _hand_on(ends, sources, radiance, arriving, first, end)
+        def hand_on(begin: int, end: int, arriving: Floats = arriving) -> None:
+            _hand_on(ends, sources, radiance, arriving, begin, end)
 
         in_chunks(hand_on, patches.count, CHUNK_PATCHES, workers)
         radiance[:, :channels] = start + share * arriving
