@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from geometry_msgs.msg import Vector3
@@ -14,8 +13,8 @@ from sailenv_msgs.srv import ApplyWrench, GetMoverVelocity, SetMoverBody, Step
 from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.rigid_body import RigidBody
+from tests.support.probed_scene import probed_scene
 from tests.support.ros_probe import Probe
-from tests.support.sim_node_process import NodeProcess
 
 NAMESPACE = "/body_services"
 
@@ -34,10 +33,7 @@ objects:
 @pytest.fixture(scope="module")
 def probe(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Probe]:
     """A participant beside a lockstep simulator of a ball before a wall."""
-    path: Path = tmp_path_factory.mktemp("scenes") / "ball.yaml"
-    path.write_text(SCENE, encoding="utf-8")
-    process = NodeProcess(NAMESPACE, mode="lockstep", scene=str(path))
-    with process, Probe(NAMESPACE) as probe:
+    with probed_scene(tmp_path_factory.mktemp("scenes"), SCENE, NAMESPACE) as probe:
         yield probe
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from sensor_msgs.msg import JointState
@@ -13,8 +12,8 @@ from sailenv_msgs.srv import GetJoints, SetJointPosition, Step
 from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest
 from tests.support.plain_doors import SCENE
+from tests.support.probed_scene import probed_scene
 from tests.support.ros_probe import Probe
-from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -25,10 +24,7 @@ NAMESPACE = "/joint_services"
 @pytest.fixture(scope="module")
 def probe(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Probe]:
     """A participant beside a lockstep simulator of a cabinet."""
-    path: Path = tmp_path_factory.mktemp("scenes") / "joints.yaml"
-    path.write_text(SCENE, encoding="utf-8")
-    process = NodeProcess(NAMESPACE, mode="lockstep", scene=str(path))
-    with process, Probe(NAMESPACE) as probe:
+    with probed_scene(tmp_path_factory.mktemp("scenes"), SCENE, NAMESPACE) as probe:
         yield probe
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from geometry_msgs.msg import Point
@@ -22,8 +21,8 @@ from sailenv_ros import Agent
 from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.look_at import LookAt
+from tests.support.probed_scene import probed_scene
 from tests.support.ros_probe import Probe
-from tests.support.sim_node_process import NodeProcess
 
 pytestmark = pytest.mark.ros
 
@@ -44,10 +43,7 @@ agents:
 @pytest.fixture(scope="module")
 def probe(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Probe]:
     """A participant beside a lockstep simulator of a ball that drifts."""
-    path: Path = tmp_path_factory.mktemp("scenes") / "drift.yaml"
-    path.write_text(SCENE, encoding="utf-8")
-    process = NodeProcess(NAMESPACE, mode="lockstep", scene=str(path))
-    with process, Probe(NAMESPACE) as probe:
+    with probed_scene(tmp_path_factory.mktemp("scenes"), SCENE, NAMESPACE) as probe:
         yield probe
 
 
