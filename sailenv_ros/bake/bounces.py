@@ -76,6 +76,7 @@ def bounced_radiance(
     patches: Patches,
     seen: NDArray[np.int32],
     valid: NDArray[np.bool_],
+    stands_in: NDArray[np.int32],
     first: Floats,
     albedo: Floats,
     bounces: int,
@@ -90,6 +91,8 @@ def bounced_radiance(
         many only some count, one after another: see `ray_patterns.in_turns`.
     valid : (N,) bool
         Texels inside of something know nothing.
+    stands_in : (N,) int32
+        Which texel's light rays to each texel meet; see `denoise.stand_ins`.
     first : (N, C) float32
         Radiance of each texel by what arrives straight and what it emits.
     albedo : (N, 3) float32
@@ -100,7 +103,8 @@ def bounced_radiance(
     order = np.argsort(patches.of_texel, kind="stable")
     members = order[valid[order]].astype(np.int32)
     bounds = np.searchsorted(patches.of_texel[members], np.arange(patches.count + 1))
-    ends, sources = _sources_of(members, bounds, seen, patches)
+    met = patches.of_texel[stands_in]
+    ends, sources = _sources_of(members, bounds, seen, met)
     # Padded, so that channels are added up in blocks of a fixed size.
     radiance = np.zeros((patches.count, -(-channels // BLOCK) * BLOCK), np.float32)
     radiance[:, :channels] = start
@@ -126,17 +130,17 @@ def _sources_of(
     members: NDArray[np.int32],
     bounds: NDArray[np.intp],
     seen: NDArray[np.int32],
-    patches: Patches,
+    met: NDArray[np.int32],
 ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
     """Return (count + 1,) where the rays of each patch end in a list, and which patches they met.
 
-    Rays that met nothing have -1.
+    `met` is the patch of each texel; rays that met nothing have -1.
     """
     size = np.diff(bounds)
     turns = np.clip(size, 1, max(seen.shape[1] // FEWEST_RAYS, 1))
     ends = np.concatenate([[0], np.cumsum(size * (seen.shape[1] // turns))]).astype(np.int64)
     sources = np.empty(int(ends[-1]), np.int32)
-    _find_sources(members, bounds, seen, patches.of_texel, turns, ends, sources)
+    _find_sources(members, bounds, seen, met, turns, ends, sources)
     return ends, sources
 
 

@@ -13,7 +13,7 @@ from sailenv_ros.bake.rays import in_chunks
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 
-__all__ = ["dilated", "denoised"]
+__all__ = ["denoised", "dilated", "stand_ins"]
 
 Floats = NDArray[np.float32]
 
@@ -21,6 +21,9 @@ CHUNK_TEXELS = 32_768
 
 DILATIONS = 12
 """How many texels light is dilated into what lies inside of other things."""
+
+STAND_INS = 2
+"""How many texels rays that meet what lies inside of other things find light beside it."""
 
 
 def denoised(
@@ -71,6 +74,61 @@ def dilated(
             unknown, before, known, values,
         )  # fmt: skip
     return values
+
+
+def stand_ins(
+    texels: Texels, owner: NDArray[np.int32], valid: NDArray[np.bool_]
+) -> NDArray[np.int32]:
+    """Return (N,) int32: which texel has the light that rays to each one meet, mostly its own.
+
+    The middle of a texel may lie inside of other things though a corner of it is seen: along the
+    edge of a ceiling that goes on above the walls. Light knows nothing of such a texel; its nearest
+    neighbour of the same surface stands for it. One that has none near stands for itself.
+
+    Parameters
+    ----------
+    owner : (N,) int32
+        The instance of each texel.
+    valid : (N,) bool
+        False inside of other things.
+    """
+    found = np.arange(texels.count, dtype=np.int32)
+    known = valid.copy()
+    for _ in range(STAND_INS):
+        unknown = np.flatnonzero(~known).astype(np.int32)
+        before = known.copy()
+        _find_stand_ins(
+            texels.index, texels.rows, texels.columns, owner, texels.faces, texels.positions,
+            unknown, before, known, found,
+        )  # fmt: skip
+    return found
+
+
+@numba.njit(cache=True, nogil=True)
+def _find_stand_ins(  # type: ignore[no-untyped-def]
+    index, rows, columns, owner, faces, positions, unknown, before, known, found
+):
+    height, width = index.shape
+    for place in range(len(unknown)):
+        k = unknown[place]
+        nearest = np.inf
+        for down in range(-1, 2):
+            for right in range(-1, 2):
+                row, column = rows[k] + down, columns[k] + right
+                if row < 0 or row >= height or column < 0 or column >= width:
+                    continue
+                other = index[row, column]
+                if other < 0 or not before[other] or owner[other] != owner[k]:
+                    continue
+                alike = 0.0
+                far2 = 0.0
+                for c in range(3):
+                    alike += faces[other, c] * faces[k, c]
+                    far2 += (positions[found[other], c] - positions[k, c]) ** 2
+                if alike > 0.5 and far2 < nearest:
+                    nearest = far2
+                    known[k] = True
+                    found[k] = found[other]
 
 
 @numba.njit(cache=True, nogil=True)

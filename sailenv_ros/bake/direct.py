@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.area_light import form_factors
 from sailenv_ros.bake.light_shapes import LAMP_RADIUS_M, SUN_DISC_RADIUS, SUN_RADIUS, area_sides
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import NEVER, RayScene
@@ -115,8 +116,14 @@ def arriving(
         free = _free(scene, points, samples, wanted)
     else:
         free = np.where(wanted, known[:, None], np.float32(0.0))
-    light_on = samples.irradiance * np.maximum(cosine, 0.0) * free
-    arrives = light_on.mean(axis=1, dtype=np.float64) / math.pi
+    power = (samples.irradiance * np.maximum(cosine, 0.0)).astype(np.float64)
+    arrives = (power * free).mean(axis=1) / math.pi
+    if light.type == "area":
+        # Samples tell the share that arrives of what the formula knows, as in Heitz, Hill and
+        # McGuire 2018, "Combining analytic direct illumination and stochastic shadows".
+        whole = power.mean(axis=1) / math.pi
+        share = arrives / np.maximum(whole, 1e-30)
+        arrives = form_factors(light, points.positions, points.normals) * share
     return arrives.astype(np.float32), free.mean(axis=1, dtype=np.float64).astype(np.float32)
 
 

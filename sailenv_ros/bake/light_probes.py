@@ -9,6 +9,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.area_light import solid_angles
 from sailenv_ros.bake.direct import samples_of
 from sailenv_ros.bake.gather import BACK, Surroundings
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
@@ -110,6 +111,10 @@ def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Fl
         samples.lengths.reshape(-1),
     ).reshape(-1, count)
     power = samples.irradiance * free
+    if light.type == "area":
+        # A sample may be near; of the whole the formula knows how much arrives.
+        whole = np.maximum(samples.irradiance.mean(axis=1), 1e-30)
+        power *= (solid_angles(light, positions) / whole)[:, None]
     length = np.maximum(np.linalg.norm(samples.towards, axis=2, keepdims=True), 1e-9)
     arriving = np.empty((len(positions), 4), dtype=np.float32)
     arriving[:, 0] = power.mean(axis=1) / (4.0 * math.pi)

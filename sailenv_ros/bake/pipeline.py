@@ -160,6 +160,7 @@ class _Bake:
             emission=emission_of(geometry, layout, texels),
             glows=self._glows(geometry, texels),
             texels=texels,
+            owner=geometry.owner[texels.triangle],
         )
 
     def _glows(self, geometry: StaticGeometry, texels: Texels) -> dict[str, Floats]:

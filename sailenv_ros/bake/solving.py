@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from sailenv_ros.bake.bounces import Patches, bounced_radiance
+from sailenv_ros.bake.denoise import stand_ins
 from sailenv_ros.bake.direct import Points, arriving, visible_range
 from sailenv_ros.bake.gather import BACK, Surroundings, seen_from, surfaces_light
 from sailenv_ros.bake.ray_patterns import in_turns, net
@@ -92,6 +93,8 @@ class Samples:
         What points emit besides by a light of intensity 1, by its name: shades of lamps.
     texels : Texels or None
         The points' places in a map; None if neighbours are not near to each other.
+    owner : (N,) int32 or None
+        The instance of each texel; None like `texels`.
     """
 
     around: Surroundings
@@ -101,6 +104,7 @@ class Samples:
     emission: Floats
     glows: Mapping[str, Floats] = field(default_factory=dict)
     texels: Texels | None = None
+    owner: NDArray[np.int32] | None = None
 
     @property
     def count(self) -> int:
@@ -134,7 +138,7 @@ class Solver:
     lights : list of SolvedLight
         The surroundings first.
     radiance : (N, 3 L) float32
-        What each point sends out, light by light.
+        What rays to each point meet, light by light: what it sends out, or its stand-in does.
     bounced : (N, 3 L) float32
         Irradiance / pi by way of other surfaces and from the sky: the mean of all passes so far.
     """
@@ -178,6 +182,7 @@ class Solver:
         self._look(keep, 0, self._stages.begin("surroundings", weights[0]))
         self._passes = 1
         valid = self.valid
+        stands_in = self._stand_ins(valid)
         self._outside = self._backs <= SURELY_INSIDE
         for light in self._given:
             report = self._stages.begin(light.name, weights[1] / len(self._given))
@@ -193,10 +198,11 @@ class Solver:
         )
         first[~valid] = 0.0
         self.radiance = bounced_radiance(
-            samples.patches, seen, valid, first, albedo, settings.bounces,
+            samples.patches, seen, valid, stands_in, first, albedo, settings.bounces,
             self._stages.workers,
         )  # fmt: skip
         self.radiance[~valid] = 0.0
+        self.radiance = self.radiance[stands_in]
         self.bounced = np.empty_like(first)
 
         def gather(start: int, end: int) -> None:
@@ -204,6 +210,12 @@ class Solver:
             self.bounced[start:end, :3] += sky[start:end]
 
         self._stages.run(gather, samples.count, settings.pass_rays)
+
+    def _stand_ins(self, valid: NDArray[np.bool_]) -> NDArray[np.int32]:
+        texels, owner = self._samples.texels, self._samples.owner
+        if texels is None or owner is None:
+            return np.arange(self._samples.count, dtype=np.int32)
+        return stand_ins(texels, owner, valid)
 
     def _sent_straight(self, solved: SolvedLight) -> Floats:
         """Return (N, 3): what points send out by what arrives straight, and as the light's lamp."""

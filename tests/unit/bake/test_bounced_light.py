@@ -90,6 +90,31 @@ def test_a_furnace_glows_alike_everywhere(albedo: float) -> None:
     assert np.abs(probes[..., 1:, :]).max() < 0.05 * expected.max()
 
 
+def test_a_furnace_glows_in_its_edges_too() -> None:
+    """Floor and ceiling go on behind the walls, in texels that are half in the room and half not.
+
+    Their middles lie inside of the walls, where no light is known. Rays from the walls' edges, of
+    which half meet these texels, once found them black.
+    """
+    look = {**sending(grey(0.5)), "emission": (1.0, 1.0, 1.0)}
+    inner, thick = 1.0, 0.237
+    outer = 2 * (inner + thick)
+    slab = model_of(box_mesh((outer, outer, thick)), **look)
+    long = model_of(box_mesh((thick, outer, 2 * inner)), **look)
+    short = model_of(box_mesh((2 * inner, thick, 2 * inner)), **look)
+    away = inner + thick / 2
+    walls = [Thing(long, Pose((x, 0.0, 0.0))) for x in (-away, away)]
+    walls += [Thing(short, Pose((0.0, y, 0.0))) for y in (-away, away)]
+    things = [Thing(slab, Pose((0.0, 0.0, z))) for z in (-away, away)] + walls
+    snapshot = still(things, lights=())
+    baked = bake(snapshot, settings=COARSE)
+    for wall in range(3, 7):
+        points, bounced = read(baked, wall, snapshot, baked.layers[0].bounced, steps=40)
+        inside = (np.abs(points) < inner + 1e-3).all(axis=1)
+        assert inside.sum() > 100
+        np.testing.assert_allclose(bounced[inside], 2.0, rtol=0.04)
+
+
 def test_what_emits_does_so_in_the_pattern_of_its_picture() -> None:
     """Walls of which a quarter of the picture is white light a black box with a quarter."""
     picture = np.zeros((64, 64, 4), np.uint8)
