@@ -14,6 +14,7 @@ for. Needs PyTorch, OpenCV, SciPy, Pillow and matplotlib; nothing of this packag
 from __future__ import annotations
 
 import argparse
+import ctypes
 import importlib
 import importlib.abc
 import importlib.machinery
@@ -47,6 +48,10 @@ HORN_SCHUNCK = {"a": "0.5", "b": "0.5", "c": "1"}
 """Weights of smoothness with 200 iterations from nothing, and with a warm start for C."""
 
 
+M_MMAP_THRESHOLD = -3
+"""What glibc's `mallopt` calls the size from which a block is given back when it is freed."""
+
+
 class _StandIns(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     """Imports whatever `UNUSED` names as something that takes every use."""
 
@@ -78,6 +83,9 @@ def main() -> None:
     sys.meta_path.insert(0, _StandIns())
     sys.path.insert(0, str(clone))
     vars(np).setdefault("bool", bool)  # gone from some versions
+    # Their small matrices, one a frame, lie between large pictures on the heap, which could never
+    # shrink then: 10 MB a frame.
+    ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 1 << 16)
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
         os.mkdir("data")
