@@ -219,7 +219,10 @@ def _showing(mesh: RawMesh, material: Material, what: str) -> tuple[RawMesh, Mat
     # Who looks against x has y to the right.
     places = ((mesh.positions - low) / size)[:, 1:]
     ratio = float(size[1] / np.hypot(size[0], size[2]))
-    picture = desktop_picture(0, ratio) if what == "desktop" else landscape_picture(5, ratio)
+    if what == "desktop":
+        picture = desktop_picture(0, ratio)
+    else:
+        picture = landscape_picture(5, ratio, grain=0.0)
     shown = dataclasses.replace(
         material, base_colour=(*SCREEN_BLACK, 1.0), base_colour_texture=picture
     )

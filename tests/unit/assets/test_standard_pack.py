@@ -145,6 +145,8 @@ def test_leaves_are_seen_from_both_sides(assets: dict[str, Asset]) -> None:
         ("sink_01", {"tap": 1}),
         ("pencil_cup_01", {"pencil": 1, "pen": 2}),
         ("toothbrush_cup_01", {"toothbrush": 2}),
+        ("cake_01", {"cake": 1, "fork": 1}),
+        ("cup_03", {"spoon": 1}),
     ],
 )
 def test_what_annotators_would_label_apart_is_a_part(

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from functools import partial
 
 from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.standard.handmade.airliner import airliner
 from sailenv_ros.assets.standard.handmade.clutter import CLUTTER
 from sailenv_ros.assets.standard.handmade.devices import (
     computer,
@@ -20,6 +21,7 @@ from sailenv_ros.assets.standard.handmade.devices import (
     whiteboard,
 )
 from sailenv_ros.assets.standard.handmade.paintings import painting
+from sailenv_ros.assets.standard.handmade.rackets import tennis_racket
 from sailenv_ros.assets.standard.handmade.stationery import books, mirror, notebook, pen
 from sailenv_ros.assets.standard.handmade.textiles import (
     cushion,
@@ -52,6 +54,8 @@ HANDMADE: dict[str, Callable[[], list[RawPart]]] = {
     "rug_striped": partial(rug, 1.8, 1.2, "striped"),
     "mirror": partial(mirror, 0.60, 0.80),
     **CLUTTER,
+    "airliner": airliner,
+    "tennis_racket": tennis_racket,
     "stove": stove,
     "monitor": partial(monitor, 0.54, 0.32, 1),
     "wide_monitor": partial(monitor, 0.71, 0.33, 2),

@@ -62,8 +62,8 @@ def _canvas_noise(
     return np.asarray(cv2.resize(coarse, shape[::-1], interpolation=cv2.INTER_CUBIC))
 
 
-def landscape_picture(number: int, aspect: float) -> Texture:
-    """Hills behind hills under an evening sky."""
+def landscape_picture(number: int, aspect: float, grain: float = 0.025) -> Texture:
+    """Hills behind hills under an evening sky; `grain` is the canvas's, 0 for a screen."""
     generator = np.random.default_rng(number)
     rows, columns = 384, int(384 * aspect)
     v = np.linspace(0.0, 1.0, rows)[:, None, None]
@@ -81,7 +81,7 @@ def landscape_picture(number: int, aspect: float) -> Texture:
             ridge = ridge + 0.06 / 1.9**octave * np.sin(6.28 * cycles * x + phase)
         below = np.linspace(0.0, 1.0, rows)[:, None] > ridge[None]
         picture[below] = far + (near - far) * share
-    picture += 0.025 * _canvas_noise(generator, picture.shape[:2], 3.0)[..., None]
+    picture += grain * _canvas_noise(generator, picture.shape[:2], 3.0)[..., None]
     return _texture(picture)
 
 
