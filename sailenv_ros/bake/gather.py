@@ -7,7 +7,8 @@ balance heuristic (Veach and Guibas 1995): neither far nor near windows make noi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numba
 import numpy as np
@@ -15,11 +16,13 @@ from numpy.typing import NDArray
 
 from sailenv_ros.bake.back_to_back import BackToBack
 from sailenv_ros.bake.direct import LIFT_M, Points
+from sailenv_ros.bake.emitters import chance_weights, choice_weights, towards_emitter
+from sailenv_ros.bake.ray_patterns import net
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
 from sailenv_ros.bake.sampling import hemisphere_rays
 from sailenv_ros.bake.sky import sky_at
 
-__all__ = ["BACK", "NOTHING", "Seen", "Surroundings", "seen_from", "surfaces_light"]
+__all__ = ["BACK", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from", "surfaces_light"]
 
 Floats = NDArray[np.float32]
 
@@ -28,6 +31,9 @@ NOTHING = -1
 
 BACK = -2
 """Stands for the back of a surface that has none: such light is lost."""
+
+EMITTER_RAYS = 4
+"""From each point to each emitter; texels of a tile of 4 by 4 use different ones."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -47,6 +53,8 @@ class Surroundings:
         Texels of the map.
     sky : (H, W, 3) float32
     panes : (P, 4, 3) float32
+    emitters : (E, 4) float32
+        Small things that shine; see `emitters_of`.
     """
 
     scene: RayScene
@@ -57,6 +65,7 @@ class Surroundings:
     index: NDArray[np.int32]
     sky: Floats
     panes: Floats
+    emitters: Floats = field(default_factory=lambda: np.zeros((0, 4), np.float32))
 
     def transmittance(
         self, texels: NDArray[np.int32], origins: Floats, directions: Floats
@@ -80,6 +89,28 @@ class Surroundings:
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Looks:
+    """What is added to the light of points for small things that shine.
+
+    Attributes
+    ----------
+    point : (R,) int32
+    texel : (R,) int32
+        What was seen from it.
+    weight : (R,) float32
+        What it counts; below 0 where another ray counts already.
+    """
+
+    point: NDArray[np.int32]
+    texel: NDArray[np.int32]
+    weight: Floats
+
+    def add(self, radiance: Floats, light: Floats) -> None:
+        """Add (N, C) irradiance / pi to points."""
+        _add_looks(self.point, self.texel, self.weight, radiance, light)
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Seen:
     """What points see of the half spaces before them.
 
@@ -91,11 +122,13 @@ class Seen:
         Irradiance / pi that comes straight from the sky.
     closeness : (N,) float32
         Mean of one over the distances of what is seen [1/m].
+    looks : Looks
     """
 
     texels: NDArray[np.int32]
     sky: Floats
     closeness: Floats
+    looks: Looks
 
 
 def seen_from(
@@ -126,7 +159,8 @@ def seen_from(
     for number in range(len(around.panes)):
         _look_through(around, points, lifted, number, window_pattern, rays, sky)
     near = np.reciprocal(np.maximum(hits.distance.reshape(count, rays), np.float32(1e-3)))
-    return Seen(texels=texels, sky=sky, closeness=near.mean(axis=1))
+    looks = _looks(around, points, lifted, directions, texels)
+    return Seen(texels=texels, sky=sky, closeness=near.mean(axis=1), looks=looks)
 
 
 def surfaces_light(texels: NDArray[np.int32], radiance: Floats) -> Floats:
@@ -142,6 +176,44 @@ def surfaces_light(texels: NDArray[np.int32], radiance: Floats) -> Floats:
     light = np.zeros((len(texels), radiance.shape[1]), dtype=np.float32)
     _surfaces_light(texels, radiance, light)
     return light
+
+
+def _looks(
+    around: Surroundings, points: Points, lifted: Floats, directions: Floats, texels: NDArray[Any]
+) -> Looks:
+    """Look at the emitters, and find which rays in all directions lie in their cones."""
+    found: list[tuple[NDArray[np.int32], NDArray[np.int32], Floats]] = []
+    lit = points.positions, points.normals
+    if len(around.emitters):
+        room = texels.size // 16
+        while not found:
+            point, texel = np.empty((2, room), np.int32)
+            weight = np.empty(room, np.float32)
+            count = chance_weights(
+                *lit, around.emitters, directions, texels, EMITTER_RAYS, point, texel, weight
+            )
+            if count <= room:
+                found.append((point[:count], texel[:count], weight[:count]))
+            room = count
+    pattern = net(EMITTER_RAYS)
+    # Of a net of 2 by 2, steps of a quarter would lean to one side of its cells.
+    shifts = points.shifts + np.float32(0.125)
+    for emitter in around.emitters:
+        point = np.empty(len(lifted) * len(pattern), np.int32)
+        towards = np.empty((len(point), 3), np.float32)
+        count = towards_emitter(
+            *lit, points.faces, shifts, emitter, pattern, point, towards
+        )  # fmt: skip
+        point, towards = point[:count], towards[:count]
+        met = around.texels_hit(around.scene.hits(lifted[point], towards), towards)
+        weight = np.empty(count, np.float32)
+        choice_weights(
+            *lit, around.emitters, point, towards, len(pattern), texels.shape[1], weight
+        )  # fmt: skip
+        found.append((point[met >= 0], met[met >= 0], weight[met >= 0]))
+    none = np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.float32)
+    point, texel, weight = (np.concatenate(arrays) for arrays in zip(none, *found, strict=True))
+    return Looks(point=point, texel=texel, weight=weight)
 
 
 def _look_through(
@@ -246,6 +318,13 @@ def _surfaces_light(texels, radiance, light):  # type: ignore[no-untyped-def]
                     light[k, c] += radiance[texel, c]
         for c in range(light.shape[1]):
             light[k, c] /= rays
+
+
+@numba.njit(cache=True, nogil=True)
+def _add_looks(point, texel, weight, radiance, light):  # type: ignore[no-untyped-def]
+    for ray in range(len(point)):
+        for c in range(light.shape[1]):
+            light[point[ray], c] += weight[ray] * radiance[texel[ray], c]
 
 
 @numba.njit(cache=True, nogil=True)

@@ -16,6 +16,7 @@ from sailenv_ros.bake.back_to_back import back_to_back_faces
 from sailenv_ros.bake.bounces import Patches, patches_of
 from sailenv_ros.bake.denoise import denoised, dilated
 from sailenv_ros.bake.direct import Points
+from sailenv_ros.bake.emitters import emitters_of
 from sailenv_ros.bake.facing import facing_the_light
 from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.bake.gather import Surroundings
@@ -139,6 +140,10 @@ class _Bake:
             sky=sky_picture(contents.environment),
             panes=panes(geometry),
         )
+        emission = emission_of(geometry, layout, texels)
+        glows = self._glows(geometry, texels)
+        shining = [emission, *glows.values()]
+        self._around = replace(self._around, emitters=emitters_of(geometry, texels, shining))
         points = Points(
             positions=texels.positions,
             normals=texels.normals,
@@ -157,8 +162,8 @@ class _Bake:
             points=points,
             patches=patches_of(geometry, texels),
             albedo=albedo_of(geometry, layout, texels),
-            emission=emission_of(geometry, layout, texels),
-            glows=self._glows(geometry, texels),
+            emission=emission,
+            glows=glows,
             texels=texels,
             owner=geometry.owner[texels.triangle],
         )

@@ -16,7 +16,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from sailenv_ros.bake.bounces import Patches, bounced_radiance
 from sailenv_ros.bake.denoise import stand_ins
 from sailenv_ros.bake.direct import Points, arriving, visible_range
-from sailenv_ros.bake.gather import BACK, Surroundings, seen_from, surfaces_light
+from sailenv_ros.bake.gather import BACK, Looks, Seen, Surroundings, seen_from, surfaces_light
 from sailenv_ros.bake.ray_patterns import in_turns, net
 from sailenv_ros.bake.rays import in_chunks
 from sailenv_ros.bake.sampling import pass_shift
@@ -176,8 +176,11 @@ class Solver:
         seen = np.empty((samples.count, settings.pass_rays), np.int32)
         sky = np.empty((samples.count, 3), np.float32)
 
-        def keep(chosen: slice, texels: NDArray[np.int32], light: Floats) -> None:
-            seen[chosen], sky[chosen] = texels, light
+        looks: dict[int, Looks] = {}
+
+        def keep(chosen: slice, found: Seen) -> None:
+            seen[chosen], sky[chosen] = found.texels, found.sky
+            looks[chosen.start] = found.looks
 
         self._look(keep, 0, self._stages.begin("surroundings", weights[0]))
         self._passes = 1
@@ -207,6 +210,7 @@ class Solver:
 
         def gather(start: int, end: int) -> None:
             self.bounced[start:end] = surfaces_light(seen[start:end], self.radiance)
+            looks[start].add(self.radiance, self.bounced[start:end])
             self.bounced[start:end, :3] += sky[start:end]
 
         self._stages.run(gather, samples.count, settings.pass_rays)
@@ -229,20 +233,21 @@ class Solver:
         self._passes += 1
         share = np.float32(1.0 / self._passes)
 
-        def add(chosen: slice, texels: NDArray[np.int32], sky: Floats) -> None:
-            light = surfaces_light(texels, self.radiance)
-            light[:, :3] += sky
+        def add(chosen: slice, found: Seen) -> None:
+            light = surfaces_light(found.texels, self.radiance)
+            found.looks.add(self.radiance, light)
+            light[:, :3] += found.sky
             self.bounced[chosen] += (light - self.bounced[chosen]) * share
 
         self._look(add, self._passes - 1, report)
 
     def _look(
         self,
-        take: Callable[[slice, NDArray[np.int32], Floats], None],
+        take: Callable[[slice, Seen], None],
         number: int,
         report: Callable[[float], None],
     ) -> None:
-        """Cast the rays of a pass; hand over which points they met, and the sky's light."""
+        """Cast the rays of a pass; hand over what they found."""
         samples, settings = self._samples, self._settings
         pattern, window_pattern = in_turns(net(settings.pass_rays)), net(settings.window_rays)
         shift = pass_shift(number)
@@ -253,7 +258,7 @@ class Solver:
             seen = seen_from(samples.around, points, pattern, window_pattern)
             self._closeness[chosen] += seen.closeness
             self._backs[chosen] += np.mean(seen.texels == BACK, axis=1)
-            take(chosen, seen.texels, seen.sky)
+            take(chosen, seen)
 
         self._stages.run(look, samples.count, settings.pass_rays, report)
 
