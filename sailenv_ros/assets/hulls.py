@@ -24,6 +24,15 @@ MAX_HULLS = 24
 THINNEST_M = 0.002
 """Flat pieces are given this thickness: a hull without volume stops nothing."""
 
+LINES = 50
+"""Vertical lines along each side that tell where a surface is."""
+
+FEWEST_LINES = 8
+"""A part whose top fewer lines meet stays where it is."""
+
+MAX_SHIFT_M = 0.05
+"""A part whose top is farther from the surface than this spans a hollow, and stays [m]."""
+
 Floats = NDArray[np.float64]
 
 
@@ -88,7 +97,66 @@ def convex_parts(mesh: RawMesh, *, threshold: float = 0.08) -> tuple[ConvexShape
         seed=0,
     )
     # Open meshes are closed by a skin around them, which stands out a little.
-    return tuple(convex_hull(np.clip(np.asarray(points), low, high)) for points, _ in parts)
+    clouds = [np.clip(np.asarray(points), low, high) for points, _ in parts]
+    return tuple(convex_hull(np.clip(cloud, low, high)) for cloud in _on_surface(clouds, mesh))
+
+
+def _on_surface(clouds: Sequence[Floats], mesh: RawMesh) -> list[Floats]:
+    """Return the parts with their tops where the surface is, by the median over vertical lines.
+
+    What lies on a seat would hang in the air or sink into it otherwise, by up to 3 cm on a bed.
+    """
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    sides = [np.linspace(low[axis], high[axis], LINES + 2)[1:-1] for axis in (0, 1)]
+    lines = np.stack(np.meshgrid(*sides), -1).reshape(-1, 2)
+    seen = _surface_heights(mesh, lines)
+    felt = np.stack([_top_heights(cloud, lines) for cloud in clouds])
+    topmost = np.where(np.isnan(felt), -np.inf, felt).argmax(axis=0)
+    moved = []
+    for k, cloud in enumerate(clouds):
+        gaps = (felt[k] - seen)[(topmost == k) & np.isfinite(felt[k]) & np.isfinite(seen)]
+        shift = float(np.median(gaps)) if len(gaps) >= FEWEST_LINES else 0.0
+        moved.append(cloud - [0.0, 0.0, shift if abs(shift) <= MAX_SHIFT_M else 0.0])
+    return moved
+
+
+def _surface_heights(mesh: RawMesh, lines: Floats) -> Floats:
+    """Return (N,) where vertical lines through (N, 2) points leave a mesh upwards, NaN if nowhere.
+
+    NaN, too, where its surface is steeper than 45 degrees.
+    """
+    a, b, c = (mesh.positions[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
+    ab, ac = b - a, c - a
+    area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+    normals = np.cross(ab, ac)
+    flat = np.abs(normals[:, 2]) > np.sqrt(0.5) * np.linalg.norm(normals, axis=1)
+    seen = np.abs(area) > 1e-12
+    a, ab, ac, area, flat = a[seen], ab[seen], ac[seen], area[seen], flat[seen]
+    heights = np.full(len(lines), np.nan)
+    for row, (x, y) in enumerate(lines):
+        u = ((x - a[:, 0]) * ac[:, 1] - (y - a[:, 1]) * ac[:, 0]) / area
+        v = (ab[:, 0] * (y - a[:, 1]) - ab[:, 1] * (x - a[:, 0])) / area
+        met = np.flatnonzero((u >= 0.0) & (v >= 0.0) & (u + v <= 1.0))
+        if len(met):
+            z = a[met, 2] + u[met] * ab[met, 2] + v[met] * ac[met, 2]
+            if flat[met[z.argmax()]]:
+                heights[row] = z.max()
+    return heights
+
+
+def _top_heights(cloud: Floats, lines: Floats) -> Floats:
+    """Return (N,) where vertical lines through (N, 2) points leave a hull, NaN where they miss."""
+    try:
+        planes = ConvexHull(cloud).equations
+    except QhullError:
+        return np.full(len(lines), np.nan)
+    level = -(lines @ planes[:, :2].T + planes[:, 3])
+    up, down = planes[:, 2] > 1e-9, planes[:, 2] < -1e-9
+    top = np.min(level[:, up] / planes[up, 2], axis=1)
+    bottom = np.max(level[:, down] / planes[down, 2], axis=1)
+    inside = (level[:, ~up & ~down] >= 0.0).all(axis=1)
+    heights: Floats = np.where(inside & (bottom <= top), top, np.nan)
+    return heights
 
 
 def _closed(mesh: RawMesh) -> RawMesh:

@@ -41,6 +41,9 @@ from sailenv_ros.model import AssetPart, ConvexShape, Material, ModelPart
 
 __all__ = ["PreparedAsset", "prepare"]
 
+CONCAVITY = 0.05
+"""CoACD's threshold for the pack; with the one of imports (0.08) hollows of seats are filled."""
+
 BASE_SHARE = 0.2
 
 FEWEST_TRIANGLES = 64
@@ -270,7 +273,7 @@ def _hulls(parts: Sequence[RawPart], entry: RecipeEntry) -> tuple[ConvexShape, .
     if entry.collision == "pieces":
         return hulls_of_pieces(mesh)
     if entry.collision == "convex":
-        return convex_parts(mesh)
+        return convex_parts(mesh, threshold=CONCAVITY)
     points = mesh.positions[np.unique(mesh.triangles)]
     if entry.collision == "hull":
         return (convex_hull(points),)
