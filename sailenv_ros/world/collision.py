@@ -37,6 +37,9 @@ _UNTURNED = (0.0, 0.0, 0.0, 1.0)
 
 _LISTS: dict[tuple[str, tuple[int, ...], bytes], list[Any]] = {}
 
+MAX_SHAPES = 16
+"""PyBullet silently leaves out what a compound has beyond (MAX_COMPOUND_COLLISION_SHAPES)."""
+
 _HULL_LOCK = threading.Lock()
 _HULL_FOLDERS: dict[tuple[int, str], Path] = {}
 """By process, so that a forked one takes its own."""
@@ -83,8 +86,22 @@ def build_collision(
         part["shapeType"] = part.pop("type")
         return int(client.createCollisionShape(**part))
     with _hull_folder() as folder:
+        if len(parts) > MAX_SHAPES:
+            parts = _joined(parts, name)
         files = [_hull_file(folder, part, name) for part in parts]
         return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
+
+
+def _joined(parts: Sequence[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    """Return parts with all hulls in one: several of one file are one shape to PyBullet."""
+    solids = [part for part in parts if "vertices" not in part]
+    hulls = [part for part in parts if "vertices" in part]
+    if any("indices" in part for part in hulls):
+        raise _hollow(name)
+    if len(solids) + bool(hulls) > MAX_SHAPES:
+        accepted = f"at most {MAX_SHAPES - 1} besides convex hulls"
+        raise InvalidRequest(f"collision shapes of {name!r}", len(solids), accepted)
+    return [*solids, {**hulls[0], "hulls": [part["vertices"] for part in hulls]}]
 
 
 def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str) -> dict[str, Any]:
@@ -178,17 +195,24 @@ def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:
     if "vertices" not in part:
         return ""
     if "indices" in part:
-        raise InvalidRequest(
-            f"collision shapes of {name!r}", "hollow geometry beside others", "hulls and solids"
-        )
-    points = part["vertices"]
-    lines = ["v " + " ".join(f"{coordinate:.9g}" for coordinate in point) for point in points]
-    # A hull needs no faces, but the reader keeps only points that faces name.
-    lines += [f"f 1 {corner} {corner + 1}" for corner in range(2, len(points))]
+        raise _hollow(name)
+    lines, first = [], 1
+    for number, points in enumerate(part.get("hulls", [part["vertices"]])):
+        lines.append(f"o {number}")
+        lines += ["v " + " ".join(f"{coordinate:.9g}" for coordinate in p) for p in points]
+        # A hull needs no faces, but the reader keeps only points that faces name.
+        end = first + len(points)
+        lines += [f"f {first} {corner} {corner + 1}" for corner in range(first + 1, end - 1)]
+        first = end
     text = ("\n".join(lines) + "\n").encode("ascii")
     path = folder / f"{hashlib.sha256(text).hexdigest()}.obj"
     path.write_bytes(text)
     return str(path)
+
+
+def _hollow(name: str) -> InvalidRequest:
+    what = f"collision shapes of {name!r}"
+    return InvalidRequest(what, "hollow geometry beside others", "hulls and solids")
 
 
 def _as_arrays(parts: list[dict[str, Any]]) -> dict[str, Any]:

@@ -74,6 +74,24 @@ def test_two_hulls_in_a_compound_are_scaled() -> None:
     assert heights == pytest.approx([3.0, 3.0], abs=0.15)
 
 
+@pytest.mark.parametrize("slabs", [0, 1, 15])
+def test_each_of_many_hulls_is_felt(slabs: int) -> None:
+    """PyBullet takes 16 shapes and leaves out the rest: forty hulls are all there, beside boxes."""
+    hulls = [ConvexShape(points=np.add(PYRAMID.points, (3.0 * k, 0.0, 0.0))) for k in range(40)]
+    below = [
+        BoxShape(half_extents_m=(0.5, 0.5, 0.1), centre_m=(3.0 * k, 5.0, 0.1)) for k in range(slabs)
+    ]
+    rays = [(3.0 * k, 0.0) for k in range(40)] + [(3.0 * k, 5.0) for k in range(slabs)]
+    expected = [1.0] * 40 + [0.2] * slabs
+    assert _hits([*below, *hulls], rays) == pytest.approx(expected, abs=0.06)
+
+
+def test_too_many_boxes_are_refused() -> None:
+    """None is left out silently."""
+    with pytest.raises(InvalidRequest, match="at most 15 besides convex hulls, got 17"):
+        _hits([SLAB] * 17, [])
+
+
 def test_hollow_geometry_stands_alone() -> None:
     hollow = TriangleShape(
         positions=PYRAMID.points, triangles=np.array([[0, 1, 4]], dtype=np.int32)
