@@ -105,27 +105,38 @@ def stand_ins(
 
 
 @numba.njit(cache=True, nogil=True)
+def _neighbour(index, row, column, owner, faces, known, k):  # type: ignore[no-untyped-def]
+    """Return the texel at a place of the map if it is known and of texel k's surface, else -1."""
+    height, width = index.shape
+    if row < 0 or row >= height or column < 0 or column >= width:
+        return -1
+    other = index[row, column]
+    if other < 0 or not known[other] or owner[other] != owner[k]:
+        return -1
+    alike = 0.0
+    for c in range(3):
+        alike += faces[other, c] * faces[k, c]
+    return other if alike > 0.5 else -1
+
+
+@numba.njit(cache=True, nogil=True)
 def _find_stand_ins(  # type: ignore[no-untyped-def]
     index, rows, columns, owner, faces, positions, unknown, before, known, found
 ):
-    height, width = index.shape
     for place in range(len(unknown)):
         k = unknown[place]
         nearest = np.inf
         for down in range(-1, 2):
             for right in range(-1, 2):
-                row, column = rows[k] + down, columns[k] + right
-                if row < 0 or row >= height or column < 0 or column >= width:
+                other = _neighbour(
+                    index, rows[k] + down, columns[k] + right, owner, faces, before, k
+                )
+                if other < 0:
                     continue
-                other = index[row, column]
-                if other < 0 or not before[other] or owner[other] != owner[k]:
-                    continue
-                alike = 0.0
                 far2 = 0.0
                 for c in range(3):
-                    alike += faces[other, c] * faces[k, c]
                     far2 += (positions[found[other], c] - positions[k, c]) ** 2
-                if alike > 0.5 and far2 < nearest:
+                if far2 < nearest:
                     nearest = far2
                     known[k] = True
                     found[k] = found[other]
@@ -178,7 +189,6 @@ def _denoise(  # type: ignore[no-untyped-def]
 def _dilate(  # type: ignore[no-untyped-def]
     index, rows, columns, owner, faces, unknown, before, known, values
 ):
-    height, width = index.shape
     channels = values.shape[1]
     total = np.empty(channels, np.float32)
     for place in range(len(unknown)):
@@ -187,16 +197,10 @@ def _dilate(  # type: ignore[no-untyped-def]
         found = 0
         for down in range(-1, 2):
             for right in range(-1, 2):
-                row, column = rows[k] + down, columns[k] + right
-                if row < 0 or row >= height or column < 0 or column >= width:
-                    continue
-                other = index[row, column]
-                if other < 0 or not before[other] or owner[other] != owner[k]:
-                    continue
-                alike = 0.0
-                for c in range(3):
-                    alike += faces[other, c] * faces[k, c]
-                if alike > 0.5:
+                other = _neighbour(
+                    index, rows[k] + down, columns[k] + right, owner, faces, before, k
+                )
+                if other >= 0:
                     found += 1
                     for c in range(channels):
                         total[c] += values[other, c]

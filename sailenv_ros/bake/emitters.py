@@ -13,6 +13,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.sampling import around_axis, shifted_point
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels
 
@@ -95,21 +96,12 @@ def towards_emitter(  # type: ignore[no-untyped-def]
         far = np.sqrt(d2)
         x, y, z = x / far, y / far, z / far
         edge = np.sqrt(1.0 - r2 / d2)
-        # Duff and others 2017, "Building an orthonormal basis, revisited".
-        sign = 1.0 if z >= 0.0 else -1.0
-        a = -1.0 / (sign + z)
-        b = x * y * a
         for m in range(len(pattern)):
-            u, v = pattern[m, 0] * cells, pattern[m, 1] * cells
-            left, low = np.floor(u), np.floor(v)
-            u, v = u - left + shifts[k, 0], v - low + shifts[k, 1]
-            u, v = (left + u - np.floor(u)) / cells, (low + v - np.floor(v)) / cells
+            u, v = shifted_point(pattern[m], shifts[k], cells)
             up = 1.0 - u * (1.0 - edge)
             out = np.sqrt(max(1.0 - up * up, 0.0))
             s, t = out * np.cos(2.0 * np.pi * v), out * np.sin(2.0 * np.pi * v)
-            dx = s * (1.0 + sign * x * x * a) + t * b + up * x
-            dy = s * sign * b + t * (sign + y * y * a) + up * y
-            dz = -s * sign * x - t * y + up * z
+            dx, dy, dz = around_axis(x, y, z, s, t, up)
             if dx * normals[k, 0] + dy * normals[k, 1] + dz * normals[k, 2] <= 0.0:
                 continue
             if dx * faces[k, 0] + dy * faces[k, 1] + dz * faces[k, 2] <= 0.0:

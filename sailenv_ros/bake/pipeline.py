@@ -130,6 +130,8 @@ class _Bake:
         layout = laid_out(geometry, settings, visible, stages.begin("surfaces", 0.14))
         texels = facing_the_light(geometry, scene, rasterised(geometry, layout), stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
+        emission = emission_of(geometry, layout, texels)
+        glows = self._glows(geometry, texels)
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -139,11 +141,8 @@ class _Bake:
             index=texels.index,
             sky=sky_picture(contents.environment),
             panes=panes(geometry),
+            emitters=emitters_of(geometry, texels, (emission, *glows.values())),
         )
-        emission = emission_of(geometry, layout, texels)
-        glows = self._glows(geometry, texels)
-        shining = [emission, *glows.values()]
-        self._around = replace(self._around, emitters=emitters_of(geometry, texels, shining))
         points = Points(
             positions=texels.positions,
             normals=texels.normals,

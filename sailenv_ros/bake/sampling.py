@@ -11,7 +11,14 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["hemisphere_rays", "pass_shift", "shifted", "tile_shift"]
+__all__ = [
+    "around_axis",
+    "hemisphere_rays",
+    "pass_shift",
+    "shifted",
+    "shifted_point",
+    "tile_shift",
+]
 
 Floats = NDArray[np.float32]
 
@@ -55,6 +62,30 @@ def shifted(pattern: Floats, shifts: Floats) -> Floats:
 
 
 @numba.njit(cache=True, nogil=True)
+def shifted_point(point, shift, cells):  # type: ignore[no-untyped-def]
+    """Return u, v: one point of a net moved within its own cell, as `shifted` does."""
+    u, v = point[0] * cells, point[1] * cells
+    left, low = np.floor(u), np.floor(v)
+    u, v = u - left + shift[0], v - low + shift[1]
+    return (left + u - np.floor(u)) / cells, (low + v - np.floor(v)) / cells
+
+
+@numba.njit(cache=True, nogil=True)
+def around_axis(ax, ay, az, x, y, z):  # type: ignore[no-untyped-def]
+    """Return a direction that is given about z, about a unit axis instead.
+
+    Duff and others 2017, "Building an orthonormal basis, revisited".
+    """
+    sign = 1.0 if az >= 0.0 else -1.0
+    a = -1.0 / (sign + az)
+    b = ax * ay * a
+    dx = x * (1.0 + sign * ax * ax * a) + y * b + z * ax
+    dy = x * sign * b + y * (sign + ay * ay * a) + z * ay
+    dz = -x * sign * ax - y * ay + z * az
+    return dx, dy, dz
+
+
+@numba.njit(cache=True, nogil=True)
 def hemisphere_rays(normals, faces, pattern, shifts, directions):  # type: ignore[no-untyped-def]
     """Fill in directions whose density is the cosine to the normal, over pi.
 
@@ -71,21 +102,12 @@ def hemisphere_rays(normals, faces, pattern, shifts, directions):  # type: ignor
     cells = np.sqrt(len(pattern))
     for k in range(len(normals)):
         nx, ny, nz = normals[k]
-        # Duff and others 2017, "Building an orthonormal basis, revisited".
-        sign = 1.0 if nz >= 0.0 else -1.0
-        a = -1.0 / (sign + nz)
-        b = nx * ny * a
         for m in range(len(pattern)):
-            u, v = pattern[m, 0] * cells, pattern[m, 1] * cells
-            left, low = np.floor(u), np.floor(v)
-            u, v = u - left + shifts[k, 0], v - low + shifts[k, 1]
-            u, v = (left + u - np.floor(u)) / cells, (low + v - np.floor(v)) / cells
+            u, v = shifted_point(pattern[m], shifts[k], cells)
             radius = np.sqrt(u)
             x, y = radius * np.cos(2.0 * np.pi * v), radius * np.sin(2.0 * np.pi * v)
             z = np.sqrt(max(1.0 - u, 0.0))
-            dx = x * (1.0 + sign * nx * nx * a) + y * b + z * nx
-            dy = x * sign * b + y * (sign + ny * ny * a) + z * ny
-            dz = -x * sign * nx - y * ny + z * nz
+            dx, dy, dz = around_axis(nx, ny, nz, x, y, z)
             below = dx * faces[k, 0] + dy * faces[k, 1] + dz * faces[k, 2]
             if below < 0.0:
                 dx -= 2.0 * below * faces[k, 0]
