@@ -35,6 +35,7 @@ from sailenv_ros.errors import (
 )
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.system.client_locks import ClientLock
+from sailenv_ros.system.inherited_dds import renew_inherited_dds
 from sailenv_ros.system.presence import present_simulator
 from sailenv_ros.system.transport import use_shared_memory_profile
 
@@ -77,6 +78,7 @@ class Connection:
         # By these the simulator knows whether we live; see `nodes/agent_leases.py`.
         name = f"client_{os.getpid()}_{uuid.uuid4().hex[:6]}"
         self._lock = ClientLock(name)
+        renew_inherited_dds()
         self._context = Context()
         # No arguments: those on this process's command line are not for us.
         rclpy.init(args=[], context=self._context, domain_id=domain_id)

@@ -515,38 +515,41 @@ def test_a_simulator_that_cannot_start_says_why() -> None:
 
 
 def test_forked_workers_make_agents_of_their_own(simulator: Agent) -> None:
-    """An inherited Agent refuses to work, one of the worker's own works, the parent's goes on."""
+    """An inherited Agent refuses to work; those of the workers work side by side with it."""
     code = """
 import multiprocessing, warnings
 from sailenv_ros import Agent
 from sailenv_ros.errors import SimulationClosed
 
-def work(inherited, answers):
+def work(inherited, all_are_here, answers):
     try:
         inherited.get_frame()
     except SimulationClosed as error:
         answers.put(str(error))
     inherited.close()
-    with Agent(width=64, height=48, namespace="/tested") as own:
-        answers.put(own.get_frame()["sequence"])
+    with Agent(width=64, height=48, namespace="/tested", start_timeout_s=20) as own:
+        all_are_here.wait(30)
+        answers.put(own.get_frame()["main"].shape)
 
 warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 on forks beside threads
 forking = multiprocessing.get_context("fork")
 answers = forking.Queue()
 with Agent(width=64, height=48, namespace="/tested") as agent:
     agent.get_frame()
-    workers = [forking.Process(target=work, args=(agent, answers)) for _ in range(2)]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join(60)
-        assert worker.exitcode == 0, worker.exitcode
-    assert agent.get_frame()["sequence"] == 2
-heard = sorted(str(answers.get(timeout=10)) for _ in range(4))
+    for _ in range(2):
+        job = (agent, forking.Barrier(2), answers)
+        workers = [forking.Process(target=work, args=job, daemon=True) for _ in range(2)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join(60)
+            assert worker.exitcode == 0, worker.exitcode
+        assert agent.get_frame()["main"].shape == (48, 64, 3)
+heard = sorted(str(answers.get(timeout=10)) for _ in range(8))
 print(heard)
 """
     told = "the simulation has ended: this process was forked; make an Agent of its own in it"
-    assert run_python(code) == f"{['1', '1', told, told]}\n"
+    assert run_python(code) == f"{['(48, 64, 3)'] * 4 + [told] * 4}\n"
 
 
 def test_the_first_example_runs(tmp_path: Path) -> None:
