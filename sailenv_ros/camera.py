@@ -179,7 +179,7 @@ class Camera:
         return replace(
             self,
             intrinsics=replace(lens, width=times * lens.width, height=times * lens.height),
-            picture=replace(self.picture, supersampling=1),
+            picture=replace(self.picture, supersampling=1, smooth_edges=False),
         )
 
     @cached_property
@@ -206,7 +206,7 @@ def require_drawable(intrinsics: CameraIntrinsics, picture: PictureSettings) -> 
         Naming what would be accepted for a picture of that size.
     """
     width, height, times = intrinsics.width, intrinsics.height, picture.supersampling
-    most = MAX_SIZE_PX // max(width, height)
+    most = max(MAX_SIZE_PX // max(width, height), 1)
     if times > most:
         accepted = (
             f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"

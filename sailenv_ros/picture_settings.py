@@ -46,7 +46,8 @@ class PictureSettings:
     occlusion_radius_m : float
         From how far away surfaces darken each other [m], 0.01 to 5.
     smooth_edges : bool
-        True if stair-steps are smoothed; a picture of several samples a pixel needs it not.
+        True if a pixel's light is that of all surfaces that it covers, not of what its centre
+        sees alone; a picture of several samples a pixel needs it not.
     supersampling : int
         The picture is drawn this many times as wide and as high, 1 to 4, and each pixel is the
         mean of the light of its samples.

@@ -71,7 +71,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--scenes", nargs="+", default=None, help="of views.yaml; all of them")
     parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
-    parser.add_argument("--samples", type=int, default=128, help="per pixel of the reference")
+    parser.add_argument("--samples", type=int, default=256, help="per pixel of the reference")
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
     parser.add_argument(
         "--supersampling", type=int, default=1, metavar="N", help="of ours; 1: as by default"

@@ -26,6 +26,8 @@ from sailenv_ros.render import annotate as ground_truth
 from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.finishing import Finisher
 from sailenv_ros.render.flat_mirrors import FlatMirrors, Window
+from sailenv_ros.render.half_pixels import half_pixel_camera
+from sailenv_ros.render.mirror_pictures import closer_window, reflect
 from sailenv_ros.snapshot import Observation, WorldSnapshot
 
 __all__ = ["NativeRenderer", "native_view"]
@@ -148,7 +150,7 @@ class NativeRenderer:
         if light is not None and not sampled:
             radiance = arrays["rgb"] = np.empty((height, width, 4), np.float16)
         self._drawing.picture(
-            native_view(camera),
+            native_view(camera, smooth_edges=camera.picture.smooth_edges),
             instances,
             table.opaque,
             table.glass,
@@ -192,7 +194,7 @@ class NativeRenderer:
         at_baked_pose = self._table.at_baked_pose(snapshot)
 
         def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
-            view = native_view(behind, window)
+            view = native_view(behind, window, smooth_edges=camera.picture.smooth_edges)
             size = int(view["height"][0]), int(view["width"][0])
             radiance = np.empty((*size, 4), np.float16)
             instances = self._table.instances(poses, at_baked_pose, only)
@@ -200,15 +202,21 @@ class NativeRenderer:
             self._drawing.picture(view, instances, opaque, _NO_GLASS, light, radiance=radiance)
             return radiance
 
-        surface = arrays["samples" if "samples" in arrays else "surface"]
-        if surface.shape[:2] != arrays["rgb"].shape[:2]:
-            surface = np.empty((*arrays["rgb"].shape[:2], 2), np.float32)
+        def surface_of(view: NDArray[np.void]) -> NDArray[np.float32]:
+            surface = np.empty((int(view["height"][0]), int(view["width"][0]), 2), np.float32)
             instances = self._table.instances(poses, at_baked_pose)
             opaque = self._table.opaque
-            self._drawing.picture(
-                native_view(camera), instances, opaque, _NO_GLASS, None, surface=surface
-            )
-        self._mirrors.reflect(mirrors, camera, arrays["rgb"], surface, look)
+            self._drawing.picture(view, instances, opaque, _NO_GLASS, None, surface=surface)
+            return surface
+
+        def samples(window: Window) -> NDArray[np.float32]:
+            return surface_of(native_view(half_pixel_camera(camera), closer_window(window)))
+
+        surface = arrays["samples" if "samples" in arrays else "surface"]
+        if surface.shape[:2] != arrays["rgb"].shape[:2]:
+            surface = surface_of(native_view(camera))
+        smoothed = camera.picture.smooth_edges
+        reflect(mirrors, camera, arrays["rgb"], surface, look, samples if smoothed else None)
 
     def _radiance(
         self,
@@ -245,7 +253,9 @@ class NativeRenderer:
         return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
 
 
-def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void]:
+def native_view(
+    camera: Camera, window: Window | None = None, *, smooth_edges: bool = False
+) -> NDArray[np.void]:
     """Return (1,) VIEW of a camera or of a window of it, as the native kernels read it."""
     lens = camera.intrinsics
     rows, columns = window or (slice(0, lens.height), slice(0, lens.width))
@@ -259,4 +269,5 @@ def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void
         far_m=lens.far_m,
         width=columns.stop - columns.start,
         height=rows.stop - rows.start,
+        smooth_edges=smooth_edges,
     )

@@ -1,7 +1,4 @@
-"""The kernel of pictures: from radiance to 8-bit sRGB with smooth edges.
-
-What it does stands in `render.tone_map` and `render.smooth_edges`.
-"""
+"""The kernel of pictures: from radiance to 8-bit sRGB; see `render.tone_map`."""
 
 from __future__ import annotations
 
@@ -15,7 +12,7 @@ __all__ = ["make_picture"]
 _KERNEL = Kernel(
     "make_picture",
     *("integer", "integer", "integer", "array", "array", "array", "array", "array", "number"),
-    *("integer", "integer", "array"),
+    "array",
 )
 
 
@@ -27,8 +24,6 @@ def make_picture(
     surface: NDArray[np.float32] | None,
     *,
     same_surface: float,
-    least_contrast: int,
-    reach_px: int,
     threads: int,
 ) -> NDArray[np.uint8]:
     """Make the picture.
@@ -42,14 +37,9 @@ def make_picture(
     visibility, inverse : arrays or None
         What `find_ambient_visibility` returns; None where all light arrives.
     surface : (H, W, 2) float32 or None
-        Depth [m] and instance id; needed beside `visibility`. Without it nothing that is narrower
-        than a pixel is smoothed.
+        Depth [m] and instance id; needed beside `visibility`.
     same_surface : float
         Share of its depth by which a sample of `visibility` may lie off a pixel's own surface.
-    least_contrast : int
-        Difference of luma, of 255, below which nothing is an edge; 0 leaves edges as they are.
-    reach_px : int
-        How far along an edge its ends are looked for [px].
     threads : int
 
     Returns
@@ -78,6 +68,6 @@ def make_picture(
     rgb = np.empty((height, width, 3), np.uint8)
     _KERNEL(
         *(threads, height, width, radiance, table, visibility, inverse, surface),
-        *(same_surface, least_contrast, reach_px, rgb),
+        *(same_surface, rgb),
     )
     return rgb

@@ -165,6 +165,7 @@ VIEW = _structure(
     ("far_m", "<f8"),
     ("width", "<i8"),
     ("height", "<i8"),
+    ("smooth_edges", "<i8"),
 )
 
 OUTPUTS = _structure(

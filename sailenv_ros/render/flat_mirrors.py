@@ -1,13 +1,13 @@
 """Flat mirrors show what stands before them, seen from where the eye would be behind them.
 
 A snapshot and a camera come in; which mirrors are seen and from where each is to be drawn once
-more go out, and then what was drawn is put into the picture. Every back end draws with it. Knows
-no graphics library.
+more go out. `mirror_pictures` puts into the picture what was drawn. Every back end draws with it.
+Knows no graphics library.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -19,14 +19,10 @@ from sailenv_ros.geometry import BODY_FROM_OPTICAL, Pose
 from sailenv_ros.model import Model
 from sailenv_ros.snapshot import SceneContents, WorldSnapshot
 
-__all__ = ["FlatMirrors", "Look", "SeenMirror", "Window"]
+__all__ = ["NEAR_PLANE_M", "FlatMirrors", "SeenMirror", "Window"]
 
 Window: TypeAlias = tuple[slice, slice]
 """Rows and columns of a picture."""
-
-Look: TypeAlias = Callable[[Camera, NDArray[np.bool_], Window], NDArray[np.float16]]
-"""``look(camera, only, window)`` returns (h, w, 4): exposed radiance of some instances, without
-glass, in the window of the camera's picture."""
 
 MOST = 2
 """Mirrors in one picture: the largest; others mirror the room as other surfaces do."""
@@ -149,44 +145,6 @@ class FlatMirrors:
         found.sort(key=lambda entry: -entry[0])
         return [mirror for _, mirror in found[:MOST]]
 
-    @staticmethod
-    def reflect(
-        mirrors: list[SeenMirror],
-        camera: Camera,
-        radiance: NDArray[np.float16],
-        surface: NDArray[np.float32],
-        look: Look,
-    ) -> None:
-        """Put into a picture what its mirrors show.
-
-        Parameters
-        ----------
-        mirrors : list of SeenMirror
-            What `seen` returned for the camera.
-        camera : Camera
-            Of the picture's pixels.
-        radiance : (H, W, 4) float16
-            Exposed radiance and the share that came from around; written to.
-        surface : (H, W, 2) float32
-            Depth [m] and instance id.
-        look : callable
-            See `Look`.
-        """
-        for mirror in mirrors:
-            mask, slant = _pixels(mirror, camera, surface[mirror.window])
-            if not mask.any():
-                continue
-            rows, columns = mirror.window
-            width = camera.intrinsics.width
-            flipped = rows, slice(width - columns.stop, width - columns.start)
-            shown = look(mirror.camera, mirror.only, flipped)[:, ::-1][mask][:, :3]
-            # At grazing angles all light is mirrored (Schlick's approximation).
-            grazing = (1.0 - slant[mask, None]) ** 5
-            share = mirror.tint + (1.0 - mirror.tint) * grazing
-            target = radiance[mirror.window]
-            target[mask, :3] = shown * share
-            target[mask, 3] = 0.0
-
     def _seen(
         self, snapshot: WorldSnapshot, camera: Camera, row: int, instance_id: int, face: _Face
     ) -> SeenMirror | None:
@@ -271,21 +229,3 @@ def _behind(camera: Camera, normal: NDArray[np.float64], point: NDArray[np.float
     world_from_camera = mirror @ camera.world_from_camera @ np.diag([-1.0, 1.0, 1.0, 1.0])
     pose = Pose.from_matrix(world_from_camera @ np.linalg.inv(BODY_FROM_OPTICAL))
     return replace(camera, pose=pose)
-
-
-def _pixels(
-    mirror: SeenMirror, camera: Camera, surface: NDArray[np.float32]
-) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
-    """Return which pixels of the window show the mirror, and the cosine of the viewing angle."""
-    lens = camera.intrinsics
-    rows, columns = mirror.window
-    x = (np.arange(columns.start, columns.stop) - lens.cx) / lens.fx
-    y = (np.arange(rows.start, rows.stop) - lens.cy) / lens.fy
-    normal = camera.camera_from_world[:3, :3] @ mirror.normal
-    offset = float(mirror.normal @ (mirror.point - camera.world_from_camera[:3, 3]))
-    along = normal[0] * x[None, :] + normal[1] * y[:, None] + normal[2]
-    length = np.sqrt(1.0 + x[None, :] ** 2 + y[:, None] ** 2)
-    mask = surface[..., 1] == mirror.instance_id
-    depth = np.where(mask, surface[..., 0], 0.0)
-    mask &= np.abs(along * depth - offset) < NEAR_PLANE_M
-    return mask, np.clip(np.abs(along) / length, 0.0, 1.0).astype(np.float32)

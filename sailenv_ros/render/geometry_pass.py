@@ -140,8 +140,17 @@ class GeometryPass:
         geometry: GeometryBuffers,
         materials: MaterialBuffers,
         intrinsics: CameraIntrinsics,
+        *,
+        half_pixels: bool = False,
     ) -> None:
-        """Draw everything; `draws` must have been placed for the camera."""
+        """Draw everything; `draws` must have been placed for the camera.
+
+        Parameters
+        ----------
+        half_pixels : bool
+            True if the lens is that of samples half a pixel apart, see `half_pixels`: textures
+            are those of the pixels.
+        """
         context = self._context
         targets.framebuffer.use()
         # Nothing hit: infinitely far, instance 0. The other attachments are not read there.
@@ -157,7 +166,7 @@ class GeometryPass:
             for batch in draws.batches:
                 if not any(lies[part][1] for part in batch.chosen):
                     continue
-                program = self._program(batch.kind, targets)
+                program = self._program(batch.kind, targets, half_pixels)
                 set_uniform(program, "far_m", intrinsics.far_m)
                 set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.0))
                 materials.bind(program, batch.kind.maps)
@@ -183,11 +192,13 @@ class GeometryPass:
             self._index_buffer.write(seen)
         return lies
 
-    def _program(self, kind: BatchKind, targets: Targets) -> moderngl.Program:
+    def _program(self, kind: BatchKind, targets: Targets, half_pixels: bool) -> moderngl.Program:
         switches: dict[str, int] = {}
         shaded = targets.shape is not None
         if not _by_corner(kind, targets):
             switches["SHADED"] = 1
+            if half_pixels:
+                switches["HALF_PIXELS"] = 1
             if kind.masked:
                 switches["MASKED"] = 1
             there = {"COLOUR_MAP": kind.maps[0] >= 0}

@@ -65,8 +65,13 @@ class GlassPass:
         illumination: Illumination,
         geometry: GeometryBuffers,
         materials: MaterialBuffers,
+        *,
+        half_pixels: bool = False,
     ) -> None:
-        """Draw what `show` was given over the picture of `targets`."""
+        """Draw what `show` was given over the picture of `targets`.
+
+        See `GeometryPass.draw` for `half_pixels`.
+        """
         if self._draws is None:
             return
         self._draws.place(snapshot, clip_from_optical, camera.camera_from_world)
@@ -85,7 +90,7 @@ class GlassPass:
         targets.picture.depth_mask = False
         try:
             for batch in batches:
-                self._draw(batch, camera, illumination, geometry, materials)
+                self._draw(batch, camera, illumination, geometry, materials, half_pixels)
         finally:
             targets.picture.depth_mask = True
             context.cull_face = "back"
@@ -106,9 +111,10 @@ class GlassPass:
         illumination: Illumination,
         geometry: GeometryBuffers,
         materials: MaterialBuffers,
+        half_pixels: bool,
     ) -> None:
         assert self._draws is not None
-        program = self._program(batch, illumination)
+        program = self._program(batch, illumination, half_pixels)
         set_camera(program, camera, illumination.environment)
         set_uniform(program, "far_m", camera.intrinsics.far_m)
         materials.bind(program, batch.kind.maps)
@@ -122,8 +128,12 @@ class GlassPass:
             array = bound(self._context, program, geometry, geometry.index_buffer)
             issue(program, array, self._draws, batch, self._draws.lies)
 
-    def _program(self, batch: Batch, illumination: Illumination) -> moderngl.Program:
+    def _program(
+        self, batch: Batch, illumination: Illumination, half_pixels: bool
+    ) -> moderngl.Program:
         switches = {"SHADED": 1}
+        if half_pixels:
+            switches["HALF_PIXELS"] = 1
         if batch.kind.maps[0] >= 0:
             switches["COLOUR_MAP"] = 1
         if illumination.baked is not None:

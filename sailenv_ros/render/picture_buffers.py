@@ -25,11 +25,13 @@ KEPT_SIZES = 24
 class PictureBuffers:
     """Textures by size and use."""
 
-    def __init__(self, geometry_pass: GeometryPass) -> None:
+    def __init__(self, context: moderngl.Context, geometry_pass: GeometryPass) -> None:
+        self._context = context
         self._geometry_pass = geometry_pass
         self._targets: OrderedDict[tuple[int, int, bool, tuple[str, ...], bool], Targets] = (
             OrderedDict()
         )
+        self._pictures: OrderedDict[tuple[int, int], moderngl.Framebuffer] = OrderedDict()
 
     def targets(
         self, intrinsics: CameraIntrinsics, *, shaded: bool, outputs: tuple[str, ...], baked: bool
@@ -47,12 +49,23 @@ class PictureBuffers:
         self._targets.move_to_end(key)
         return self._targets[key]
 
-    def read_picture(self, targets: Targets) -> NDArray[np.float16]:
-        """Read the lit picture, radiance and share; a fresh (H, W, 4) array."""
-        assert targets.picture is not None
-        four = np.empty((targets.picture.height, targets.picture.width, 4), np.float16)
+    def picture(self, intrinsics: CameraIntrinsics) -> moderngl.Framebuffer:
+        """Return what the edge pass draws into."""
+        size = intrinsics.width, intrinsics.height
+        if size not in self._pictures:
+            while len(self._pictures) >= KEPT_SIZES:
+                _release(self._pictures.popitem(last=False)[1])
+            colour = self._context.texture(size, 4, dtype="f2")
+            self._pictures[size] = self._context.framebuffer([colour])
+        self._pictures.move_to_end(size)
+        return self._pictures[size]
+
+    def read_picture(self, picture: moderngl.Framebuffer | None) -> NDArray[np.float16]:
+        """Read a lit picture, radiance and share; a fresh (H, W, 4) array."""
+        assert picture is not None
+        four = np.empty((picture.height, picture.width, 4), np.float16)
         # Reading three components would make the driver convert them, ten times slower.
-        targets.picture.read_into(four, components=4, dtype="f2")
+        picture.read_into(four, components=4, dtype="f2")
         return four
 
     def read_surface(self, targets: Targets) -> NDArray[np.float32]:
@@ -71,6 +84,15 @@ class PictureBuffers:
         for targets in self._targets.values():
             targets.close()
         self._targets.clear()
+        for picture in self._pictures.values():
+            _release(picture)
+        self._pictures.clear()
+
+
+def _release(picture: moderngl.Framebuffer) -> None:
+    texture = picture.color_attachments[0]
+    picture.release()
+    texture.release()
 
 
 def _read_float(texture: moderngl.Texture, components: int) -> NDArray[np.float32]:

@@ -1,4 +1,4 @@
-"""From a lit picture to what an agent sees: occlusion, bloom, noise, tone curve, smooth edges.
+"""From a lit picture to what an agent sees: occlusion, bloom, noise, tone curve.
 
 Radiance and surfaces come in, an 8-bit sRGB picture goes out. Everything happens on the
 processor, on copies: ground truth never passes through here. What is off costs nothing.
@@ -87,10 +87,5 @@ class PostPass:
                 radiance, settings, camera.name, snapshot.sim_time_ns, threads=self._threads
             )
         return tone_map.tone_map(
-            radiance,
-            code_table(settings),
-            shade,
-            surface,
-            smooth_edges=settings.smooth_edges and settings.supersampling == 1,
-            threads=self._threads,
+            radiance, code_table(settings), shade, surface, threads=self._threads
         )

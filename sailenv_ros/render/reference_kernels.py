@@ -30,7 +30,6 @@ FAR_M = F32(1e9)
 TILE = 16
 """Edge of the tiles of samples that are left out where everything around them is baked."""
 
-LEAST_BEND = F32(0.0005)
 """Share of 1 / depth by which something narrower than a pixel lies off what is beside it."""
 
 ROUNDING_PX = 1e-3
@@ -255,8 +254,6 @@ def make_picture(
     surface: Floats | None,
     *,
     same_surface: float,
-    least_contrast: int,
-    reach_px: int,
     threads: int,
 ) -> NDArray[np.uint8]:
     """Make the picture; see `native.picture_kernels`."""
@@ -265,8 +262,7 @@ def make_picture(
     if visibility is not None and inverse is not None and surface is not None:
         factors = _arriving_factors(bits[..., 3], visibility, inverse, surface, 1, same_surface)
         light = _bits(_small_numbers(light) * factors[..., None])
-    rgb = table[light]
-    return _smooth_edges(rgb, surface, least_contrast, reach_px) if least_contrast > 0 else rgb
+    return table[light]
 
 
 def resolve_samples(
@@ -408,106 +404,3 @@ def _arriving_factors(
     closed = (255 - arriving).astype(F32) * F32(1.0 / 255.0)
     factors: Floats = one - np.minimum(share, one) * closed
     return factors
-
-
-def _smooth_edges(
-    rgb: NDArray[np.uint8], surface: Floats | None, least_contrast: int, reach_px: int
-) -> NDArray[np.uint8]:
-    weighted = rgb.astype(np.int32) * np.array([77, 150, 29], np.int32)
-    luma = (weighted.sum(axis=2) + 128) >> 8
-    height, width = luma.shape
-    result = rgb.copy()
-    if height < 3 or width < 3:
-        return result
-    inner = luma[1:-1, 1:-1]
-    up, down = np.abs(luma[:-2, 1:-1] - inner), np.abs(luma[2:, 1:-1] - inner)
-    left, right = np.abs(luma[1:-1, :-2] - inner), np.abs(luma[1:-1, 2:] - inner)
-    contrast = np.maximum.reduce([up, down, left, right])
-    at = np.nonzero(contrast >= least_contrast)
-    up, down, left, right, contrast = (a[at] for a in (up, down, left, right, contrast))
-    v, u = at[0] + 1, at[1] + 1
-    vertical = np.maximum(up, down) >= np.maximum(left, right)
-    dv = np.where(vertical, np.where(up > down, -1, 1), 0)
-    du = np.where(vertical, 0, np.where(left > right, -1, 1))
-    ends = [
-        _end(luma, v, u, dv, du, contrast, sense, reach_px) for sense in (-1, 1)
-    ]  # fmt: skip
-    (before, before_crosses), (after, after_crosses) = ends
-    first = before <= after
-    near = np.where(first, before, after)
-    crosses = np.where(first, before_crosses, after_crosses)
-    length = before + after - 1
-    share = np.where(length > 1, 0.5 - (near - 0.5) / np.maximum(length, 1), 0.25)
-    share = np.where(crosses & (near < reach_px), np.maximum(share, 0.0), 0.0)
-    own, across = rgb[v, u].astype(np.float64), rgb[v + dv, u + du].astype(np.float64)
-    result[v, u] = (own + (across - own) * share[:, None] + 0.5).astype(np.uint8)
-    if surface is not None:
-        _smooth_thin(rgb, luma, surface, v, u, least_contrast, result)
-    return result
-
-
-def _smooth_thin(
-    rgb: NDArray[np.uint8],
-    luma: NDArray[np.int32],
-    surface: Floats,
-    v: NDArray[np.intp],
-    u: NDArray[np.intp],
-    least_contrast: int,
-    result: NDArray[np.uint8],
-) -> None:
-    """Mix what is narrower than a pixel with what lies on both sides."""
-
-    def stands_out(dv: int, du: int) -> NDArray[np.int32]:
-        own, before, after = luma[v, u], luma[v - dv, u - du], luma[v + dv, u + du]
-        above, below = own - np.maximum(before, after), np.minimum(before, after) - own
-        least = np.maximum(np.maximum(above, below), 0)
-        return np.where(np.abs(before - after) <= least, least, 0)
-
-    across, down = stands_out(0, 1), stands_out(1, 0)
-    found = np.maximum(across, down) >= least_contrast
-    du = (across >= down).astype(np.intp)
-    dv = 1 - du
-    with np.errstate(all="ignore"):
-        nearness = F32(1.0) / surface[..., 0]
-        own = nearness[v, u]
-        both = nearness[v - dv, u - du] + nearness[v + dv, u + du]
-        found &= np.abs(both - (own + own)) > LEAST_BEND * own
-    v, u, dv, du = v[found], u[found], dv[found], du[found]
-    steps = [(k - 1, j - 1) for k, j in np.ndindex(3, 3) if (k, j) != (1, 1)]
-    ring = np.array([luma[v + k, u + j] for k, j in steps])
-    low, high = ring.min(axis=0), ring.max(axis=0)
-    least = np.where(luma[v, u] > high, luma[v, u] - high, low - luma[v, u])
-    dot = ((least >= least_contrast) & (high - low <= least))[:, None]
-    wide = rgb.astype(np.int32)
-    beside = wide[v - dv, u - du] + wide[v + dv, u + du]
-    around = wide[v, u - 1] + wide[v, u + 1] + wide[v - 1, u] + wide[v + 1, u]
-    line, point = 2 * wide[v, u] + beside + 2 >> 2, around + 2 >> 2
-    result[v, u] = np.where(dot, point, line).astype(np.uint8)
-
-
-def _end(
-    luma: NDArray[np.int32],
-    v: NDArray[np.intp],
-    u: NDArray[np.intp],
-    dv: NDArray[np.intp],
-    du: NDArray[np.intp],
-    contrast: NDArray[np.int32],
-    sense: int,
-    reach_px: int,
-) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Find the steps along each edge to its end, and whether it crosses to the pixel's side."""
-    height, width = luma.shape
-    twice_middle = luma[v, u] + luma[v + dv, u + du]
-    brighter = 2 * luma[v, u] > twice_middle
-    steps, crosses = np.full(v.shape, reach_px), np.zeros(v.shape, np.bool_)
-    open_ = np.ones(v.shape, np.bool_)
-    for step in range(1, reach_px + 1):
-        pv, pu = v + sense * step * np.abs(du), u + sense * step * np.abs(dv)
-        open_ &= (pv >= 0) & (pv < height) & (pu >= 0) & (pu < width)
-        pv, pu = np.clip(pv, 0, height - 1), np.clip(pu, 0, width - 1)
-        own, across = luma[pv, pu], luma[pv + dv, pu + du]
-        bright = 2 * own > twice_middle
-        ends = open_ & ((2 * np.abs(own - across) < contrast) | (bright != brighter))
-        steps[ends], crosses[ends] = step, (bright != brighter)[ends]
-        open_ &= ~ends
-    return steps, crosses

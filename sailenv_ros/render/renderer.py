@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
+from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import VIEWS, checked_views, views_of
 from sailenv_ros.render import annotate as ground_truth
@@ -25,13 +25,16 @@ from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.drawn_meshes import drawn_meshes
+from sailenv_ros.render.edge_pass import EdgePass
 from sailenv_ros.render.finishing import Finisher
 from sailenv_ros.render.flat_mirrors import FlatMirrors, SeenMirror, Window
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.geometry_pass import GeometryPass, Targets, written_views
 from sailenv_ros.render.glass_pass import GlassPass
+from sailenv_ros.render.half_pixels import half_pixel_camera
 from sailenv_ros.render.lighting_pass import Illumination, LightingPass
 from sailenv_ros.render.materials import MaterialBuffers
+from sailenv_ros.render.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.picture_buffers import PictureBuffers
 from sailenv_ros.render.programs import ProgramCache
 from sailenv_ros.render.scene_light import SceneLight
@@ -68,7 +71,8 @@ class Renderer:
                 self._scene_light = SceneLight(self._context, self._programs)
                 self._lighting_pass = LightingPass(self._context, self._programs)
                 self._glass_pass = GlassPass(self._context, self._programs)
-                self._pictures = PictureBuffers(self._geometry_pass)
+                self._edge_pass = EdgePass(self._context, self._programs)
+                self._pictures = PictureBuffers(self._context, self._geometry_pass)
         except BaseException:
             self._context.release()
             raise
@@ -132,6 +136,7 @@ class Renderer:
         with self._context:
             for resource in (
                 self._pictures,
+                self._edge_pass,
                 self._geometry_pass,
                 self._glass_pass,
                 self._lighting_pass,
@@ -168,19 +173,19 @@ class Renderer:
                 snapshot, draws, self._geometry, partial(self._radiance, snapshot)
             )
             mark("shadow")
-        # With supersampling the picture has a walk of its own: ground truth is of pixel centres.
-        sampled = shaded and camera.picture.supersampling > 1
-        clip_from_optical = _UPSIDE_DOWN @ camera.intrinsics.clip_from_optical()
-        draws.place(snapshot, clip_from_optical, camera.camera_from_world)
+        # Ground truth is of pixel centres; where a picture has more samples, it is drawn apart.
+        seen = _of_samples(camera)
+        apart = shaded and seen is not camera
         outputs = tuple(view for view in self._outputs if view in wanted)
-        targets = self._surfaces(snapshot, camera, shaded=shaded and not sampled, outputs=outputs)
+        targets = self._surfaces(snapshot, camera, shaded=shaded and not apart, outputs=outputs)
         mark("geometry")
         arrays: dict[str, NDArray[Any]] = {}
+        sampled = camera.picture.supersampling > 1
+        mirrors: list[SeenMirror] = []
         if illumination is not None:
-            seen, lit = camera, targets
-            if sampled:
-                seen = camera.of_samples()
-                lit = self._surfaces(snapshot, seen, shaded=True)
+            lit = targets
+            if apart:
+                lit = self._surfaces(snapshot, seen, shaded=True, half_pixels=not sampled)
                 mark("geometry")
             self._lighting_pass.draw(lit, seen, illumination)
             self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
@@ -188,22 +193,29 @@ class Renderer:
                 lit,
                 snapshot,
                 seen,
-                clip_from_optical,
+                _clip_from_optical(seen.intrinsics),
                 illumination,
                 self._geometry,
                 self._materials,
+                half_pixels=apart and not sampled,
             )
+            arrays["rgb"] = self._read_lit(lit, camera, smoothed=apart and not sampled)
             mark("lighting")
-            arrays["rgb"] = self._pictures.read_picture(lit)
-            mirrors = self._mirrors.seen(snapshot, seen)
-            if sampled and (mirrors or camera.picture.occlusion_strength > 0.0):
-                arrays["samples"] = self._pictures.read_surface(lit)
+            mirrors = self._mirrors.seen(snapshot, seen if sampled else camera)
+            occluded = sampled and camera.picture.occlusion_strength > 0.0
+            if apart and (mirrors or occluded):
+                samples = self._pictures.read_surface(lit)
+                if sampled:
+                    arrays["samples"] = samples
         arrays["surface"] = self._pictures.read_surface(targets)
         for view in outputs:
             arrays[view] = self._pictures.read_output(targets, view)
         mark("readback")
         if illumination is not None and mirrors:
-            self._reflect(snapshot, mirrors, seen, illumination, arrays)
+            self._reflect(
+                *(snapshot, mirrors, seen if sampled else camera, illumination, arrays),
+                None if sampled or not apart else samples,
+            )
             mark("lighting")
         for (_, start), (stage, end) in itertools.pairwise(marks):
             timings[stage] = timings.get(stage, 0.0) + end - start
@@ -216,8 +228,9 @@ class Renderer:
         *,
         shaded: bool,
         outputs: tuple[str, ...] = (),
+        half_pixels: bool = False,
     ) -> Targets:
-        """Draw the surfaces of what has been placed for a camera."""
+        """Draw the surfaces that a camera sees."""
         intrinsics = camera.intrinsics
         targets = self._pictures.targets(
             intrinsics,
@@ -226,8 +239,19 @@ class Renderer:
             baked=snapshot.contents.baked is not None,
         )
         draws = self._draws_of(snapshot)
-        self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
+        draws.place(snapshot, _clip_from_optical(intrinsics), camera.camera_from_world)
+        self._geometry_pass.draw(
+            targets, draws, self._geometry, self._materials, intrinsics, half_pixels=half_pixels
+        )
         return targets
+
+    def _read_lit(self, lit: Targets, camera: Camera, *, smoothed: bool) -> NDArray[np.float16]:
+        """Read a camera's picture, of samples half a pixel apart after smoothing its edges."""
+        if not smoothed:
+            return self._pictures.read_picture(lit.picture)
+        picture = self._pictures.picture(camera.intrinsics)
+        self._edge_pass.draw(lit, picture)
+        return self._pictures.read_picture(picture)
 
     def _reflect(
         self,
@@ -236,14 +260,19 @@ class Renderer:
         camera: Camera,
         illumination: Illumination,
         arrays: dict[str, NDArray[Any]],
+        samples: NDArray[np.float32] | None,
     ) -> None:
         """Put into the picture what its flat mirrors show."""
+
+        def closer(window: Window) -> NDArray[np.float32]:
+            assert samples is not None
+            return samples[closer_window(window)]
 
         def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
             return self._exposed(snapshot, behind, illumination, only)[window]
 
         surface = arrays["samples" if "samples" in arrays else "surface"]
-        self._mirrors.reflect(mirrors, camera, arrays["rgb"], surface, look)
+        reflect(mirrors, camera, arrays["rgb"], surface, look, None if samples is None else closer)
 
     def _radiance(
         self,
@@ -255,7 +284,8 @@ class Renderer:
         """Draw linear radiance of some instances, as an array (H, W, 3)."""
         unexposed = replace(illumination.environment, exposure=0.0)
         light = replace(illumination, environment=unexposed)
-        return self._exposed(snapshot, camera, light, only)[..., :3].astype(np.float32)
+        plain = replace(camera, picture=replace(camera.picture, smooth_edges=False))
+        return self._exposed(snapshot, plain, light, only)[..., :3].astype(np.float32)
 
     def _exposed(
         self,
@@ -265,9 +295,10 @@ class Renderer:
         only: NDArray[np.bool_],
     ) -> NDArray[np.float16]:
         """Draw what some instances send out, without glass, as an array (H, W, 4)."""
-        draws, intrinsics = self._draws_of(snapshot), camera.intrinsics
-        clip_from_optical = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
-        draws.place(snapshot, clip_from_optical, camera.camera_from_world, only=only)
+        seen = _of_samples(camera)
+        half_pixels = seen is not camera and camera.picture.supersampling == 1
+        draws, intrinsics = self._draws_of(snapshot), seen.intrinsics
+        draws.place(snapshot, _clip_from_optical(intrinsics), camera.camera_from_world, only=only)
         targets = self._geometry_pass.make_targets(
             intrinsics.width,
             intrinsics.height,
@@ -275,9 +306,16 @@ class Renderer:
             baked=snapshot.contents.baked is not None,
         )
         try:
-            self._geometry_pass.draw(targets, draws, self._geometry, self._materials, intrinsics)
-            self._lighting_pass.draw(targets, camera, illumination)
-            return self._pictures.read_picture(targets)
+            self._geometry_pass.draw(
+                targets,
+                draws,
+                self._geometry,
+                self._materials,
+                intrinsics,
+                half_pixels=half_pixels,
+            )
+            self._lighting_pass.draw(targets, seen, illumination)
+            return self._read_lit(targets, camera, smoothed=half_pixels)
         finally:
             targets.close()
 
@@ -299,3 +337,15 @@ class Renderer:
             arrays["surface"], previous.snapshot, None, previous.camera, frozenset()
         )
         return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
+
+
+def _of_samples(camera: Camera) -> Camera:
+    """Return the camera of what its picture is made of: itself, unless there are more samples."""
+    if camera.picture.supersampling > 1:
+        return camera.of_samples()
+    return half_pixel_camera(camera) if camera.picture.smooth_edges else camera
+
+
+def _clip_from_optical(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:
+    clip_from_optical: NDArray[np.float64] = _UPSIDE_DOWN @ intrinsics.clip_from_optical()
+    return clip_from_optical

@@ -17,15 +17,9 @@ from sailenv_ros.render.texture_images import SIZES_PX, array_of, square_texels
 
 __all__ = ["TextureArrays"]
 
-ANISOTROPY = (4.0, 1.0)
-"""Of colour and packed maps, on graphics hardware: only in colours is it seen.
-
-On the CPU there is none. llvmpipe walks over every texel of a pixel's footprint: one textured wall
-seen edge-on has held up a frame for more than 30 s.
-"""
-
 _SOFTWARE_FILTERS = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR_MIPMAP_NEAREST)
-"""The same on the CPU: from level to level, roughness and relief may change at once."""
+"""Of colour and packed maps on the CPU: from level to level, roughness and relief may change at
+once."""
 
 SPARE = 0.25
 """Share of layers that a new array has in reserve, for what is spawned later."""
@@ -48,10 +42,9 @@ class TextureArrays:
         self._arrays = tuple(_Layers(context, edge) for edge in SIZES_PX)
         self._samplers = tuple(
             context.sampler(
-                filter=(smaller if software else moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR),
-                anisotropy=1.0 if software else anisotropy,
+                filter=(smaller if software else moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
             )
-            for anisotropy, smaller in zip(ANISOTROPY, _SOFTWARE_FILTERS, strict=True)
+            for smaller in _SOFTWARE_FILTERS
         )
 
     def show(self, colours: Iterable[Texture], fine: Iterable[Texture]) -> None:

@@ -1,13 +1,7 @@
-"""From radiance to an 8-bit picture: ambient visibility, tone curve, sRGB, smooth edges.
+"""From radiance to an 8-bit picture: ambient visibility, tone curve, sRGB.
 
 Half-precision radiance and the share of it that came from around come in, sRGB goes out. The tone
 curve is a table (`tone.code_table`).
-
-Stair-steps are smoothed after the fact, where brightness has an edge (morphological
-antialiasing): a pixel whose luma differs little from its four neighbours' is copied. Otherwise the
-edge's direction and its two ends along the row or column are looked for, and the pixel is mixed
-with the neighbour across the edge by the share of it that the edge, were it a straight line between
-the ends, would cut off.
 """
 
 from __future__ import annotations
@@ -27,12 +21,6 @@ AmbientShade: TypeAlias = tuple[NDArray[np.uint8], NDArray[np.float32]]
 SAME_SURFACE = 0.04
 """Share of its depth by which a sample of the visibility may lie off a pixel's own surface."""
 
-LEAST_CONTRAST = 12
-"""Difference of luma, of 255, below which nothing is an edge."""
-
-REACH_PX = 12
-"""How far along an edge its ends are looked for [px]."""
-
 
 def tone_map(
     radiance: NDArray[np.float16],
@@ -40,7 +28,6 @@ def tone_map(
     shade: AmbientShade | None,
     surface: NDArray[np.float32],
     *,
-    smooth_edges: bool = False,
     threads: int = 1,
 ) -> NDArray[np.uint8]:
     """Apply the tone curve to a picture.
@@ -56,8 +43,6 @@ def tone_map(
         How much of that share arrives; None if all of it does.
     surface : (H, W, 2) float32
         Depth, for telling surfaces apart.
-    smooth_edges : bool
-        True if stair-steps are smoothed.
     threads : int
         The picture does not depend on it.
 
@@ -74,8 +59,6 @@ def tone_map(
         inverse,
         surface,
         same_surface=SAME_SURFACE,
-        least_contrast=LEAST_CONTRAST if smooth_edges else 0,
-        reach_px=REACH_PX,
         threads=threads,
     )
 

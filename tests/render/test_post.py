@@ -202,9 +202,7 @@ def test_any_size_two_threads_make_what_one_makes(width: int, height: int) -> No
         shade = ambient_visibility(
             surface, intrinsics, strength=1.0, radius_m=1.0, baked=NONE_BAKED, threads=threads
         )
-        pictures.append(
-            tone_map(radiance, table, shade, surface, smooth_edges=True, threads=threads)
-        )
+        pictures.append(tone_map(radiance, table, shade, surface, threads=threads))
     np.testing.assert_array_equal(pictures[0], pictures[1])
     assert shade[0].shape == ((height + 1) // 2, (width + 1) // 2)
 

@@ -36,6 +36,7 @@ uniform isampler2D edge_index;     // of the light map's texels: number of a blo
 uniform sampler2D edge_blocks;     // 6 by 6 shares of main light each, 128 blocks in a row
 #endif
 #include "reflections.glsl"
+#include "octahedral.glsl"
 
 const float PI = 3.14159265;
 
@@ -45,13 +46,6 @@ vec3 sky_light(vec3 world_normal) {
     vec3 dome = mix(sky_horizon, sky_zenith, 0.55);
     return mix(sky_ground, mix(sky_horizon, dome, max(world_normal.z, 0.0)),
                0.5 + 0.5 * world_normal.z);
-}
-
-vec3 unfolded(vec2 p) {
-    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    float fold = max(-n.z, 0.0);
-    n.xy -= vec2(n.x >= 0.0 ? fold : -fold, n.y >= 0.0 ? fold : -fold);
-    return normalize(n);
 }
 
 vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {

@@ -175,16 +175,8 @@ def drive_pictures() -> None:
         radiance = np.ascontiguousarray(bits).view(np.float16)
         half = (height + 1) // 2, (width + 1) // 2
         visibility, inverse = np.zeros(half, np.uint8), np.full(half, np.nan, np.float32)
-        edges = ((12, 12),) if large else ((0, 1), (1, 1), (12, 12), (255, 15))
         for shade in ((visibility, inverse),) if large else ((None, None), (visibility, inverse)):
-            for least_contrast, reach_px in edges:
-                make_picture(
-                    *(radiance, table, *shade, surface),
-                    same_surface=0.04,
-                    least_contrast=least_contrast,
-                    reach_px=reach_px,
-                    threads=THREADS[1],
-                )
+            make_picture(radiance, table, *shade, surface, same_surface=0.04, threads=THREADS[1])
             resolve_samples(radiance, 1, *shade, surface, same_surface=0.04, threads=THREADS[1])
 
 

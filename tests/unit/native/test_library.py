@@ -155,7 +155,7 @@ from sailenv_ros.render.tone import code_table
 assert kernels.make_picture.__module__ == "sailenv_ros.render.reference_kernels"
 grey = np.full((9, 9, 4), 0.5, np.float16)
 surface = np.ones((9, 9, 2), np.float32)
-picture = tone_map.tone_map(grey, code_table(PictureSettings()), None, surface, smooth_edges=True)
+picture = tone_map.tone_map(grey, code_table(PictureSettings()), None, surface)
 assert len(np.unique(picture)) == 1
 """
     missing = tmp_path / "missing.so"

@@ -1,6 +1,7 @@
 // Visibility: cull clusters, transform corners, set edge functions up, sort into bands, draw.
 #include "raster.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "../threads.h"
@@ -50,13 +51,18 @@ void compose(const double* eye_from_world, const double* pose, const double* sca
     }
 }
 
+// Where a sample lies.
+double pixel_of(const Projection& p, int32_t sample) {
+    return p.fine ? 0.5 * (sample - 1) : sample;
+}
+
 void set_sides(InstanceFrame& frame, const Projection& p) {
     const double* m = frame.eye_from_object;
     double wide[4];
     if (p.perspective) {
         // Symmetric about the axis, a hundredth wider than what is drawn.
-        const double left = p.cx + 0.5 - p.x0, right = p.x1 + 0.5 - p.cx;
-        const double up = p.cy + 0.5 - p.y0, low = p.y1 + 0.5 - p.cy;
+        const double left = p.cx + 0.5 - pixel_of(p, p.x0), right = pixel_of(p, p.x1) + 0.5 - p.cx;
+        const double up = p.cy + 0.5 - pixel_of(p, p.y0), low = pixel_of(p, p.y1) + 0.5 - p.cy;
         const double across = left > right ? left : right, down = up > low ? up : low;
         wide[0] = wide[1] = (1.0 + MARGIN) * across / p.focal;
         wide[2] = wide[3] = (1.0 + MARGIN) * down / p.focal;
@@ -171,13 +177,15 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
     }
 }
 
-// Which pixels a triangle can reach: bounds in pixels; x0 > x1 if there are none.
+// Which samples a triangle can reach: their bounds; x0 > x1 if there are none.
 template <bool PERSPECTIVE>
 void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
     const float left = static_cast<float>(p.x0), right = static_cast<float>(p.x1);
     const float top = static_cast<float>(p.y0), bottom = static_cast<float>(p.y1);
-    const float focal = static_cast<float>(p.focal), cx = static_cast<float>(p.cx),
-                cy = static_cast<float>(p.cy);
+    const float finer = p.fine ? 2.0f : 1.0f, first = p.fine ? 1.0f : 0.0f;
+    const float focal = finer * static_cast<float>(p.focal),
+                cx = finer * static_cast<float>(p.cx) + first,
+                cy = finer * static_cast<float>(p.cy) + first;
     for (int32_t k = 0; k < count; k += 8) {
         f8 x[3], y[3], depth[3];
         for (int j = 0; j < 3; j++) {
@@ -203,7 +211,7 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
             x1 = crosses ? splat(right) : x1;
             y1 = crosses ? splat(bottom) : y1;
         }
-        // Rounded inwards to pixel centres: upwards is the negative floor of the negative.
+        // Rounded inwards to samples: upwards is the negative floor of the negative.
         x0 = -floor8(-clamp8(x0, left, 1e5f));
         y0 = -floor8(-clamp8(y0, top, 1e5f));
         x1 = floor8(clamp8(x1, left - 1.0f, right));
@@ -222,7 +230,7 @@ void pad(ClusterRows& r, int32_t count) {
     }
 }
 
-// Moves the triangles that reach a pixel's centre to the front; most small ones reach none.
+// Moves the triangles that reach a sample to the front; most small ones reach none.
 int32_t keep_reaching(ClusterRows& r, int32_t count) {
     int32_t kept = 0;
     for (int32_t k = 0; k < count; k++) {
@@ -296,21 +304,30 @@ void transform_corners(const Part& part, const double* m, float* x, float* y, fl
     }
 }
 
+// First and last band of a triangle. The last row of a band of fine samples is the first one of
+// the next band.
+RowRange bands_of(const Triangle& t, bool fine, int32_t bands, int32_t band_rows) {
+    if (!fine) return {t.y0 / band_rows, t.y1 / band_rows};
+    const int32_t rows = 2 * band_rows;
+    return {std::max(t.y0 - 1, 0) / rows, std::min(t.y1 / rows, bands - 1)};
+}
+
 // Lists, for each band, the triangles that reach into it.
-void sort_into_bands(Segment& segment, const Triangle* triangles, int32_t bands,
+void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int32_t bands,
                      int32_t band_rows) {
     segment.starts.assign(static_cast<size_t>(bands) + 1, 0);
     uint32_t* starts = segment.starts.data();
     for (int64_t k = 0; k < segment.triangle_count; k++) {
-        const Triangle& t = triangles[segment.first_triangle + k];
-        for (int32_t b = t.y0 / band_rows; b <= t.y1 / band_rows; b++) starts[b + 1]++;
+        const auto reached =
+            bands_of(triangles[segment.first_triangle + k], fine, bands, band_rows);
+        for (int32_t b = reached.first; b <= reached.last; b++) starts[b + 1]++;
     }
     for (int32_t b = 0; b < bands; b++) starts[b + 1] += starts[b];
     segment.entries.resize(starts[bands]);
     for (int64_t k = 0; k < segment.triangle_count; k++) {
         const int64_t number = segment.first_triangle + k;
-        const Triangle& t = triangles[number];
-        for (int32_t b = t.y0 / band_rows; b <= t.y1 / band_rows; b++) {
+        const auto reached = bands_of(triangles[number], fine, bands, band_rows);
+        for (int32_t b = reached.first; b <= reached.last; b++) {
             segment.entries[starts[b]++] = static_cast<uint32_t>(number);
         }
     }
@@ -377,9 +394,10 @@ LANES_INLINE float least_inside(const float* edge) {
     return own ? 0.0f : 1.1754944e-38f;
 }
 
-// Where a row of a wide triangle begins and ends, give or take a pixel.
+// Where a row of a wide triangle begins and ends, give or take a sample.
+template <bool FINE>
 LANES_INLINE bool narrow(float slope, float offset, float inverse, float& low, float& high) {
-    const float at = offset * inverse;
+    const float pixel = offset * inverse, at = FINE ? 2.0f * pixel + 1.0f : pixel;
     if (slope > 0.0f) {
         low = larger(at - 1.0f, low);
     } else if (slope < 0.0f) {
@@ -390,7 +408,8 @@ LANES_INLINE bool narrow(float slope, float offset, float inverse, float& low, f
     return true;
 }
 
-template <bool MASKED>
+// `nearness` and `visible` (may be null) begin at the sample in row 0 and column 0.
+template <bool MASKED, bool FINE>
 void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const Projection& p,
                    int32_t first_row, int32_t last_row, int64_t stride, uint32_t* visible,
                    float* nearness) {
@@ -410,14 +429,15 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
     MaskedTriangle masked;
     if (MASKED) masked = masked_triangle(t, part);
     for (int32_t row = y0; row <= y1; row++) {
-        const float y = static_cast<float>(row);
+        const float y = FINE ? 0.5f * static_cast<float>(row - 1) : static_cast<float>(row);
         const float c0 = t.edge[1] * y + t.edge[2], c1 = t.edge[4] * y + t.edge[5],
                     c2 = t.edge[7] * y + t.edge[8], cn = t.nearness[1] * y + t.nearness[2];
         int32_t first = t.x0, last = t.x1;
         if (wide) {
             float low = static_cast<float>(first), high = static_cast<float>(last);
-            if (!narrow(a0, c0, inverse0, low, high) || !narrow(a1, c1, inverse1, low, high) ||
-                !narrow(a2, c2, inverse2, low, high) || !(low <= high)) {
+            if (!narrow<FINE>(a0, c0, inverse0, low, high) ||
+                !narrow<FINE>(a1, c1, inverse1, low, high) ||
+                !narrow<FINE>(a2, c2, inverse2, low, high) || !(low <= high)) {
                 continue;
             }
             first = static_cast<int32_t>(low);
@@ -427,7 +447,8 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
         int32_t* seen_row =
             visible == nullptr ? nullptr : reinterpret_cast<int32_t*>(visible + row * stride);
         for (int32_t x = first; x <= last; x += 8) {
-            const f8 at = counting() + static_cast<float>(x);
+            const f8 at = FINE ? 0.5f * (counting() + static_cast<float>(x - 1))
+                               : counting() + static_cast<float>(x);
             const f8 e0 = a0 * at + c0, e1 = a1 * at + c1, e2 = a2 * at + c2, n = an * at + cn;
             const f8 before = load(near_row + x);
             i8 drawn = (e0 >= least0) & (e1 >= least1) & (e2 >= least2) & (n > before) &
@@ -527,6 +548,9 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
     if (set.triangles.size() < static_cast<size_t>(most_triangles)) {
         set.triangles.resize(static_cast<size_t>(most_triangles));
     }
+    if (projection.fine && set.part_of.size() < static_cast<size_t>(most_triangles)) {
+        set.part_of.resize(static_cast<size_t>(most_triangles));
+    }
     parallel_for(threads, static_cast<int64_t>(set.parts_seen.size()), 1,
                  [&](int64_t first, int64_t, int64_t) {
                      const int32_t number = set.parts_seen[static_cast<size_t>(first)];
@@ -541,40 +565,46 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
     parallel_for(threads, set.segment_count, 1, [&](int64_t first, int64_t, int64_t) {
         Segment& segment = set.segments[static_cast<size_t>(first)];
         ClusterRows rows;
-        Triangle* out = set.triangles.data() + segment.first_triangle;
         for (int64_t k = segment.first_cluster; k < segment.last_cluster; k++) {
             const SeenCluster& seen = set.seen[static_cast<size_t>(k)];
             const Part& part = parts.parts[seen.part];
             const int64_t at = set.corners_at[static_cast<size_t>(seen.part)];
-            Triangle* next = out + segment.triangle_count;
-            segment.triangle_count +=
+            const int64_t number = segment.first_triangle + segment.triangle_count;
+            Triangle* next = set.triangles.data() + number;
+            const int64_t made =
                 projection.perspective
                     ? set_cluster_up<true>(seen, part, at, set, projection, rows, next)
                     : set_cluster_up<false>(seen, part, at, set, projection, rows, next);
+            if (projection.fine) std::fill_n(set.part_of.begin() + number, made, seen.part);
+            segment.triangle_count += made;
         }
-        sort_into_bands(segment, set.triangles.data(), bands, band_rows);
+        sort_into_bands(segment, set.triangles.data(), projection.fine, bands, band_rows);
     });
+}
+
+RowRange rows_of_band(const Projection& projection, int32_t band, int32_t band_rows) {
+    const int32_t first = band * band_rows;
+    const int32_t end = std::min(first + band_rows, projection.height);
+    if (!projection.fine) return {first, end - 1};
+    return {2 * first, 2 * end};
 }
 
 void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
                 uint32_t* visible, float* nearness) {
-    const int64_t first = static_cast<int64_t>(band) * band_rows;
-    int64_t last = first + band_rows;
-    if (last > projection.height) last = projection.height;
-    for (int64_t k = first * stride; k < last * stride; k++) {
-        nearness[k] = projection.least_nearness;
-    }
-    if (visible != nullptr) {
-        memset(visible + first * stride, 0xff, static_cast<size_t>((last - first) * stride) * 4);
-    }
+    const RowRange rows = rows_of_band(projection, band, band_rows);
+    const int64_t count = (rows.last - rows.first + 1) * stride;
+    for (int64_t k = 0; k < count; k++) nearness[k] = projection.least_nearness;
+    if (visible != nullptr) memset(visible, 0xff, static_cast<size_t>(count) * 4);
 }
 
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
                float* nearness) {
-    const int32_t first_row = band * band_rows;
-    const int32_t last_row =
-        (first_row + band_rows < projection.height ? first_row + band_rows : projection.height) - 1;
+    const RowRange rows = rows_of_band(projection, band, band_rows);
+    const int64_t before = rows.first * stride;
+    uint32_t* seen = visible == nullptr ? nullptr : visible - before;
+    const auto plain = projection.fine ? draw_triangle<false, true> : draw_triangle<false, false>;
+    const auto masked = projection.fine ? draw_triangle<true, true> : draw_triangle<true, false>;
     for (int64_t s = 0; s < set.segment_count; s++) {
         const Segment& segment = set.segments[static_cast<size_t>(s)];
         const uint32_t begin = segment.starts[static_cast<size_t>(band)];
@@ -587,14 +617,9 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
             __builtin_prefetch(ahead);
             __builtin_prefetch(ahead + 64);
             const Triangle& t = set.triangles[number];
-            const Part& part = parts.parts[t.part];
-            if (t.masked) {
-                draw_triangle<true>(t, number, part, projection, first_row, last_row, stride,
-                                    visible, nearness);
-            } else {
-                draw_triangle<false>(t, number, part, projection, first_row, last_row, stride,
-                                     visible, nearness);
-            }
+            const auto draw = t.masked ? masked : plain;
+            draw(t, number, parts.parts[t.part], projection, rows.first, rows.last, stride, seen,
+                 nearness - before);
         }
     }
 }
@@ -609,7 +634,7 @@ void draw_window(const TriangleSet& set, const DrawList& parts, const Projection
             const int64_t number = segment.first_triangle + k;
             const Triangle& t = set.triangles[static_cast<size_t>(number)];
             const Part& part = parts.parts[t.part];
-            const auto draw = t.masked ? draw_triangle<true> : draw_triangle<false>;
+            const auto draw = t.masked ? draw_triangle<true, false> : draw_triangle<false, false>;
             draw(t, static_cast<uint32_t>(number), part, projection, projection.y0, projection.y1,
                  stride, nullptr, origin);
         }

@@ -13,7 +13,8 @@ namespace sailenv {
 // A triangle on the screen. `edge` holds a, b, c of three functions a x + b y + c of the pixel
 // (integers are pixel centres): each is 0 on the edge opposite to its corner, positive inside, and
 // together with `inverse_det` they are the corners' weights over depth. `nearness` is such a
-// function too: 1 / depth in perspective, 1 - depth in a shadow map.
+// function too: 1 / depth in perspective, 1 - depth in a shadow map. `x0` to `y1` are the first and
+// last samples that it can cover.
 struct Triangle {
     float edge[9];
     float nearness[3];
@@ -37,10 +38,13 @@ struct InstanceFrame {
 
 struct Projection {
     bool perspective;
-    double focal, cx, cy;  // 1, 0, 0 in a shadow map
-    int32_t width, height;
-    int32_t x0, y0, x1, y1;  // first and last pixels that are drawn; may lie beside the picture
-    float least_nearness;    // what is not nearer is not drawn
+    double focal, cx, cy;    // 1, 0, 0 in a shadow map
+    int32_t width, height;   // pixels
+    int32_t x0, y0, x1, y1;  // first and last samples that are drawn; may lie beside the picture
+    // Samples are the centres of pixels. Fine ones are half a pixel apart: sample k lies at pixel
+    // (k - 1) / 2, so there are 2 n + 1 to n pixels, and those of odd numbers are centres.
+    bool fine;
+    float least_nearness;  // what is not nearer is not drawn
     float greatest_nearness;
 };
 
@@ -63,6 +67,7 @@ struct TriangleSet {
     std::vector<Segment> segments;
     int64_t segment_count = 0;
     std::vector<Triangle> triangles;
+    std::vector<int32_t> part_of;     // of each triangle, where samples are fine
     std::vector<int64_t> corners_at;  // of each part in x, y, z; -1 where it is not seen
     std::vector<int32_t> parts_seen;
     std::vector<float> x, y, z;  // corners as the eye has them
@@ -90,7 +95,13 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
                     const Instances& instances, const Projection& projection, const int32_t* order,
                     int64_t order_count, bool back_first, TriangleSet& set);
 
-// Draws one band: `visible` (may be null) and `nearness` begin at the picture's first row.
+// The rows of samples of a band; neighbouring bands share a row of fine ones.
+struct RowRange {
+    int32_t first, last;
+};
+RowRange rows_of_band(const Projection& projection, int32_t band, int32_t band_rows);
+
+// Draws one band: `visible` (may be null) and `nearness` begin at the band's first sample.
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible, float* nearness);
 
@@ -99,6 +110,7 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
 void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                  int64_t stride, float* nearness);
 
+// Makes that every sample of a band sees nothing.
 void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
                 uint32_t* visible, float* nearness);
 

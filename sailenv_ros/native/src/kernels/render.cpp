@@ -5,9 +5,16 @@
 
 #include "../abi.h"
 #include "../threads.h"
+#include "edges.h"
 #include "shade.h"
 
 namespace sailenv {
+
+// What a drawing keeps from picture to picture.
+struct DrawingScratch : Scratch {
+    std::vector<EdgeScratch> edges;  // of each thread
+};
+
 namespace {
 
 // Rows of a band: enough bands that threads finish together, few enough that triangles are not in
@@ -21,6 +28,18 @@ void reserve_pixels(Scratch& scratch, int64_t width, int64_t height) {
     if (scratch.nearness.size() < count) {
         scratch.nearness.resize(count);
         scratch.visible.resize(count);
+    }
+}
+
+void reserve_samples(std::vector<EdgeScratch>& edges, int64_t threads, int64_t width,
+                     int64_t band_rows) {
+    edges.resize(std::max(edges.size(), static_cast<size_t>(std::max<int64_t>(threads, 1))));
+    for (EdgeScratch& scratch : edges) {
+        scratch.stride = fine_stride(width);
+        const size_t count = static_cast<size_t>(scratch.stride * (2 * band_rows + 1) + 16);
+        if (scratch.visible.size() >= count) continue;
+        scratch.visible.resize(count);
+        scratch.nearness.resize(count);
     }
 }
 
@@ -42,9 +61,25 @@ void sort_glass(Scratch& scratch, const DrawList& glass) {
     });
 }
 
-void draw_picture(int64_t threads, Scratch& scratch, const View& view, const Instances& instances,
-                  const DrawList& parts, const DrawList& glass, const Light* light,
-                  const Outputs& outputs) {
+// Draws a band of fine samples, and takes from it what the centres of pixels see.
+void draw_fine_band(const Projection& fine, const DrawList& parts, int32_t band, Scratch& scratch,
+                    EdgeScratch& edges) {
+    const RowRange rows = rows_of_band(fine, band, scratch.band_rows);
+    uint32_t* visible = edges.visible.data();
+    float* nearness = edges.nearness.data();
+    clear_band(fine, band, scratch.band_rows, edges.stride, visible, nearness);
+    draw_band(scratch.opaque, parts, fine, band, scratch.band_rows, edges.stride, visible,
+              nearness);
+    for (int64_t row = rows.first + 1; row < rows.last; row += 2) {
+        const int64_t from = (row - rows.first) * edges.stride, to = row / 2 * scratch.stride;
+        take_centres(visible + from, fine.width, scratch.visible.data() + to);
+        take_centres(nearness + from, fine.width, scratch.nearness.data() + to);
+    }
+}
+
+void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
+                  const Instances& instances, const DrawList& parts, const DrawList& glass,
+                  const Light* light, const Outputs& outputs) {
     Projection projection{};
     projection.perspective = true;
     projection.focal = view.focal;
@@ -57,12 +92,20 @@ void draw_picture(int64_t threads, Scratch& scratch, const View& view, const Ins
     // A little less: annotations compare depths with the far distance exactly.
     projection.least_nearness = std::nextafter(static_cast<float>(1.0 / view.far_m), 0.0f);
     projection.greatest_nearness = 3e38f;
+    const bool shaded = outputs.radiance != nullptr;
+    const bool smoothed = shaded && view.smooth_edges != 0;
+    Projection sampled = projection;
+    if (smoothed) {
+        sampled.fine = true;
+        sampled.x1 = 2 * projection.width;
+        sampled.y1 = 2 * projection.height;
+    }
     reserve_pixels(scratch, view.width, view.height);
     scratch.band_rows = band_rows_of(view.height);
-    set_frames(scratch, instances, view.camera_from_world, projection);
-    make_triangles(threads, scratch, parts, instances, projection, nullptr, parts.count, false,
+    if (smoothed) reserve_samples(scratch.edges, threads, view.width, scratch.band_rows);
+    set_frames(scratch, instances, view.camera_from_world, sampled);
+    make_triangles(threads, scratch, parts, instances, sampled, nullptr, parts.count, false,
                    scratch.opaque);
-    const bool shaded = outputs.radiance != nullptr;
     const bool glazed = shaded && glass.count > 0;
     if (glazed) {
         sort_glass(scratch, glass);
@@ -92,16 +135,27 @@ void draw_picture(int64_t threads, Scratch& scratch, const View& view, const Ins
         shading.eye[i] = static_cast<float>(view.world_from_camera[4 * i + 3]);
     }
     const int32_t band_rows = scratch.band_rows;
-    parallel_for(threads, view.height, band_rows, [&](int64_t first, int64_t last, int64_t) {
+    parallel_for(threads, view.height, band_rows, [&](int64_t first, int64_t last, int64_t slot) {
         const int32_t band = static_cast<int32_t>(first / band_rows);
-        uint32_t* visible = scratch.visible.data();
-        float* nearness = scratch.nearness.data();
-        clear_band(projection, band, band_rows, scratch.stride, visible, nearness);
-        draw_band(scratch.opaque, parts, projection, band, band_rows, scratch.stride, visible,
-                  nearness);
-        shade_band(shading, static_cast<int32_t>(first), static_cast<int32_t>(last));
+        const int32_t first_row = static_cast<int32_t>(first);
+        const int32_t end_row = static_cast<int32_t>(last);
+        uint32_t* visible = scratch.visible.data() + first * scratch.stride;
+        float* nearness = scratch.nearness.data() + first * scratch.stride;
+        if (smoothed) {
+            draw_fine_band(sampled, parts, band, scratch, scratch.edges[static_cast<size_t>(slot)]);
+        } else {
+            clear_band(projection, band, band_rows, scratch.stride, visible, nearness);
+            draw_band(scratch.opaque, parts, projection, band, band_rows, scratch.stride, visible,
+                      nearness);
+        }
+        shade_band(shading, first_row, end_row);
+        if (smoothed) {
+            smooth_edges_of_band(shading, first_row, end_row,
+                                 scratch.edges[static_cast<size_t>(slot)]);
+        }
         if (glazed) {
-            draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows, nearness);
+            draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows,
+                            scratch.nearness.data());
         }
     });
 }
@@ -110,12 +164,12 @@ void draw_picture(int64_t threads, Scratch& scratch, const View& view, const Ins
 }  // namespace sailenv
 
 // Makes the memory that pictures are drawn in, and frees it. One drawing at a time may use it.
-SAILENV_KERNEL(make_scratch)(sailenv::Scratch** made) {
-    *made = new (std::nothrow) sailenv::Scratch;
+SAILENV_KERNEL(make_scratch)(sailenv::DrawingScratch** made) {
+    *made = new (std::nothrow) sailenv::DrawingScratch;
     return *made == nullptr ? sailenv::STATUS_OUT_OF_MEMORY : sailenv::STATUS_OK;
 }
 
-SAILENV_KERNEL(free_scratch)(sailenv::Scratch** made) {
+SAILENV_KERNEL(free_scratch)(sailenv::DrawingScratch** made) {
     delete *made;
     *made = nullptr;
     return sailenv::STATUS_OK;
@@ -123,7 +177,7 @@ SAILENV_KERNEL(free_scratch)(sailenv::Scratch** made) {
 
 // Draws what one camera sees. `light` may be null where no radiance is wanted.
 SAILENV_KERNEL(draw_picture)
-(int64_t threads, sailenv::Scratch** scratch, const sailenv::View* view,
+(int64_t threads, sailenv::DrawingScratch** scratch, const sailenv::View* view,
  const sailenv::Instances* instances, const sailenv::DrawList* parts,
  const sailenv::DrawList* glass, const sailenv::Light* light, const sailenv::Outputs* outputs) {
     using namespace sailenv;
@@ -146,7 +200,7 @@ SAILENV_KERNEL(draw_picture)
 // begins as a copy of that. `changed` has a number for each 16 rows: 1 where the map differs from
 // `resting`.
 SAILENV_KERNEL(draw_shadow_map)
-(int64_t threads, sailenv::Scratch** handle, const double* map_from_world,
+(int64_t threads, sailenv::DrawingScratch** handle, const double* map_from_world,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, int64_t size,
  const float* resting, uint8_t* changed, float* nearness) {
     using namespace sailenv;
@@ -167,6 +221,7 @@ SAILENV_KERNEL(draw_shadow_map)
         const int64_t stride = size + 8;
         parallel_for(threads, size, BAND_ROWS, [&](int64_t first, int64_t last, int64_t) {
             const int32_t band = static_cast<int32_t>(first / BAND_ROWS);
+            float* band_nearness = nearness + first * stride;
             bool reached = false;
             for (int64_t k = 0; k < set.segment_count; k++) {
                 const std::vector<uint32_t>& starts = set.segments[static_cast<size_t>(k)].starts;
@@ -174,13 +229,13 @@ SAILENV_KERNEL(draw_shadow_map)
                     starts[static_cast<size_t>(band)] < starts[static_cast<size_t>(band) + 1];
             }
             if (resting == nullptr) {
-                clear_band(projection, band, BAND_ROWS, stride, nullptr, nearness);
+                clear_band(projection, band, BAND_ROWS, stride, nullptr, band_nearness);
             } else if (reached || changed[band]) {
-                memcpy(nearness + first * stride, resting + first * stride,
+                memcpy(band_nearness, resting + first * stride,
                        static_cast<size_t>((last - first) * stride) * sizeof(float));
             }
             if (reached) {
-                draw_band(set, *parts, projection, band, BAND_ROWS, stride, nullptr, nearness);
+                draw_band(set, *parts, projection, band, BAND_ROWS, stride, nullptr, band_nearness);
             }
             changed[band] = resting == nullptr || reached;
         });

@@ -138,6 +138,7 @@ struct View {
     double camera_from_world[16], world_from_camera[16];
     double focal, cx, cy, far_m;
     int64_t width, height;
+    int64_t smooth_edges;  // 1: edges of surfaces are smoothed, see kernels/edges.cpp
 };
 
 // What is wanted; null pointers for what is not.

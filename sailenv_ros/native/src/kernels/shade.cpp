@@ -15,11 +15,13 @@ constexpr float PI = 3.14159265f;
 // Pictures of colour maps are nearest to the mean over the pixel a little finer: measured
 // beside 4 x 4 samples a pixel. The same as in shaders/textures.glsl.
 constexpr float PICTURE_BIAS = -0.25f;
+constexpr float MOST_LOOK_UPS = 4.0f;
 constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's size
 
 struct Chunk {
-    int32_t x, y, count, padded;
-    bool hit, missed, coloured, detailed;  // what there is among the pixels
+    int32_t x, y, count, padded;                 // of a row; `x` and `y` not of fragments
+    alignas(32) float at_x[CHUNK], at_y[CHUNK];  // [pixels]
+    bool hit, missed, coloured, detailed;        // what there is among the pixels
     alignas(32) float depth[CHUNK], nx[CHUNK], ny[CHUNK], nz[CHUNK];  // normal: world frame
     alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
     // Changes of uv / depth and of 1 / depth from pixel to pixel.
@@ -70,11 +72,179 @@ void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count) {
     }
 }
 
+// What the corners of a triangle know, over its depth: planes of a row of the picture.
+struct RowPlanes {
+    f8 slope, offset, moved;  // normal (world frame), uv, light uv, 1; `moved` is added at the end
+    f8 look, maps;            // see `Chunk`: material, and how uv change from pixel to pixel
+    const uint32_t *colour_texels, *detail_texels;
+    float nearness_slope, nearness_offset;
+    int32_t id;
+    bool coloured, detailed;
+};
+
+constexpr f8 NOTHING_THERE = {1, 0, 0, 0, 0, 0, 0, 1}, PLAIN = {0, 0, 0, 0, 1, 0, 0, 0},
+             NO_MAPS = {0, 0, 0, 0, NO_MAP, 0, 0, 0};
+
+LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float y) {
+    RowPlanes r;
+    const Part& part = s.parts->parts[t.part];
+    const InstanceFrame& frame = s.frames[part.instance];
+    const float* vertex = part.vertices;
+    const f8 a0 = load(vertex + 8 * static_cast<int64_t>(t.vertex[0]));
+    const f8 a1 = load(vertex + 8 * static_cast<int64_t>(t.vertex[1]));
+    const f8 a2 = load(vertex + 8 * static_cast<int64_t>(t.vertex[2]));
+    const float q = t.inverse_det;
+    const f8 object_x = a0 * (t.edge[0] * q) + a1 * (t.edge[3] * q) + a2 * (t.edge[6] * q);
+    const f8 object_0 = a0 * ((t.edge[1] * y + t.edge[2]) * q) +
+                        a1 * ((t.edge[4] * y + t.edge[5]) * q) +
+                        a2 * ((t.edge[7] * y + t.edge[8]) * q);
+    const bool charted = part.has_chart && s.at_baked_pose[part.instance];
+    const f8 kept = {0, 0, 0, 1, 1, charted ? part.chart[2] : 0.0f, charted ? part.chart[3] : 0.0f,
+                     0};
+    r.moved = f8{0, 0, 0, 0, 0, charted ? part.chart[0] : 0.0f, charted ? part.chart[1] : 0.0f, 0};
+    const float turned = t.back ? -1.0f : 1.0f;
+    const f8 n0 = load(frame.normal_columns[0]) * turned,
+             n1 = load(frame.normal_columns[1]) * turned,
+             n2 = load(frame.normal_columns[2]) * turned;
+    r.slope = object_x * kept + n0 * object_x[0] + n1 * object_x[1] + n2 * object_x[2];
+    const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, 1};
+    r.offset =
+        object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
+    r.look = f8{part.colour[0], part.colour[1], part.colour[2], t.nearness[0],
+                part.roughness, part.metallic,  part.emission,  t.nearness[1]};
+    r.coloured = part.colour_map != nullptr;
+    r.detailed = part.detail_map != nullptr;
+    r.maps = NO_MAPS;
+    r.colour_texels = r.coloured ? part.colour_map->texels : WHITE_TEXELS;
+    r.detail_texels = r.detailed ? part.detail_map->texels : WHITE_TEXELS;
+    if (r.coloured || r.detailed) {
+        const f8 at_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
+        r.maps = f8{object_x[3],
+                    object_x[4],
+                    at_y[3],
+                    at_y[4],
+                    r.coloured ? static_cast<float>(part.colour_map->log2_size) : NO_MAP,
+                    r.detailed ? static_cast<float>(part.detail_map->log2_size) : 0.0f,
+                    part.flags & PART_FINISH_MAP ? 1.0f : 0.0f,
+                    part.flags & PART_NORMAL_MAP ? 1.0f : 0.0f};
+    }
+    r.nearness_slope = t.nearness[0];
+    r.nearness_offset = t.nearness[1] * y + t.nearness[2];
+    r.id = part.id;
+    return r;
+}
+
+// A chunk's numbers pixel by pixel, before they are sorted by quantity.
+struct PixelRows {
+    alignas(32) float attributes[8 * CHUNK], material[8 * CHUNK], maps[8 * CHUNK];
+};
+
+LANES_INLINE void set_empty(Chunk& c, PixelRows& rows, int32_t i) {
+    store(rows.attributes + 8 * i, NOTHING_THERE);
+    store(rows.material + 8 * i, PLAIN);
+    store(rows.maps + 8 * i, NO_MAPS);
+    c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
+    c.id[i] = 0;
+    c.empty[i] = -1;
+}
+
+LANES_INLINE void set_pixel(const RowPlanes& r, float x, Chunk& c, PixelRows& rows, int32_t i) {
+    const float depth = 1.0f / (r.nearness_slope * x + r.nearness_offset);
+    store(rows.attributes + 8 * i, (r.slope * x + r.offset) * depth + r.moved);
+    store(rows.material + 8 * i, r.look);
+    store(rows.maps + 8 * i, r.maps);
+    c.colour_texels[i] = r.colour_texels;
+    c.detail_texels[i] = r.detail_texels;
+    c.id[i] = r.id;
+    c.empty[i] = 0;
+}
+
+// Eight pixels of one triangle: each number at its place at once.
+LANES_INLINE void set_eight(const RowPlanes& r, Chunk& c, int32_t i) {
+    const f8 xs = load(c.at_x + i);
+    const f8 depth = 1.0f / (r.nearness_slope * xs + r.nearness_offset);
+    float* const rows[8] = {c.nx, c.ny, c.nz, c.u, c.v, c.light_u, c.light_v, c.depth};
+    float* const looks[8] = {c.red,       c.green,    c.blue,     c.nearness_x,
+                             c.roughness, c.metallic, c.emission, c.nearness_y};
+    for (int k = 0; k < 8; k++) {
+        store(rows[k] + i, (r.slope[k] * xs + r.offset[k]) * depth + r.moved[k]);
+        store(looks[k] + i, splat(r.look[k]));
+    }
+    store(c.colour_log2 + i, splat(r.maps[4]));
+    store(c.detail_log2 + i, splat(r.maps[5]));
+    store(c.finish + i, splat(r.maps[6]));
+    store(c.relief + i, splat(r.maps[7]));
+    if (r.coloured || r.detailed) {
+        store(c.ux + i, splat(r.maps[0]));
+        store(c.vx + i, splat(r.maps[1]));
+        store(c.uy + i, splat(r.maps[2]));
+        store(c.vy + i, splat(r.maps[3]));
+    }
+    store(c.id + i, splat(r.id));
+    store(c.empty + i, splat(0));
+    for (int k = 0; k < 8; k++) {
+        c.colour_texels[i + k] = r.colour_texels;
+        c.detail_texels[i + k] = r.detail_texels;
+    }
+}
+
+// Sorts by quantity eight pixels from the i-th on.
+void sort_eight(const PixelRows& rows, Chunk& c, int32_t i) {
+    f8 r[8];
+    for (int k = 0; k < 8; k++) r[k] = load(rows.attributes + 8 * (i + k));
+    transpose(r);
+    store(c.nx + i, r[0]);
+    store(c.ny + i, r[1]);
+    store(c.nz + i, r[2]);
+    store(c.u + i, r[3]);
+    store(c.v + i, r[4]);
+    store(c.light_u + i, r[5]);
+    store(c.light_v + i, r[6]);
+    store(c.depth + i, r[7]);
+    for (int k = 0; k < 8; k++) r[k] = load(rows.material + 8 * (i + k));
+    transpose(r);
+    store(c.red + i, r[0]);
+    store(c.green + i, r[1]);
+    store(c.blue + i, r[2]);
+    store(c.nearness_x + i, r[3]);
+    store(c.roughness + i, r[4]);
+    store(c.metallic + i, r[5]);
+    store(c.emission + i, r[6]);
+    store(c.nearness_y + i, r[7]);
+    if (!c.coloured && !c.detailed) return;
+    for (int k = 0; k < 8; k++) r[k] = load(rows.maps + 8 * (i + k));
+    transpose(r);
+    store(c.ux + i, r[0]);
+    store(c.vx + i, r[1]);
+    store(c.uy + i, r[2]);
+    store(c.vy + i, r[3]);
+    store(c.colour_log2 + i, r[4]);
+    store(c.detail_log2 + i, r[5]);
+    store(c.finish + i, r[6]);
+    store(c.relief + i, r[7]);
+}
+
+// Asks for the memory of a triangle, or of its corners, before it is needed.
+LANES_INLINE void prefetch(const Triangle* t) {
+    __builtin_prefetch(t);
+    __builtin_prefetch(reinterpret_cast<const char*>(t) + 64);
+}
+LANES_INLINE void prefetch_corners(const Shading& s, const Triangle& t) {
+    const float* vertices = s.parts->parts[t.part].vertices;
+    for (int k = 0; k < 3; k++) {
+        __builtin_prefetch(vertices + 8 * static_cast<int64_t>(t.vertex[k]));
+    }
+}
+
 // Interpolates what the triangles' corners know, and notes the materials.
 void gather(const Shading& s, Chunk& c) {
     const uint32_t* visible = s.visible + c.y * s.stride + c.x;
-    alignas(32) float attributes[8 * CHUNK], material[8 * CHUNK], maps[8 * CHUNK];
+    PixelRows rows;
     const float y = static_cast<float>(c.y);
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        store(c.at_x + i, counting() + static_cast<float>(c.x + i));
+        store(c.at_y + i, splat(y));
+    }
     int16_t begins[CHUNK + 1];
     const Triangle* triangles[CHUNK];
     int32_t runs = 0;
@@ -82,182 +252,81 @@ void gather(const Shading& s, Chunk& c) {
         const uint32_t tag = visible[i];
         begins[runs] = static_cast<int16_t>(i);
         const Triangle* t = tag == NOTHING ? nullptr : s.set->triangles.data() + tag;
-        if (t != nullptr) {
-            __builtin_prefetch(t);
-            __builtin_prefetch(reinterpret_cast<const char*>(t) + 64);
-        }
+        if (t != nullptr) prefetch(t);
         triangles[runs++] = t;
         do i++;
         while (i < c.count && visible[i] == tag);
     }
     begins[runs] = static_cast<int16_t>(c.count);
     for (int32_t r = 0; r < runs; r++) {
-        const Triangle* t = triangles[r];
-        if (t == nullptr) continue;
-        const float* vertices = s.parts->parts[t->part].vertices;
-        for (int k = 0; k < 3; k++) {
-            __builtin_prefetch(vertices + 8 * static_cast<int64_t>(t->vertex[k]));
-        }
+        if (triangles[r] != nullptr) prefetch_corners(s, *triangles[r]);
     }
     c.hit = c.missed = c.coloured = c.detailed = false;
     uint32_t whole = 0;  // groups of eight pixels that are filled in already
-    const f8 nothing_there = {1, 0, 0, 0, 0, 0, 0, 1}, plain = {0, 0, 0, 0, 1, 0, 0, 0},
-             no_maps = {0, 0, 0, 0, NO_MAP, 0, 0, 0};
     for (int32_t r = 0; r < runs; r++) {
         int32_t i = begins[r];
         const int32_t end = begins[r + 1];
         if (triangles[r] == nullptr) {
             c.missed = true;
-            for (; i < end; i++) {
-                store(attributes + 8 * i, nothing_there);
-                store(material + 8 * i, plain);
-                store(maps + 8 * i, no_maps);
-                c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
-                c.id[i] = 0;
-                c.empty[i] = -1;
-            }
+            for (; i < end; i++) set_empty(c, rows, i);
             continue;
         }
+        const RowPlanes planes = row_planes(s, *triangles[r], y);
         c.hit = true;
-        const Triangle& t = *triangles[r];
-        const Part& part = s.parts->parts[t.part];
-        const InstanceFrame& frame = s.frames[part.instance];
-        const float* vertex = part.vertices;
-        const f8 a0 = load(vertex + 8 * static_cast<int64_t>(t.vertex[0]));
-        const f8 a1 = load(vertex + 8 * static_cast<int64_t>(t.vertex[1]));
-        const f8 a2 = load(vertex + 8 * static_cast<int64_t>(t.vertex[2]));
-        const float q = t.inverse_det;
-        const f8 object_x = a0 * (t.edge[0] * q) + a1 * (t.edge[3] * q) + a2 * (t.edge[6] * q);
-        const f8 object_0 = a0 * ((t.edge[1] * y + t.edge[2]) * q) +
-                            a1 * ((t.edge[4] * y + t.edge[5]) * q) +
-                            a2 * ((t.edge[7] * y + t.edge[8]) * q);
-        const bool charted = part.has_chart && s.at_baked_pose[part.instance];
-        const f8 kept = {
-            0, 0, 0, 1, 1, charted ? part.chart[2] : 0.0f, charted ? part.chart[3] : 0.0f, 0};
-        const f8 moved = {
-            0, 0, 0, 0, 0, charted ? part.chart[0] : 0.0f, charted ? part.chart[1] : 0.0f, 0};
-        const float turned = t.back ? -1.0f : 1.0f;
-        const f8 n0 = load(frame.normal_columns[0]) * turned,
-                 n1 = load(frame.normal_columns[1]) * turned,
-                 n2 = load(frame.normal_columns[2]) * turned;
-        const f8 at_x = object_x * kept + n0 * object_x[0] + n1 * object_x[1] + n2 * object_x[2];
-        const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, 1};
-        const f8 at_0 =
-            object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
-        const f8 look = {part.colour[0], part.colour[1], part.colour[2], t.nearness[0],
-                         part.roughness, part.metallic,  part.emission,  t.nearness[1]};
-        const bool coloured = part.colour_map != nullptr, detailed = part.detail_map != nullptr;
-        f8 map = no_maps;
-        const uint32_t *colour_texels = WHITE_TEXELS, *detail_texels = WHITE_TEXELS;
-        if (coloured || detailed) {
-            const f8 at_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
-            map = f8{object_x[3],
-                     object_x[4],
-                     at_y[3],
-                     at_y[4],
-                     coloured ? static_cast<float>(part.colour_map->log2_size) : NO_MAP,
-                     detailed ? static_cast<float>(part.detail_map->log2_size) : 0.0f,
-                     part.flags & PART_FINISH_MAP ? 1.0f : 0.0f,
-                     part.flags & PART_NORMAL_MAP ? 1.0f : 0.0f};
-            if (coloured) colour_texels = part.colour_map->texels;
-            if (detailed) detail_texels = part.detail_map->texels;
-            c.coloured |= coloured;
-            c.detailed |= detailed;
-        }
-        const float offset = t.nearness[1] * y + t.nearness[2];
-        for (; i < end; i++) {
+        c.coloured |= planes.coloured;
+        c.detailed |= planes.detailed;
+        while (i < end) {
             if ((i & 7) == 0 && end - i >= 8) {
-                // Eight pixels of one triangle: each number at its place at once.
                 whole |= 1u << (i / 8);
-                const f8 xs = counting() + static_cast<float>(c.x + i);
-                const f8 depth = 1.0f / (t.nearness[0] * xs + offset);
-                float* const rows[8] = {c.nx, c.ny, c.nz, c.u, c.v, c.light_u, c.light_v, c.depth};
-                float* const looks[8] = {c.red,       c.green,    c.blue,     c.nearness_x,
-                                         c.roughness, c.metallic, c.emission, c.nearness_y};
-                for (int k = 0; k < 8; k++) {
-                    store(rows[k] + i, (at_x[k] * xs + at_0[k]) * depth + moved[k]);
-                    store(looks[k] + i, splat(look[k]));
-                }
-                store(c.colour_log2 + i, splat(map[4]));
-                store(c.detail_log2 + i, splat(map[5]));
-                store(c.finish + i, splat(map[6]));
-                store(c.relief + i, splat(map[7]));
-                if (coloured || detailed) {
-                    store(c.ux + i, splat(map[0]));
-                    store(c.vx + i, splat(map[1]));
-                    store(c.uy + i, splat(map[2]));
-                    store(c.vy + i, splat(map[3]));
-                }
-                store(c.id + i, splat(part.id));
-                store(c.empty + i, splat(0));
-                for (int k = 0; k < 8; k++) {
-                    c.colour_texels[i + k] = colour_texels;
-                    c.detail_texels[i + k] = detail_texels;
-                }
-                i += 7;
-                continue;
+                set_eight(planes, c, i);
+                i += 8;
+            } else {
+                set_pixel(planes, c.at_x[i], c, rows, i);
+                i++;
             }
-            const float x = static_cast<float>(c.x + i);
-            const float depth = 1.0f / (t.nearness[0] * x + offset);
-            store(attributes + 8 * i, (at_x * x + at_0) * depth + moved);
-            store(material + 8 * i, look);
-            store(maps + 8 * i, map);
-            c.colour_texels[i] = colour_texels;
-            c.detail_texels[i] = detail_texels;
-            c.id[i] = part.id;
-            c.empty[i] = 0;
         }
     }
-    for (int32_t i = c.count; i < c.padded; i++) {
-        store(attributes + 8 * i, nothing_there);
-        store(material + 8 * i, plain);
-        store(maps + 8 * i, no_maps);
-        c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
-        c.id[i] = 0;
-        c.empty[i] = -1;
-    }
+    for (int32_t i = c.count; i < c.padded; i++) set_empty(c, rows, i);
     for (int32_t i = 0; i < c.padded; i += 8) {
-        if (whole >> (i / 8) & 1) continue;
-        f8 r[8];
-        for (int k = 0; k < 8; k++) r[k] = load(attributes + 8 * (i + k));
-        transpose(r);
-        store(c.nx + i, r[0]);
-        store(c.ny + i, r[1]);
-        store(c.nz + i, r[2]);
-        store(c.u + i, r[3]);
-        store(c.v + i, r[4]);
-        store(c.light_u + i, r[5]);
-        store(c.light_v + i, r[6]);
-        store(c.depth + i, r[7]);
-        for (int k = 0; k < 8; k++) r[k] = load(material + 8 * (i + k));
-        transpose(r);
-        store(c.red + i, r[0]);
-        store(c.green + i, r[1]);
-        store(c.blue + i, r[2]);
-        store(c.nearness_x + i, r[3]);
-        store(c.roughness + i, r[4]);
-        store(c.metallic + i, r[5]);
-        store(c.emission + i, r[6]);
-        store(c.nearness_y + i, r[7]);
-        if (!c.coloured && !c.detailed) continue;
-        for (int k = 0; k < 8; k++) r[k] = load(maps + 8 * (i + k));
-        transpose(r);
-        store(c.ux + i, r[0]);
-        store(c.vx + i, r[1]);
-        store(c.uy + i, r[2]);
-        store(c.vy + i, r[3]);
-        store(c.colour_log2 + i, r[4]);
-        store(c.detail_log2 + i, r[5]);
-        store(c.finish + i, r[6]);
-        store(c.relief + i, r[7]);
+        if (!(whole >> (i / 8) & 1)) sort_eight(rows, c, i);
     }
+}
+
+// The same of points anywhere in the picture.
+void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c) {
+    PixelRows rows;
+    for (int32_t i = 0; i < c.count; i++) {
+        if (fragments[i].tag != NOTHING) prefetch(s.set->triangles.data() + fragments[i].tag);
+    }
+    for (int32_t i = 0; i < c.count; i++) {
+        if (fragments[i].tag != NOTHING) {
+            prefetch_corners(s, s.set->triangles[fragments[i].tag]);
+        }
+    }
+    c.hit = c.missed = c.coloured = c.detailed = false;
+    for (int32_t i = 0; i < c.padded; i++) {
+        const Fragment& f = fragments[i < c.count ? i : 0];
+        c.at_x[i] = f.x;
+        c.at_y[i] = f.y;
+        if (i >= c.count || f.tag == NOTHING) {
+            c.missed |= i < c.count;
+            set_empty(c, rows, i);
+            continue;
+        }
+        const RowPlanes planes = row_planes(s, s.set->triangles[f.tag], f.y);
+        c.hit = true;
+        c.coloured |= planes.coloured;
+        c.detailed |= planes.detailed;
+        set_pixel(planes, f.x, c, rows, i);
+    }
+    for (int32_t i = 0; i < c.padded; i += 8) sort_eight(rows, c, i);
 }
 
 void set_rays(const Shading& s, Chunk& c) {
     const float* m = s.world_from_camera;
-    const float y = (static_cast<float>(c.y) - s.cy) / s.focal, inverse = 1.0f / s.focal;
+    const float inverse = 1.0f / s.focal;
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const f8 x = (counting() + static_cast<float>(c.x + i) - s.cx) * inverse;
+        const f8 x = (load(c.at_x + i) - s.cx) * inverse, y = (load(c.at_y + i) - s.cy) / s.focal;
         store(c.ray_x + i, m[0] * x + (m[1] * y + m[2]));
         store(c.ray_y + i, m[3] * x + (m[4] * y + m[5]));
         store(c.ray_z + i, m[6] * x + (m[7] * y + m[8]));
@@ -311,39 +380,60 @@ LANES_INLINE void store_taps(TapRows& rows, int32_t i, const Taps& taps) {
     store(rows.down + i, taps.down);
 }
 
-// Multiplies base colours by what colour maps hold; `bias` chooses finer levels where below 0.
-void colour(Chunk& c, float bias) {
-    alignas(32) float texels[4 * 8];
+// Looks colours up between two levels of maps, for the pixels of a mask; others keep their number
+// in `texels`.
+LANES_INLINE void look_up(const uint32_t* const* maps, f8 u, f8 v, i8 size, f8 level, i8 wanted,
+                          float* texels) {
+    const i8 whole = truncated(level);
+    const f8 share = level - as_float(whole);
+    const Taps fine = texture_taps(u, v, size, whole);
+    const bool between = any(share > 0.0f);
+    const Taps coarse = between ? texture_taps(u, v, size, whole < size ? whole + 1 : whole) : fine;
+    for (int k = 0; k < 8; k++) {
+        if (!wanted[k]) continue;
+        f4 found =
+            sample_bytes(maps[k], fine.upper[k], fine.lower[k], fine.across[k], fine.down[k]);
+        if (between) {
+            const f4 far = sample_bytes(maps[k], coarse.upper[k], coarse.lower[k], coarse.across[k],
+                                        coarse.down[k]);
+            found = found + (far - found) * share[k];
+        }
+        f4_any* sum = reinterpret_cast<f4_any*>(texels + 4 * k);
+        *sum = *sum + found;
+    }
+}
+
+// Multiplies base colours by what colour maps hold: by the mean of up to `most` look-ups along the
+// longer side of what a pixel covers. `bias` chooses finer levels where below 0.
+void colour(Chunk& c, float bias, float most) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 log2 = load(c.colour_log2 + i);
-        if (!any(log2 >= 0.0f)) continue;
+        const i8 mapped = log2 >= 0.0f;
+        if (!any(mapped)) continue;
         const i8 size = truncated(max8(log2, splat(0.0f)));
         const Slopes d = uv_slopes(c, i);
-        const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, bias);
-        const i8 whole = truncated(level);
-        const f8 u = load(c.u + i), v = load(c.v + i), share = level - as_float(whole);
-        const Taps fine = texture_taps(u, v, size, whole);
-        const uint32_t* const* maps = c.colour_texels + i;
-        if (any(share > 0.0f)) {
-            const Taps coarse = texture_taps(u, v, size, whole < size ? whole + 1 : whole);
-            for (int k = 0; k < 8; k++) {
-                const f4 near = sample_bytes(maps[k], fine.upper[k], fine.lower[k], fine.across[k],
-                                             fine.down[k]);
-                const f4 far = sample_bytes(maps[k], coarse.upper[k], coarse.lower[k],
-                                            coarse.across[k], coarse.down[k]);
-                *reinterpret_cast<f4_any*>(texels + 4 * k) = near + (far - near) * share[k];
-            }
-        } else {
-            for (int k = 0; k < 8; k++) {
-                *reinterpret_cast<f4_any*>(texels + 4 * k) = sample_bytes(
-                    maps[k], fine.upper[k], fine.lower[k], fine.across[k], fine.down[k]);
-            }
+        const f8 across = d.ux * d.ux + d.vx * d.vx, down = d.uy * d.uy + d.vy * d.vy;
+        const i8 wide = across >= down;
+        const f8 longer = wide ? across : down, shorter = wide ? down : across;
+        const f8 ratio = sqrt8(longer / max8(shorter, longer * 0.001f + 1e-20f));
+        const f8 count = clamp8(floor8(ratio + 0.5f), 1.0f, most), share = 1.0f / count;
+        const f8 along_u = (wide ? d.ux : d.uy) * share, along_v = (wide ? d.vx : d.vy) * share;
+        const f8 level = level_of_detail(along_u, along_v, along_u, along_v, size, bias);
+        const f8 first = 0.5f - 0.5f * count;
+        const f8 u = load(c.u + i) + along_u * first, v = load(c.v + i) + along_v * first;
+        alignas(32) float texels[4 * 8] = {};
+        i8 wanted = mapped;
+        for (float k = 0.0f; any(wanted); k += 1.0f, wanted &= count > k) {
+            look_up(c.colour_texels + i, u + along_u * k, v + along_v * k, size, level, wanted,
+                    texels);
         }
-        f8 r, g, b, a;
-        transpose4(texels, r, g, b, a);
-        store(c.red + i, load(c.red + i) * (r * (1.0f / 255.0f)));
-        store(c.green + i, load(c.green + i) * (g * (1.0f / 255.0f)));
-        store(c.blue + i, load(c.blue + i) * (b * (1.0f / 255.0f)));
+        Colour8 sum;
+        f8 alpha;
+        transpose4(texels, sum.r, sum.g, sum.b, alpha);
+        const f8 unit = share * (1.0f / 255.0f);
+        store(c.red + i, load(c.red + i) * (mapped ? sum.r * unit : splat(1.0f)));
+        store(c.green + i, load(c.green + i) * (mapped ? sum.g * unit : splat(1.0f)));
+        store(c.blue + i, load(c.blue + i) * (mapped ? sum.b * unit : splat(1.0f)));
     }
 }
 
@@ -355,7 +445,7 @@ void write_albedo(const Shading& s, Chunk& c) {
         memcpy(shaded[k], channels[k], sizeof(shaded[k]));
         for (int32_t i = 0; i < c.padded; i += 8) store(channels[k] + i, splat(1.0f));
     }
-    if (c.coloured) colour(c, 0.0f);
+    if (c.coloured) colour(c, 0.0f, 1.0f);
     const uint32_t* visible = s.visible + c.y * s.stride + c.x;
     float* out = s.outputs->albedo + 3 * (c.y * s.width + c.x);
     for (int32_t i = 0; i < c.count; i++) {
@@ -832,7 +922,7 @@ Colour8 background(const Light& light, f8 dx, f8 dy, f8 dz) {
 }
 
 // Exposed radiance and the share of it that came from around, as halves.
-void finish(const Shading& s, const Chunk& c) {
+void finish(const Shading& s, const Chunk& c, uint16_t* radiance) {
     const Light& light = *s.light;
     alignas(32) int32_t out[2 * CHUNK];
     for (int32_t i = 0; i < c.padded; i += 8) {
@@ -854,7 +944,7 @@ void finish(const Shading& s, const Chunk& c) {
         store(out + 2 * i, (i8)SHUFFLE(rg, ba, 0, 8, 1, 9, 2, 10, 3, 11));
         store(out + 2 * i + 8, (i8)SHUFFLE(rg, ba, 4, 12, 5, 13, 6, 14, 7, 15));
     }
-    memcpy(s.outputs->radiance + 4 * (c.y * s.width + c.x), out, static_cast<size_t>(c.count) * 8);
+    memcpy(radiance, out, static_cast<size_t>(c.count) * 8);
 }
 
 void place_points(const Shading& s, Chunk& c) {
@@ -885,6 +975,29 @@ void write_gathered_surface(const Shading& s, const Chunk& c) {
     memcpy(out, pairs, static_cast<size_t>(c.count) * 8);
 }
 
+// The light of what was gathered.
+void light_chunk(const Shading& s, Chunk& c) {
+    if (!c.hit) {
+        for (int32_t i = 0; i < c.padded; i += 8) {
+            store(c.light_r + i, splat(0.0f));
+            store(c.light_g + i, splat(0.0f));
+            store(c.light_b + i, splat(0.0f));
+            store(c.from_around + i, splat(0.0f));
+        }
+        return;
+    }
+    if (c.coloured) colour(c, PICTURE_BIAS, MOST_LOOK_UPS);
+    if (c.detailed) detail(s, c);
+    place_points(s, c);
+    if (s.light->baked) {
+        baked_light(s, c);
+    } else {
+        live_light(s, c);
+    }
+    mirrored_light(s, c);
+    combine(s, c);
+}
+
 void shade_chunk(const Shading& s, Chunk& c) {
     const Outputs& wanted = *s.outputs;
     if (!wanted.radiance && !wanted.normals && !wanted.albedo) {
@@ -897,26 +1010,8 @@ void shade_chunk(const Shading& s, Chunk& c) {
     if (wanted.normals != nullptr) write_normals(s, c);
     if (wanted.albedo != nullptr) write_albedo(s, c);
     if (s.outputs->radiance == nullptr) return;
-    if (c.hit) {
-        if (c.coloured) colour(c, PICTURE_BIAS);
-        if (c.detailed) detail(s, c);
-        place_points(s, c);
-        if (s.light->baked) {
-            baked_light(s, c);
-        } else {
-            live_light(s, c);
-        }
-        mirrored_light(s, c);
-        combine(s, c);
-    } else {
-        for (int32_t i = 0; i < c.padded; i += 8) {
-            store(c.light_r + i, splat(0.0f));
-            store(c.light_g + i, splat(0.0f));
-            store(c.light_b + i, splat(0.0f));
-            store(c.from_around + i, splat(0.0f));
-        }
-    }
-    finish(s, c);
+    light_chunk(s, c);
+    finish(s, c, s.outputs->radiance + 4 * (c.y * s.width + c.x));
 }
 
 }  // namespace
@@ -979,6 +1074,19 @@ void shade_band(const Shading& s, int32_t first_row, int32_t last_row) {
             chunk.y = y;
             shade_chunk(s, chunk);
         }
+    }
+}
+
+void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count, uint16_t* out) {
+    Chunk chunk;
+    for (int64_t first = 0; first < count; first += CHUNK) {
+        const int64_t rest = count - first;
+        chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
+        chunk.padded = (chunk.count + 7) & ~7;
+        gather_fragments(s, fragments + first, chunk);
+        set_rays(s, chunk);
+        light_chunk(s, chunk);
+        finish(s, chunk, out + 4 * first);
     }
 }
 

@@ -49,6 +49,19 @@ Colour8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 
 // Shades the pixels of one band: radiance, surfaces, normals, as wanted.
 void shade_band(const Shading& shading, int32_t first_row, int32_t last_row);
 
+// What some samples of a pixel see besides what its centre sees.
+struct Fragment {
+    float x, y;    // where one of the samples lies [pixels]
+    float weight;  // the samples' share of the pixel
+    uint32_t tag;  // number of the triangle, or NOTHING
+    int32_t pixel_x, pixel_y;
+};
+
+// Shades some points of surfaces: exposed radiance and the share of it that came from around, four
+// halves each.
+void shade_fragments(const Shading& shading, const Fragment* fragments, int64_t count,
+                     uint16_t* light);
+
 // Draws see-through surfaces over a band of radiance.
 void draw_glass_band(const Shading& shading, const TriangleSet& glass, const DrawList& parts,
                      const Projection& projection, int32_t band, int32_t band_rows,

@@ -1,0 +1,303 @@
+// Edges of surfaces: visibility is known at nine samples of each pixel, light is worked out once
+// for each surface that they see.
+//
+// The samples lie half a pixel apart, on the pixel's sides and corners and in its middle. Their
+// weights are those of the trapezoid rule over the pixel's square: 4 for the middle, 2 on sides, 1
+// in corners, of 16. Samples that see one smooth surface share their light.
+#include "edges.h"
+
+#include <algorithm>
+
+#include "ambient_share.h"
+
+namespace sailenv {
+namespace {
+
+constexpr int32_t SAMPLES = 9;
+constexpr float LEAST_COSINE = 0.9f;    // between normals within one smooth surface
+constexpr float SAME_NEARNESS = 0.01f;  // as a share, within one smooth surface
+// By how much samples half a pixel to both sides may lie off the plane through the middle, as a
+// share of its nearness times the focal length: some 3 degrees of bend, or a sharper one near the
+// pixel's rim.
+constexpr float LEAST_BEND = 0.03f;
+constexpr float LEAST_HEIGHT_PX = 2.0f;  // of a triangle over the edge that ends a surface
+constexpr float WEIGHT = 1.0f / 16.0f;
+
+// Middle, sides, corners: column, row, weight.
+struct Sample {
+    int32_t column, row;
+    float weight;
+};
+constexpr Sample PATTERN[SAMPLES] = {{1, 1, 4}, {1, 0, 2}, {0, 1, 2}, {2, 1, 2}, {1, 2, 2},
+                                     {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}};
+
+// Eight numbers from every second place.
+LANES_INLINE i8 every_second(const uint32_t* p) {
+    const i8 low = load(reinterpret_cast<const int32_t*>(p));
+    const i8 high = load(reinterpret_cast<const int32_t*>(p + 8));
+    return SHUFFLE(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+}
+LANES_INLINE f8 every_second(const float* p) {
+    const f8 low = load(p), high = load(p + 8);
+    return SHUFFLE(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+}
+
+// The plane of a triangle; `normal` has any length. 1 / depth is the ray's share along the plane's
+// normal, so its slopes are the normal.
+struct Plane {
+    float normal[3], square;
+};
+LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
+    const float* n = t.nearness;
+    Plane p = {{n[0] * s.focal, n[1] * s.focal, n[0] * s.cx + n[1] * s.cy + n[2]}, 0.0f};
+    for (const float along : p.normal) p.square += along * along;
+    return p;
+}
+
+// Tells if two triangles belong to one smooth surface around a place.
+LANES_INLINE bool are_alike(const Triangle& a, const Plane& p, const Triangle& b, const Plane& q,
+                            float x, float y) {
+    if (a.part != b.part) return false;
+    const float there = b.nearness[0] * x + (b.nearness[1] * y + b.nearness[2]);
+    const float off = a.nearness[0] * x + (a.nearness[1] * y + a.nearness[2]) - there;
+    if (__builtin_fabsf(off) > SAME_NEARNESS * there) return false;
+    const float dot =
+        p.normal[0] * q.normal[0] + p.normal[1] * q.normal[1] + p.normal[2] * q.normal[2];
+    return dot > 0.0f && dot * dot >= LEAST_COSINE * LEAST_COSINE * (p.square * q.square);
+}
+
+// A surface that samples of a pixel see: its first one, and the weight of all.
+struct Seen {
+    uint32_t tag;
+    float x, y, weight;
+    const Triangle* triangle;  // null for nothing
+    Plane plane;
+};
+
+// A function a x + b y + c of the place in a pixel, whose middle is the origin.
+struct Line {
+    float a, b, c;
+};
+LANES_INLINE Line line_at(const float* plane, float x, float y, float sign) {
+    return {sign * plane[0], sign * plane[1], sign * (plane[0] * x + (plane[1] * y + plane[2]))};
+}
+
+// Share of the pixel's square where the line's function is above 0.
+float share_above(const Line& line) {
+    const float a = __builtin_fabsf(line.a), b = __builtin_fabsf(line.b);
+    const float steep = a > b ? a : b, flat = a > b ? b : a, off = __builtin_fabsf(line.c);
+    float beyond = 0.0f;  // the smaller part
+    if (2.0f * off <= steep - flat) {
+        beyond = 0.5f - off / steep;
+    } else if (2.0f * off < steep + flat) {
+        const float leg = 0.5f * (steep + flat) - off;
+        beyond = leg * leg / (2.0f * steep * flat);
+    }
+    return line.c > 0.0f ? 1.0f - beyond : beyond;
+}
+
+// Tells if the line lies between the samples of one surface, where it is at most 0, and those of
+// the other.
+bool separates(const Line& line, const int32_t* surface) {
+    const float margin = 0.01f * (__builtin_fabsf(line.a) + __builtin_fabsf(line.b));
+    if (!(margin > 0.0f)) return false;
+    for (int32_t k = 0; k < SAMPLES; k++) {
+        const float x = 0.5f * static_cast<float>(PATTERN[k].column - 1);
+        const float y = 0.5f * static_cast<float>(PATTERN[k].row - 1);
+        const float value = line.a * x + line.b * y + line.c;
+        if (surface[k] == 0 ? value > margin : value < -margin) return false;
+    }
+    return true;
+}
+
+// The most that a surface covers of a pixel if one of its triangle's edges ends it: edges within
+// the surface leave less. Below 0 if none lies between the samples. Of small or thin triangles
+// others may lie between them and the surface's end. `inside` is 1 for the second surface, -1 for
+// the first one.
+float share_within(const Triangle& t, const int32_t* surface, float x, float y, float inside) {
+    float most = -1.0f;
+    // At the opposite corner an edge's function is this, if the triangle's depth varies little.
+    const float opposite =
+        (t.nearness[0] * x + (t.nearness[1] * y + t.nearness[2])) / t.inverse_det;
+    for (int32_t j = 0; j < 3; j++) {
+        const Line line = line_at(t.edge + 3 * j, x, y, inside);
+        const float slope = line.a * line.a + line.b * line.b;
+        const bool high = opposite * opposite >= LEAST_HEIGHT_PX * LEAST_HEIGHT_PX * slope;
+        if (!high || !separates(line, surface)) continue;
+        const float share = share_above(line);
+        most = std::max(most, inside > 0.0f ? share : 1.0f - share);
+    }
+    return most;
+}
+
+// Share of a pixel that the second of two surfaces covers where a straight edge of one of them
+// ends it, or where both meet; below 0 if neither is so.
+float exact_share(const Seen* seen, const int32_t* surface, float x, float y) {
+    const Triangle *first = seen[0].triangle, *second = seen[1].triangle;
+    const Line empty = {0.0f, 0.0f, -1.0f};
+    const Line a = first == nullptr ? empty : line_at(first->nearness, x, y, 1.0f);
+    const Line b = second == nullptr ? empty : line_at(second->nearness, x, y, 1.0f);
+    // What is in front ends the other.
+    const bool second_first = b.c > a.c;
+    for (const bool of_second : {second_first, !second_first}) {
+        const Triangle* t = of_second ? second : first;
+        if (t == nullptr) continue;
+        const float share = share_within(*t, surface, x, y, of_second ? 1.0f : -1.0f);
+        if (share >= 0.0f) return of_second ? share : 1.0f - share;
+    }
+    if (first == nullptr || second == nullptr) return -1.0f;
+    const Line meeting = {b.a - a.a, b.b - a.b, b.c - a.c};
+    if (separates(meeting, surface)) return share_above(meeting);
+    const Line other = {-meeting.a, -meeting.b, -meeting.c};
+    return separates(other, surface) ? share_above(other) : -1.0f;
+}
+
+// Lists what a pixel's samples see besides what its centre sees. `fine` begins at its first sample.
+void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t* fine, int32_t x,
+                    int32_t y, std::vector<Fragment>& out) {
+    Seen seen[SAMPLES];
+    int32_t surface[SAMPLES];
+    int32_t count = 0;
+    uint32_t last = 0;  // the tag that was found last to be of a surface of another tag
+    int32_t last_surface = -1;
+    for (int32_t number = 0; number < SAMPLES; number++) {
+        const Sample& sample = PATTERN[number];
+        const uint32_t tag = fine[sample.row * scratch.stride + sample.column];
+        int32_t k = 0;
+        while (k < count && seen[k].tag != tag) k++;
+        if (k == count && last_surface >= 0 && tag == last) k = last_surface;
+        if (k == count) {
+            const float at_x = static_cast<float>(x) + 0.5f * static_cast<float>(sample.column - 1);
+            const float at_y = static_cast<float>(y) + 0.5f * static_cast<float>(sample.row - 1);
+            Seen& own = seen[count];
+            own = {tag, at_x, at_y, 0.0f, nullptr, {}};
+            if (tag != NOTHING) {
+                own.triangle = s.set->triangles.data() + tag;
+                own.plane = plane_of(s, *own.triangle);
+                for (k = 0; k < count; k++) {
+                    const Seen& other = seen[k];
+                    if (other.triangle != nullptr &&
+                        are_alike(*other.triangle, other.plane, *own.triangle, own.plane, at_x,
+                                  at_y)) {
+                        break;
+                    }
+                }
+            }
+            if (k == count) {
+                count++;
+            } else {
+                last = tag;
+                last_surface = k;
+            }
+        }
+        seen[k].weight += sample.weight * WEIGHT;
+        surface[number] = k;
+    }
+    if (count == 2) {
+        const float share =
+            exact_share(seen, surface, static_cast<float>(x), static_cast<float>(y));
+        if (share >= 0.0f) seen[1].weight = share;
+    }
+    for (int32_t k = 1; k < count; k++) {
+        out.push_back({seen[k].x, seen[k].y, seen[k].weight, seen[k].tag, x, y});
+    }
+}
+
+// Of which of eight pixels the samples do not lie in one plane. `corner` is their first sample.
+LANES_INLINE i8 bent(const Shading& s, const float* corner, int64_t stride) {
+    const float* middle = corner + stride + 1;
+    const f8 own = every_second(middle);
+    const f8 least = own * (LEAST_BEND / s.focal);
+    i8 found{};
+    for (const int64_t step : {int64_t{1}, stride - 1, stride, stride + 1}) {
+        const f8 both = every_second(middle - step) + every_second(middle + step);
+        found |= abs8(both - (own + own)) > least;
+    }
+    return found;
+}
+
+// Tells if a pixel's samples see triangles of one part. `fine` begins at its first sample.
+bool sees_one_part(const Shading& s, const uint32_t* fine, int64_t stride) {
+    const uint32_t middle = fine[stride + 1];
+    for (const Sample& sample : PATTERN) {
+        const uint32_t tag = fine[sample.row * stride + sample.column];
+        if (tag == middle) continue;
+        if (tag == NOTHING || middle == NOTHING) return false;
+        if (s.set->part_of[tag] != s.set->part_of[middle]) return false;
+    }
+    return true;
+}
+
+void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratch& scratch) {
+    scratch.fragments.clear();
+    const int64_t stride = scratch.stride;
+    for (int32_t y = first_row; y < last_row; y++) {
+        const uint32_t* top = scratch.visible.data() + 2 * (y - first_row) * stride;
+        for (int32_t x = 0; x < s.width; x += 8) {
+            const uint32_t* corner = top + 2 * x;
+            const i8 centre = every_second(corner + stride + 1);
+            i8 differs{};
+            for (const Sample& sample : PATTERN) {
+                differs |= every_second(corner + sample.row * stride + sample.column) ^ centre;
+            }
+            if (!any(differs)) continue;
+            const int64_t at = corner - scratch.visible.data();
+            const i8 bends = bent(s, scratch.nearness.data() + at, stride);
+            const int32_t rest = static_cast<int32_t>(s.width) - x, count = rest < 8 ? rest : 8;
+            for (int32_t k = 0; k < count; k++) {
+                if (differs[k] == 0) continue;
+                const uint32_t* fine = corner + 2 * k;
+                if (bends[k] == 0 && sees_one_part(s, fine, stride)) continue;
+                list_fragments(s, scratch, fine, x + k, y, scratch.fragments);
+            }
+        }
+    }
+}
+
+// Mixes fragments, which are listed pixel by pixel, into the light of their pixels.
+void mix_in(const Shading& s, const EdgeScratch& scratch) {
+    const std::vector<Fragment>& fragments = scratch.fragments;
+    for (size_t k = 0; k < fragments.size();) {
+        const int32_t x = fragments[k].pixel_x, y = fragments[k].pixel_y;
+        uint16_t* pixel = s.outputs->radiance + 4 * (y * s.width + x);
+        float sum[4] = {}, rest = 1.0f;
+        for (; k < fragments.size() && fragments[k].pixel_x == x && fragments[k].pixel_y == y;
+             k++) {
+            rest -= fragments[k].weight;
+            for (size_t c = 0; c < 4; c++) {
+                sum[c] += fragments[k].weight * small_number(scratch.light[4 * k + c]);
+            }
+        }
+        for (int c = 0; c < 4; c++) {
+            const float mean = rest * small_number(pixel[c]) + sum[c];
+            int32_t shifted;
+            memcpy(&shifted, &mean, sizeof shifted);
+            pixel[c] = static_cast<uint16_t>((shifted + 4096) >> 13);
+        }
+    }
+}
+
+}  // namespace
+
+int64_t fine_stride(int64_t width) { return (2 * width + 1 + 8 + 16 + 15) & ~int64_t{15}; }
+
+void take_centres(const uint32_t* fine, int64_t width, uint32_t* pixels) {
+    for (int64_t x = 0; x < width; x += 8) {
+        store(reinterpret_cast<int32_t*>(pixels + x), every_second(fine + 2 * x + 1));
+    }
+}
+
+void take_centres(const float* fine, int64_t width, float* pixels) {
+    for (int64_t x = 0; x < width; x += 8) store(pixels + x, every_second(fine + 2 * x + 1));
+}
+
+void smooth_edges_of_band(const Shading& shading, int32_t first_row, int32_t last_row,
+                          EdgeScratch& scratch) {
+    list_band(shading, first_row, last_row, scratch);
+    scratch.light.resize(4 * scratch.fragments.size());
+    shade_fragments(shading, scratch.fragments.data(),
+                    static_cast<int64_t>(scratch.fragments.size()), scratch.light.data());
+    mix_in(shading, scratch);
+}
+
+}  // namespace sailenv
