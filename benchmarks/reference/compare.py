@@ -2,10 +2,12 @@
 
     python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
         [--size W H] [--supersampling N] [--renderer native|opengl]
-        [--trace-only | --no-trace | --last] [--output FOLDER]
+        [--moves N] [--trace-only | --no-trace | --last] [--output FOLDER]
 
 Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
 (ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
+With ``--moves`` rooms whose furniture has been moved (`moved.py`) are compared, too: the place that
+was left and the new one, in light that was baked before and refined after the move.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from benchmarks.reference.curve import matched_stops, picture_of
+from benchmarks.reference.moved import moved_room
 from benchmarks.reference.parts import Parts
 from benchmarks.reference.regions import REGIONS, regions_of
 from benchmarks.reference.regions import VIEWS as SHOWN_BY
@@ -56,14 +59,26 @@ def main() -> int:
     arguments = _arguments()
     picture = PictureSettings(supersampling=arguments.supersampling)
     cameras = _cameras(arguments.scenes, arguments.views, tuple(arguments.size), picture)
+    rows: list[Row] = []
     try:
-        rows = [row for scene in cameras for row in _compared(scene, cameras[scene], arguments)]
+        for scene, views in cameras.items():
+            snapshot = _snapshot(scene)
+            rows += _compared(scene, snapshot, views, arguments)
+            for number in range(arguments.moves):
+                moved, move = moved_room(scene, snapshot, number)
+                width, height = arguments.size
+                sized = replace(move.cameras[0].intrinsics, width=width, height=height)
+                seen = {
+                    place: replace(camera, intrinsics=sized, picture=picture)
+                    for place, camera in zip(("left", "taken"), move.cameras, strict=True)
+                }
+                rows += _compared(f"{scene}_moved_{number}", moved, seen, arguments)
     except ToolMissing as problem:
         print(problem, file=sys.stderr)
         return 1
     if not arguments.trace_only:
         _show(rows, arguments.output)
-    wanted = sum(len(views) for views in cameras.values())
+    wanted = sum(len(views) + 2 * arguments.moves for views in cameras.values())
     return 0 if arguments.trace_only or len(rows) == wanted else 1
 
 
@@ -73,6 +88,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
     parser.add_argument("--samples", type=int, default=256, help="per pixel of the reference")
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
+    parser.add_argument(
+        "--moves", type=int, default=0, metavar="N", help="rooms after so many moves, too"
+    )
     parser.add_argument(
         "--supersampling", type=int, default=1, metavar="N", help="of ours; 1: as by default"
     )
@@ -114,18 +132,24 @@ def _camera(
     return Camera(intrinsics=intrinsics, pose=pose, picture=picture or PictureSettings())
 
 
-def _compared(
-    scene: str, cameras: Mapping[str, Camera], arguments: argparse.Namespace
-) -> list[Row]:
+def _snapshot(scene: str) -> WorldSnapshot:
     counter = itertools.count(1)
     world = SceneLibrary().build(scene, 0, 1, lambda: next(counter))
     try:
         # The traced sky is as bright as it is.
         environment = replace(world.contents.environment, sky_blend=False)
         world.set_environment(environment)
-        snapshot = world.snapshot()
+        return world.snapshot()
     finally:
         world.close()
+
+
+def _compared(
+    scene: str,
+    snapshot: WorldSnapshot,
+    cameras: Mapping[str, Camera],
+    arguments: argparse.Namespace,
+) -> list[Row]:
     references = traced_views(
         scene,
         scene_of(snapshot, Parts(HOME / "parts")),

@@ -92,6 +92,43 @@ def main() -> int:
     return missing
 
 
+def moved_room(room: str, snapshot: WorldSnapshot, number: int) -> tuple[WorldSnapshot, Move]:
+    """Return a baked room after a move of seed 0, with its light refined, and the move.
+
+    Parameters
+    ----------
+    room : str
+        Its name.
+    snapshot : WorldSnapshot
+        Of the room, baked.
+    number : int
+        Of the move, from 0.
+    """
+    baked = snapshot.contents.baked
+    if baked is None:
+        raise ValueError(f"{room} is not baked; sailenv scene bake {room}")
+    move = next(itertools.islice(_moves(room, snapshot, 0), number, None))
+    scene = BakedScene(baked, snapshot.contents, thread_count())
+    light = relit(scene, [_change(snapshot, move)], FINE, threads=thread_count())
+    moved = _after(snapshot, move)
+    return replace(moved, contents=replace(moved.contents, baked=light)), move
+
+
+def _after(snapshot: WorldSnapshot, move: Move) -> WorldSnapshot:
+    poses = snapshot.world_from_body.copy()
+    poses[move.row] = move.pose
+    # Clutter that stood on it would hang in the air.
+    return replace(snapshot, world_from_body=poses)
+
+
+def _change(snapshot: WorldSnapshot, move: Move) -> Change:
+    return Change(
+        id=snapshot.contents.instances[move.row].instance.id,
+        before=snapshot.world_from_body[move.row],
+        after=move.pose,
+    )
+
+
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rooms", nargs="+", default=list(ROOMS))
@@ -246,18 +283,11 @@ def _measured(
     renderer: NativeRenderer,
     arguments: argparse.Namespace,
 ) -> dict[str, object] | None:
-    poses = snapshot.world_from_body.copy()
-    poses[move.row] = move.pose
-    # Clutter that stood on it would hang in the air.
-    moved = replace(snapshot, world_from_body=poses)
+    moved = _after(snapshot, move)
     reference = _reference(move, moved, renderer, may_bake=not arguments.no_bake)
     if reference is None:
         return None
-    change = Change(
-        id=moved.contents.instances[move.row].instance.id,
-        before=snapshot.world_from_body[move.row],
-        after=move.pose,
-    )
+    change = _change(snapshot, move)
     row: dict[str, object] = {"room": move.room, "move": move.number, "object": move.name}
     shown = {"stale": [_pictures(renderer, moved, camera) for camera in move.cameras]}
     for name, quality in (("at once", QUICK), ("refined", FINE)):

@@ -30,6 +30,7 @@ from tests.support.tiny_scenes import (
 )
 
 PLAIN = PictureSettings(occlusion_strength=0.0, smooth_edges=False)
+SAMPLES_AS_THEY_ARE = PictureSettings(smooth_edges=False)
 GREY = (0.3, 0.3, 0.3)
 
 
@@ -172,7 +173,7 @@ def test_too_many_samples_are_refused_in_one_sentence() -> None:
     """No side of what is drawn is larger than a picture may be."""
     lens = CameraIntrinsics(width=2048, height=8)
     assert Camera(intrinsics=lens, picture=PictureSettings(supersampling=2)).of_samples() == (
-        Camera(intrinsics=replace(lens, width=4096, height=16))
+        Camera(intrinsics=replace(lens, width=4096, height=16), picture=SAMPLES_AS_THEY_ARE)
     )
     with pytest.raises(InvalidRequest) as refusal:
         Camera(intrinsics=lens, picture=PictureSettings(supersampling=3))
