@@ -17,8 +17,8 @@ constexpr int32_t SAMPLES = 9;
 constexpr float LEAST_COSINE = 0.9f;    // between normals within one smooth surface
 constexpr float SAME_NEARNESS = 0.01f;  // as a share, within one smooth surface
 // By how much samples half a pixel to both sides may lie off the plane through the middle, as a
-// share of its nearness times the focal length: some 3 degrees of bend, or a sharper one near the
-// pixel's rim.
+// share of its nearness and over the focal length: 3 degrees of bend or so, or a sharper one near
+// the pixel's rim.
 constexpr float LEAST_BEND = 0.03f;
 constexpr float LEAST_HEIGHT_PX = 2.0f;  // of a triangle over the edge that ends a surface
 constexpr float WEIGHT = 1.0f / 16.0f;
