@@ -2,7 +2,7 @@
 
     python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
         [--size W H] [--supersampling N] [--renderer native|opengl]
-        [--moves N] [--trace-only | --no-trace | --last] [--output FOLDER]
+        [--moves N [--anew]] [--trace-only | --no-trace | --last] [--output FOLDER]
 
 Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
 (ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
@@ -65,7 +65,7 @@ def main() -> int:
             snapshot = _snapshot(scene)
             rows += _compared(scene, snapshot, views, arguments)
             for number in range(arguments.moves):
-                moved, move = moved_room(scene, snapshot, number)
+                moved, move = moved_room(scene, snapshot, number, anew=arguments.anew)
                 width, height = arguments.size
                 sized = replace(move.cameras[0].intrinsics, width=width, height=height)
                 seen = {
@@ -91,6 +91,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument(
         "--moves", type=int, default=0, metavar="N", help="rooms after so many moves, too"
     )
+    parser.add_argument("--anew", action="store_true", help="bake the light of these anew")
     parser.add_argument(
         "--supersampling", type=int, default=1, metavar="N", help="of ours; 1: as by default"
     )

@@ -92,7 +92,9 @@ def main() -> int:
     return missing
 
 
-def moved_room(room: str, snapshot: WorldSnapshot, number: int) -> tuple[WorldSnapshot, Move]:
+def moved_room(
+    room: str, snapshot: WorldSnapshot, number: int, *, anew: bool = False
+) -> tuple[WorldSnapshot, Move]:
     """Return a baked room after a move of seed 0, with its light refined, and the move.
 
     Parameters
@@ -103,14 +105,19 @@ def moved_room(room: str, snapshot: WorldSnapshot, number: int) -> tuple[WorldSn
         Of the room, baked.
     number : int
         Of the move, from 0.
+    anew : bool
+        True to bake the light anew instead.
     """
     baked = snapshot.contents.baked
     if baked is None:
         raise ValueError(f"{room} is not baked; sailenv scene bake {room}")
     move = next(itertools.islice(_moves(room, snapshot, 0), number, None))
-    scene = BakedScene(baked, snapshot.contents, thread_count())
-    light = relit(scene, [_change(snapshot, move)], FINE, threads=thread_count())
     moved = _after(snapshot, move)
+    if anew:
+        light = replace(bake(moved), environment=moved.contents.environment)
+    else:
+        scene = BakedScene(baked, snapshot.contents, thread_count())
+        light = relit(scene, [_change(snapshot, move)], FINE, threads=thread_count())
     return replace(moved, contents=replace(moved.contents, baked=light)), move
 
 
