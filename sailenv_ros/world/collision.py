@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import os
 import shutil
 import tempfile
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.geometry import Pose
 from sailenv_ros.model import (
     BoxShape,
     CollisionShape,
@@ -87,21 +89,39 @@ def build_collision(
         return int(client.createCollisionShape(**part))
     with _hull_folder() as folder:
         if len(parts) > MAX_SHAPES:
-            parts = _joined(parts, name)
+            parts = _joined(client, parts, name)
         files = [_hull_file(folder, part, name) for part in parts]
         return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
 
 
-def _joined(parts: Sequence[dict[str, Any]], name: str) -> list[dict[str, Any]]:
-    """Return parts with all hulls in one: several of one file are one shape to PyBullet."""
+def _joined(
+    client: BulletClient, parts: Sequence[dict[str, Any]], name: str
+) -> list[dict[str, Any]]:
+    """Return parts with all hulls in one: several of one file are one shape to PyBullet.
+
+    Where there are still too many, boxes are hulls, too.
+    """
     solids = [part for part in parts if "vertices" not in part]
     hulls = [part for part in parts if "vertices" in part]
     if any("indices" in part for part in hulls):
         raise _hollow(name)
     if len(solids) + bool(hulls) > MAX_SHAPES:
-        accepted = f"at most {MAX_SHAPES - 1} besides convex hulls"
+        origin = hulls[0]["position"] if hulls else [0.0, 0.0, 0.0]
+        kind = client.constants.GEOM_MESH
+        hulls += [_box_hull(part, origin, kind) for part in solids if "halfExtents" in part]
+        solids = [part for part in solids if "halfExtents" not in part]
+    if len(solids) + bool(hulls) > MAX_SHAPES:
+        accepted = f"at most {MAX_SHAPES - 1} balls and cylinders"
         raise InvalidRequest(f"collision shapes of {name!r}", len(solids), accepted)
     return [*solids, {**hulls[0], "hulls": [part["vertices"] for part in hulls]}]
+
+
+def _box_hull(box: dict[str, Any], origin: Sequence[float], kind: int) -> dict[str, Any]:
+    """Return a box as the hull of its corners, about another origin."""
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    turned = Pose(orientation_xyzw=box["orientation"]).matrix()[:3, :3]
+    corners = signs * box["halfExtents"] @ turned.T + np.asarray(box["position"]) - origin
+    return {"type": kind, "vertices": _lists(corners), "position": origin}
 
 
 def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str) -> dict[str, Any]:

@@ -12,7 +12,13 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.model import BoxShape, CollisionShape, ConvexShape, TriangleShape
+from sailenv_ros.model import (
+    BoxShape,
+    CollisionShape,
+    ConvexShape,
+    SphereShape,
+    TriangleShape,
+)
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision
 
@@ -86,10 +92,28 @@ def test_each_of_many_hulls_is_felt(slabs: int) -> None:
     assert _hits([*below, *hulls], rays) == pytest.approx(expected, abs=0.06)
 
 
-def test_too_many_boxes_are_refused() -> None:
+@pytest.mark.parametrize("hulls", [0, 1])
+def test_each_of_many_boxes_is_felt(hulls: int) -> None:
+    """More than PyBullet takes are hulls: each is where it was, turned as it was."""
+    boxes = [
+        BoxShape(
+            half_extents_m=(0.7, 0.2, 0.1 + 0.01 * k),
+            centre_m=(3.0 * k, 5.0, 1.0),
+            orientation_xyzw=EIGHTH if k % 2 else (0.0, 0.0, 0.0, 1.0),
+        )
+        for k in range(21)
+    ]
+    at = [(3.0 * k + (0.4 if k % 2 else 0.6), 5.0 + (0.4 if k % 2 else 0.0)) for k in range(21)]
+    beside = [(3.0 * k + (0.6 if k % 2 else 0.0), 5.0 + (0.0 if k % 2 else 0.4)) for k in range(21)]
+    shapes = [*boxes, *[PYRAMID] * hulls]
+    assert _hits(shapes, at) == pytest.approx([1.1 + 0.01 * k for k in range(21)], abs=0.003)
+    assert np.isnan(_hits(shapes, beside)).all()
+
+
+def test_too_many_balls_are_refused() -> None:
     """None is left out silently."""
-    with pytest.raises(InvalidRequest, match="at most 15 besides convex hulls, got 17"):
-        _hits([SLAB] * 17, [])
+    with pytest.raises(InvalidRequest, match="at most 15 balls and cylinders, got 17"):
+        _hits([SphereShape(radius_m=0.5)] * 17, [])
 
 
 def test_hollow_geometry_stands_alone() -> None:
