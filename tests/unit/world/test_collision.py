@@ -105,7 +105,7 @@ def test_each_of_many_boxes_is_felt(hulls: int) -> None:
     ]
     at = [(3.0 * k + (0.4 if k % 2 else 0.6), 5.0 + (0.4 if k % 2 else 0.0)) for k in range(21)]
     beside = [(3.0 * k + (0.6 if k % 2 else 0.0), 5.0 + (0.0 if k % 2 else 0.4)) for k in range(21)]
-    shapes = [*boxes, *[PYRAMID] * hulls]
+    shapes: list[CollisionShape] = [*boxes, *[PYRAMID] * hulls]
     assert _hits(shapes, at) == pytest.approx([1.1 + 0.01 * k for k in range(21)], abs=0.003)
     assert np.isnan(_hits(shapes, beside)).all()
 
@@ -113,7 +113,7 @@ def test_each_of_many_boxes_is_felt(hulls: int) -> None:
 def test_too_many_balls_are_refused() -> None:
     """None is left out silently."""
     with pytest.raises(InvalidRequest, match="at most 15 balls and cylinders, got 17"):
-        _hits([SphereShape(radius_m=0.5)] * 17, [])
+        _hits([SphereShape(radius_m=0.5) for _ in range(17)], [])
 
 
 def test_hollow_geometry_stands_alone() -> None:
