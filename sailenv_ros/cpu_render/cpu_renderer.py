@@ -150,7 +150,7 @@ class NativeRenderer:
         if light is not None and not sampled:
             radiance = arrays["rgb"] = np.empty((height, width, 4), np.float16)
         self._drawing.picture(
-            native_view(camera, smooth_edges=camera.picture.smooth_edges),
+            native_view(camera),
             instances,
             table.opaque,
             table.glass,
@@ -194,7 +194,7 @@ class NativeRenderer:
         at_baked_pose = self._table.at_baked_pose(snapshot)
 
         def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
-            view = native_view(behind, window, smooth_edges=camera.picture.smooth_edges)
+            view = native_view(behind, window)
             size = int(view["height"][0]), int(view["width"][0])
             radiance = np.empty((*size, 4), np.float16)
             instances = self._table.instances(poses, at_baked_pose, only)
@@ -253,9 +253,7 @@ class NativeRenderer:
         return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
 
 
-def native_view(
-    camera: Camera, window: Window | None = None, *, smooth_edges: bool = False
-) -> NDArray[np.void]:
+def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void]:
     """Return (1,) VIEW of a camera or of a window of it, as the native kernels read it."""
     lens = camera.intrinsics
     rows, columns = window or (slice(0, lens.height), slice(0, lens.width))
@@ -269,5 +267,5 @@ def native_view(
         far_m=lens.far_m,
         width=columns.stop - columns.start,
         height=rows.stop - rows.start,
-        smooth_edges=smooth_edges,
+        smooth_edges=camera.picture.smooth_edges,
     )

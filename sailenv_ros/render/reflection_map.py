@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.geometry import Pose
+from sailenv_ros.picture_settings import PictureSettings
 
 __all__ = [
     "EDGE",
@@ -58,7 +59,11 @@ def cube_cameras(position_m: NDArray[np.float64]) -> list[Camera]:
     )
     x, y, z = (float(number) for number in position_m)
     return [
-        Camera(intrinsics=intrinsics, pose=Pose.from_rpy_deg((x, y, z), (0.0, pitch, yaw)))
+        Camera(
+            intrinsics=intrinsics,
+            pose=Pose.from_rpy_deg((x, y, z), (0.0, pitch, yaw)),
+            picture=PictureSettings(smooth_edges=False),
+        )
         for yaw, pitch in _HEADINGS
     ]
 

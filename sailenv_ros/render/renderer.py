@@ -176,6 +176,7 @@ class Renderer:
         # Ground truth is of pixel centres; where a picture has more samples, it is drawn apart.
         seen = _of_samples(camera)
         apart = shaded and seen is not camera
+        smoothed = apart and _is_smoothed(camera)
         outputs = tuple(view for view in self._outputs if view in wanted)
         targets = self._surfaces(snapshot, camera, shaded=shaded and not apart, outputs=outputs)
         mark("geometry")
@@ -185,7 +186,7 @@ class Renderer:
         if illumination is not None:
             lit = targets
             if apart:
-                lit = self._surfaces(snapshot, seen, shaded=True, half_pixels=not sampled)
+                lit = self._surfaces(snapshot, seen, shaded=True, half_pixels=smoothed)
                 mark("geometry")
             self._lighting_pass.draw(lit, seen, illumination)
             self._glass_pass.show(snapshot.contents, self._geometry, self._materials)
@@ -197,9 +198,9 @@ class Renderer:
                 illumination,
                 self._geometry,
                 self._materials,
-                half_pixels=apart and not sampled,
+                half_pixels=smoothed,
             )
-            arrays["rgb"] = self._read_lit(lit, camera, smoothed=apart and not sampled)
+            arrays["rgb"] = self._read_lit(lit, camera, smoothed=smoothed)
             mark("lighting")
             mirrors = self._mirrors.seen(snapshot, seen if sampled else camera)
             occluded = sampled and camera.picture.occlusion_strength > 0.0
@@ -214,7 +215,7 @@ class Renderer:
         if illumination is not None and mirrors:
             self._reflect(
                 *(snapshot, mirrors, seen if sampled else camera, illumination, arrays),
-                None if sampled or not apart else samples,
+                samples if smoothed else None,
             )
             mark("lighting")
         for (_, start), (stage, end) in itertools.pairwise(marks):
@@ -284,8 +285,7 @@ class Renderer:
         """Draw linear radiance of some instances, as an array (H, W, 3)."""
         unexposed = replace(illumination.environment, exposure=0.0)
         light = replace(illumination, environment=unexposed)
-        plain = replace(camera, picture=replace(camera.picture, smooth_edges=False))
-        return self._exposed(snapshot, plain, light, only)[..., :3].astype(np.float32)
+        return self._exposed(snapshot, camera, light, only)[..., :3].astype(np.float32)
 
     def _exposed(
         self,
@@ -296,7 +296,7 @@ class Renderer:
     ) -> NDArray[np.float16]:
         """Draw what some instances send out, without glass, as an array (H, W, 4)."""
         seen = _of_samples(camera)
-        half_pixels = seen is not camera and camera.picture.supersampling == 1
+        half_pixels = _is_smoothed(camera)
         draws, intrinsics = self._draws_of(snapshot), seen.intrinsics
         draws.place(snapshot, _clip_from_optical(intrinsics), camera.camera_from_world, only=only)
         targets = self._geometry_pass.make_targets(
@@ -339,11 +339,16 @@ class Renderer:
         return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
 
 
+def _is_smoothed(camera: Camera) -> bool:
+    """Tell if a camera's picture is made of samples half a pixel apart."""
+    return camera.picture.smooth_edges and camera.picture.supersampling == 1
+
+
 def _of_samples(camera: Camera) -> Camera:
     """Return the camera of what its picture is made of: itself, unless there are more samples."""
     if camera.picture.supersampling > 1:
         return camera.of_samples()
-    return half_pixel_camera(camera) if camera.picture.smooth_edges else camera
+    return half_pixel_camera(camera) if _is_smoothed(camera) else camera
 
 
 def _clip_from_optical(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:

@@ -159,26 +159,26 @@ LANES_INLINE void set_pixel(const RowPlanes& r, float x, Chunk& c, PixelRows& ro
     c.empty[i] = 0;
 }
 
+// Where a chunk keeps the eight numbers of each kind of row.
+struct Columns {
+    float *attributes[8], *material[8], *maps[8];
+};
+LANES_INLINE Columns columns_of(Chunk& c) {
+    return {
+        {c.nx, c.ny, c.nz, c.u, c.v, c.light_u, c.light_v, c.depth},
+        {c.red, c.green, c.blue, c.nearness_x, c.roughness, c.metallic, c.emission, c.nearness_y},
+        {c.ux, c.vx, c.uy, c.vy, c.colour_log2, c.detail_log2, c.finish, c.relief}};
+}
+
 // Eight pixels of one triangle: each number at its place at once.
 LANES_INLINE void set_eight(const RowPlanes& r, Chunk& c, int32_t i) {
     const f8 xs = load(c.at_x + i);
     const f8 depth = 1.0f / (r.nearness_slope * xs + r.nearness_offset);
-    float* const rows[8] = {c.nx, c.ny, c.nz, c.u, c.v, c.light_u, c.light_v, c.depth};
-    float* const looks[8] = {c.red,       c.green,    c.blue,     c.nearness_x,
-                             c.roughness, c.metallic, c.emission, c.nearness_y};
+    const Columns columns = columns_of(c);
     for (int k = 0; k < 8; k++) {
-        store(rows[k] + i, (r.slope[k] * xs + r.offset[k]) * depth + r.moved[k]);
-        store(looks[k] + i, splat(r.look[k]));
-    }
-    store(c.colour_log2 + i, splat(r.maps[4]));
-    store(c.detail_log2 + i, splat(r.maps[5]));
-    store(c.finish + i, splat(r.maps[6]));
-    store(c.relief + i, splat(r.maps[7]));
-    if (r.coloured || r.detailed) {
-        store(c.ux + i, splat(r.maps[0]));
-        store(c.vx + i, splat(r.maps[1]));
-        store(c.uy + i, splat(r.maps[2]));
-        store(c.vy + i, splat(r.maps[3]));
+        store(columns.attributes[k] + i, (r.slope[k] * xs + r.offset[k]) * depth + r.moved[k]);
+        store(columns.material[k] + i, splat(r.look[k]));
+        store(columns.maps[k] + i, splat(r.maps[k]));
     }
     store(c.id + i, splat(r.id));
     store(c.empty + i, splat(0));
@@ -188,40 +188,20 @@ LANES_INLINE void set_eight(const RowPlanes& r, Chunk& c, int32_t i) {
     }
 }
 
+// Rows of eight pixels to the columns of a chunk, from the i-th pixel on.
+LANES_INLINE void sort_rows(const float* rows, float* const (&columns)[8], int32_t i) {
+    f8 r[8];
+    for (int k = 0; k < 8; k++) r[k] = load(rows + 8 * (i + k));
+    transpose(r);
+    for (int k = 0; k < 8; k++) store(columns[k] + i, r[k]);
+}
+
 // Sorts by quantity eight pixels from the i-th on.
 void sort_eight(const PixelRows& rows, Chunk& c, int32_t i) {
-    f8 r[8];
-    for (int k = 0; k < 8; k++) r[k] = load(rows.attributes + 8 * (i + k));
-    transpose(r);
-    store(c.nx + i, r[0]);
-    store(c.ny + i, r[1]);
-    store(c.nz + i, r[2]);
-    store(c.u + i, r[3]);
-    store(c.v + i, r[4]);
-    store(c.light_u + i, r[5]);
-    store(c.light_v + i, r[6]);
-    store(c.depth + i, r[7]);
-    for (int k = 0; k < 8; k++) r[k] = load(rows.material + 8 * (i + k));
-    transpose(r);
-    store(c.red + i, r[0]);
-    store(c.green + i, r[1]);
-    store(c.blue + i, r[2]);
-    store(c.nearness_x + i, r[3]);
-    store(c.roughness + i, r[4]);
-    store(c.metallic + i, r[5]);
-    store(c.emission + i, r[6]);
-    store(c.nearness_y + i, r[7]);
-    if (!c.coloured && !c.detailed) return;
-    for (int k = 0; k < 8; k++) r[k] = load(rows.maps + 8 * (i + k));
-    transpose(r);
-    store(c.ux + i, r[0]);
-    store(c.vx + i, r[1]);
-    store(c.uy + i, r[2]);
-    store(c.vy + i, r[3]);
-    store(c.colour_log2 + i, r[4]);
-    store(c.detail_log2 + i, r[5]);
-    store(c.finish + i, r[6]);
-    store(c.relief + i, r[7]);
+    const Columns columns = columns_of(c);
+    sort_rows(rows.attributes, columns.attributes, i);
+    sort_rows(rows.material, columns.material, i);
+    if (c.coloured || c.detailed) sort_rows(rows.maps, columns.maps, i);
 }
 
 // Asks for the memory of a triangle, or of its corners, before it is needed.
