@@ -16,6 +16,7 @@ except ImportError:  # setuptools before 70.1, with which colcon installs and no
     bdist_wheel = object
 
 PACKAGE = "sailenv_ros"
+PACKAGES = (PACKAGE, "sailenv_msgs_py", "sailenv_content", "sailenv_bench")
 
 # No ROS here: the packages are ROS 2's own where it is installed, else the extra "ros".
 REQUIREMENTS = [
@@ -204,14 +205,13 @@ setup(
     maintainer="sailenv_ros maintainers",
     maintainer_email="maintainers@users.noreply.github.com",
     packages=find_packages(
-        include=["sailenv_ros", "sailenv_ros.*", "sailenv_msgs_py", "sailenv_msgs_py.*"]
+        include=[name for each in PACKAGES for name in (each, f"{each}.*")]
     ),
     package_data={
-        "sailenv_ros": ["py.typed"],
         "sailenv_ros.dataset": ["preview/*"],
-        "sailenv_ros.render": ["shaders/*"],
+        "sailenv_ros.render.gl": ["shaders/*"],
         "sailenv_ros.viewer": ["page/*"],
-        "sailenv_msgs_py": ["py.typed"],
+        **{name: ["py.typed"] for name in PACKAGES},
     },
     ext_modules=[Extension("sailenv_ros.native.libsailenv_native", sources=[])],
     cmdclass={
@@ -237,9 +237,9 @@ setup(
     entry_points={
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",
-            "sim_node = sailenv_ros.nodes.sim_node:main",
-            "recorder = sailenv_ros.nodes.recorder:main",
-            "player = sailenv_ros.nodes.player:main",
+            "sim_node = sailenv_ros.ros.nodes.sim_node:main",
+            "recorder = sailenv_ros.ros.nodes.recorder:main",
+            "player = sailenv_ros.ros.nodes.player:main",
         ]
     },
     zip_safe=False,

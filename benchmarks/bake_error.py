@@ -15,11 +15,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.pipeline import bake
-from sailenv_ros.bake.settings import BakeSettings
-from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.light.bake.settings import BakeSettings
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 PASS_RAYS = 256
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

@@ -26,13 +26,13 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.bake import light_files as files
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.pipeline import bake
-from sailenv_ros.bake.rays import RayScene
-from sailenv_ros.bake.static_geometry import static_geometry_of
+from sailenv_ros.light.bake import light_files as files
+from sailenv_ros.light.bake.fingerprint import fingerprint
+from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.light.bake.rays import RayScene
+from sailenv_ros.light.bake.static_geometry import static_geometry_of
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 RAYS = 1_000_000
 
@@ -145,7 +145,7 @@ def _print(result: dict[str, Any]) -> None:
 
 ALONE = """
 import itertools, json, sys, time
-from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.simulation.scenes import SceneLibrary
 times = {}
 for scene in sys.argv[1:]:

@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 NAMESPACE = f"/delivery_{os.getpid()}"
 STEPS = 8

@@ -37,10 +37,11 @@ from sensor_msgs.msg import Image
 from sailenv_msgs_py.frame_info import header_of_frame
 from sailenv_msgs_py.images import image_from_view
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS, Frame
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.system.transport import use_shared_memory_profile
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.views import FIVE_VIEWS
 
 SIZES = ((240, 180), (320, 240), (640, 480), (800, 600), (1024, 768), (1280, 960))
 STEPS = 8

@@ -37,10 +37,10 @@ from dataclasses import dataclass, field
 import aiohttp
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import MAX_AGENTS, AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS
 from sailenv_ros.gateway import GatewayServer
+from sailenv_ros.types.agents import MAX_AGENTS, AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.views import FIVE_VIEWS
 from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
@@ -50,7 +50,7 @@ FRAME = b"\0\x3d"
 SIZE = (160, 120)
 
 SWITCH_INTERVAL_S = 0.0005
-"""As in `sailenv_ros/nodes/sim_node.py`, which this stands for [s]."""
+"""As in `sailenv_ros/ros/nodes/sim_node.py`, which this stands for [s]."""
 
 SETTLE_S = 2.0
 """Until the buffers of those who do not read are full [s]."""

@@ -14,11 +14,11 @@ from collections.abc import Callable
 import numpy as np
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import SailenvError
-from sailenv_ros.frame import Frame
-from sailenv_ros.motion import SceneGeometry, motion, track
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import SceneGeometry, motion, track
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 
 def median_ms(work: Callable[[], object], rounds: int) -> float:

@@ -22,14 +22,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_bench.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
+from sailenv_bench.experiments.flow_scenes import SCENARIOS
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
-from sailenv_ros.experiments.flow_scenes import SCENARIOS
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import look_at
-from sailenv_ros.motion import SceneGeometry, motion, track
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import SceneGeometry, motion, track
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
 
 LENGTH = 24
 

@@ -34,14 +34,14 @@ from typing import Any
 import numpy as np
 import render_passes  # type: ignore[import-not-found]  # beside this file
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_bench.experiments.baselines import BASELINES, BaselineScene
 from sailenv_ros.errors import SailenvError
-from sailenv_ros.experiments.baselines import BASELINES, BaselineScene
-from sailenv_ros.frame import FIVE_VIEWS
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.renderer import Renderer
-from sailenv_ros.snapshot import Observation, SceneContents, WorldSnapshot
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
+from sailenv_ros.types.views import FIVE_VIEWS
 
 SCENES = ("room_01", "room_02", "room_03", "optical")
 SIZES = ((240, 180), (640, 480), (1280, 960))

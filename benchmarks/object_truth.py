@@ -12,11 +12,11 @@ import statistics
 import time
 from collections.abc import Callable
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.object_truth.frame_objects import objects_of
-from sailenv_ros.object_truth.visible_parts import measure_with_numpy, visible_parts
+from sailenv_ros.frame.truth.frame_objects import objects_of
+from sailenv_ros.frame.truth.visible_parts import measure_with_numpy, visible_parts
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 VIEWS = ("depth", "category", "instance", "flow")
 

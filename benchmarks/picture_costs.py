@@ -17,13 +17,13 @@ import time
 from dataclasses import replace
 from unittest import mock
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import look_at
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render import reflection_points
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.scene import reflection_points
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 VIEWS = {
     "room_01": ((2.1, -1.25, 1.55), (-1.2, 0.95, 0.85)),

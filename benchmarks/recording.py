@@ -18,14 +18,14 @@ import threading
 import time
 from pathlib import Path
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.topics import RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
 
 COMPRESSIONS = ("zstd", "lz4", "none")
 RATE_HZ = 30.0
@@ -105,7 +105,7 @@ def _in_process(folder: Path, frames: list[Frame], count: int, compression: str)
 
 
 def _node(folder: Path, args: argparse.Namespace, compression: str) -> None:
-    words = [sys.executable, "-m", "sailenv_ros.nodes.recorder", "--ros-args", "-p"]
+    words = [sys.executable, "-m", "sailenv_ros.ros.nodes.recorder", "--ros-args", "-p"]
     words += [f"output:={folder}", "-p", f"compression:={compression}", "-p", "clock:=false"]
     recorder = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
     assert recorder.stderr is not None
@@ -140,9 +140,9 @@ def _publish(scene: str, count: int) -> None:
     from sailenv_msgs.msg import FrameInfo
     from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
     from sailenv_msgs_py.images import image_from_view
-    from sailenv_ros.frame import FIVE_VIEWS
-    from sailenv_ros.nodes.qos import frame_qos
+    from sailenv_ros.ros.nodes.qos import frame_qos
     from sailenv_ros.system.transport import use_shared_memory_profile
+    from sailenv_ros.types.views import FIVE_VIEWS
 
     frames = _frames(scene)
     use_shared_memory_profile()

@@ -27,11 +27,11 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.tiny_bodies import TinyBodies
 from sailenv_ros.world.world import World

@@ -16,7 +16,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
 from tests.support.light_faults import BLOCK_PX, bright_spots, dashes, surfaces_of
 from tests.support.plausible_views import plausible_views, room_at_rest
 

@@ -22,9 +22,9 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.gateway import GatewayServer
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 PAPER_MS = {
     (240, 180): 40,

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 VIEWS = ("rgb", "depth", "category", "instance", "normals", "albedo")
 SCENES = ("optical", "room_01", "room_03")
@@ -45,7 +45,7 @@ def main() -> int:
 def _save(folder: Path, scene: str) -> None:
     import render_passes  # type: ignore[import-not-found]  # beside this file
 
-    from sailenv_ros.camera import CameraIntrinsics
+    from sailenv_ros.types.camera import CameraIntrinsics
 
     world = render_passes.world_maker(scene, 400)()
     intrinsics = CameraIntrinsics(width=SIZE[0], height=SIZE[1])

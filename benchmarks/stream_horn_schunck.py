@@ -11,7 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from sailenv_ros.experiments.horn_schunck import MOVING_PX, MotionScore, horn_schunck_flow
+from sailenv_bench.experiments.horn_schunck import MOVING_PX, MotionScore, horn_schunck_flow
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 

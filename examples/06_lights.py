@@ -32,7 +32,7 @@ with Agent(width=320, height=240, namespace="/example", simulator=LOCKSTEP) as a
     look("a fifth of it")
     agent.set_ambient_light_color(64, 64, 160)
     look("with blue light from everywhere")
-    # Everything at once, by the names of sailenv_ros.lights.Light: linear colours, metres.
+    # Everything at once, by the names of sailenv_ros.types.lights.Light: linear colours, metres.
     agent.set_light(sun, type="point", position_m=(0, 0, 4), colour=(1, 1, 1), intensity=40.0)
     look("as a lamp above the middle")
     agent.change_main_camera_clear_flags(0, 0, 0)  # a colour instead of the sky

@@ -9,10 +9,10 @@ from __future__ import annotations
 from sailenv_msgs.msg import AgentInfo
 from sailenv_msgs_py.mover_msgs import look_at_from_msg, look_at_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.views import FIVE_VIEWS
 
 __all__ = ["agent_spec_from_msg", "agent_spec_to_msg"]
 

@@ -12,8 +12,8 @@ import numpy as np
 from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import Header
 
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.camera import CameraIntrinsics
 
 __all__ = ["camera_info_from_intrinsics", "intrinsics_from_camera_info"]
 

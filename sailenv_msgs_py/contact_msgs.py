@@ -10,7 +10,7 @@ import sailenv_msgs.msg as msgs
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import point_to_msg, vector_to_msg, xyz_from_msg
-from sailenv_ros.contacts import Contact
+from sailenv_ros.types.contacts import Contact
 
 __all__ = ["contact_from_msg", "contact_to_msg", "contacts_to_msg"]
 

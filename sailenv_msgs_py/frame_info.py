@@ -13,12 +13,12 @@ from std_msgs.msg import Header
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import optical_pose_to_msg, pose_from_msg
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import QUAT_BODY_FROM_OPTICAL
-from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.lessons import LessonState
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import QUAT_BODY_FROM_OPTICAL
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.lessons import LessonState
 
 __all__ = [
     "WORLD_FRAME_ID",

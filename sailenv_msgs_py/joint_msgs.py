@@ -10,7 +10,7 @@ from std_msgs.msg import Header
 
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.stamps import stamp_from_ns
-from sailenv_ros.joints import JointKind, JointState
+from sailenv_ros.types.joints import JointKind, JointState
 
 __all__ = ["joints_from_response", "joints_to_msg", "joints_to_response"]
 

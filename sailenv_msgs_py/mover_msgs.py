@@ -6,9 +6,9 @@ from typing import Literal, cast
 
 import sailenv_msgs.msg as msgs
 from sailenv_msgs_py.transforms import point_to_msg, pose_from_msg, pose_to_msg, xyz_from_msg
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.rigid_body import RIGID_BODY_LIMITS, RigidBody
-from sailenv_ros.scene_info import MoverInfo
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
+from sailenv_ros.types.scene_info import MoverInfo
 
 __all__ = [
     "look_at_from_msg",

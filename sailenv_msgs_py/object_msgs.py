@@ -20,8 +20,8 @@ from sailenv_msgs_py.transforms import (
     xyz_from_msg,
 )
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.labels import Instance
-from sailenv_ros.objects import ObjectState
+from sailenv_ros.types.labels import Instance
+from sailenv_ros.types.objects import ObjectState
 
 __all__ = [
     "behaviour_from_msg",

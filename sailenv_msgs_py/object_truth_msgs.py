@@ -13,10 +13,10 @@ from std_msgs.msg import Header
 
 import sailenv_msgs.msg as msgs
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
-from sailenv_ros.object_truth.object_table import ObjectTable
-from sailenv_ros.object_truth.run_lengths import crop_runs, mask_of_runs
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
+from sailenv_ros.frame.truth.object_table import ObjectTable
+from sailenv_ros.frame.truth.run_lengths import crop_runs, mask_of_runs
 
 __all__ = [
     "amodal_mask_to_msgs",

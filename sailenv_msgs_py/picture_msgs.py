@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sailenv_msgs.msg as msgs
-from sailenv_ros.picture_settings import NAMES, PictureSettings
+from sailenv_ros.types.picture_settings import NAMES, PictureSettings
 
 __all__ = ["picture_from_msg", "picture_to_msg"]
 

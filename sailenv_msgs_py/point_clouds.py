@@ -8,7 +8,7 @@ import numpy as np
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Header
 
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame.frame import Frame
 
 __all__ = ["POINT", "point_cloud_to_msg"]
 

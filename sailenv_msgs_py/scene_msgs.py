@@ -20,9 +20,9 @@ from sailenv_msgs_py.transforms import (
     vector_to_msg,
     xyz_from_msg,
 )
-from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
-from sailenv_ros.lights import LIGHT_LIMITS, Environment, Light, LightType
-from sailenv_ros.scene_info import SceneInfo, TimeMode
+from sailenv_ros.types.labels import Category, CategoryTable, Instance, Keypoint
+from sailenv_ros.types.lights import LIGHT_LIMITS, Environment, Light, LightType
+from sailenv_ros.types.scene_info import SceneInfo, TimeMode
 
 __all__ = [
     "colour_to_msg",

@@ -9,8 +9,8 @@ from __future__ import annotations
 import geometry_msgs.msg as geometry
 from builtin_interfaces.msg import Time
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.geometry import QUAT_BODY_FROM_OPTICAL, Pose
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import QUAT_BODY_FROM_OPTICAL, Pose
 
 __all__ = [
     "optical_pose_to_msg",

@@ -10,8 +10,8 @@ from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import Header
 
 from sailenv_msgs_py.object_truth_msgs import poses_of
-from sailenv_ros.frame import Frame
-from sailenv_ros.object_truth.object_table import ObjectTable
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.object_table import ObjectTable
 
 __all__ = ["detections_2d_to_msg", "detections_3d_to_msg"]
 

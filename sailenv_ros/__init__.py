@@ -11,8 +11,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sailenv_ros.agent.agent import Agent
-    from sailenv_ros.notebook import show
+    from sailenv_ros.frame.html import show
+    from sailenv_ros.ros.client.agent import Agent
     from sailenv_ros.scene.loader import load_scene
     from sailenv_ros.simulation import Simulation
 
@@ -21,10 +21,10 @@ __all__ = ["Agent", "Simulation", "__version__", "load_scene", "show"]
 __version__ = "0.2.0"
 
 _HOMES = {
-    "Agent": "sailenv_ros.agent.agent",
+    "Agent": "sailenv_ros.ros.client.agent",
     "Simulation": "sailenv_ros.simulation",
     "load_scene": "sailenv_ros.scene.loader",
-    "show": "sailenv_ros.notebook",
+    "show": "sailenv_ros.frame.html",
 }
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros import Simulation
 from sailenv_ros.cli.scene_bake import ensure_baked
-from sailenv_ros.pictures.contact_sheet import save_picture
+from sailenv_ros.frame.pictures.contact_sheet import save_picture
 
 KINDS = ("living_room", "kitchen", "bedroom", "office", "bathroom", "apartment")
 SEEDS = (2, 3, 5, 7)

@@ -22,13 +22,13 @@ from benchmarks.reference.parts import Parts
 from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, traced_views
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import look_at
-from sailenv_ros.labels import CategoryTable, Instance
-from sailenv_ros.lights import Environment, Light, SkyMap
-from sailenv_ros.model import Material, Model, ModelPart
-from sailenv_ros.render.renderer import Renderer
-from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.labels import CategoryTable, Instance
+from sailenv_ros.types.lights import Environment, Light, SkyMap
+from sailenv_ros.types.model import Material, Model, ModelPart
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 SAMPLES = 256
 ALBEDO = 0.5

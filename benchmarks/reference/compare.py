@@ -34,15 +34,15 @@ from benchmarks.reference.regions import REGIONS, regions_of
 from benchmarks.reference.regions import VIEWS as SHOWN_BY
 from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import look_at
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.pictures.contact_sheet import save_contact_sheet
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 RENDERERS: dict[str, Callable[[], RenderBackend]] = {"native": NativeRenderer, "opengl": Renderer}
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.tone import tone_mapped
+from sailenv_ros.render.picture.tone import tone_mapped
 
 __all__ = ["matched_stops", "picture_of", "radiance_of"]
 

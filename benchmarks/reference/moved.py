@@ -24,21 +24,21 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from sailenv_ros.assets.folders import cache_folder
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.pipeline import bake
-from sailenv_ros.baked_light import BakedLight
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.colour import LINEAR_OF_SRGB8
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import look_at
+from sailenv_ros.light.bake.fingerprint import fingerprint
+from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.quality import FINE, QUICK
+from sailenv_ros.light.relight.relighting import relit
+from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.relight.baked_scene import BakedScene
-from sailenv_ros.relight.quality import FINE, QUICK
-from sailenv_ros.relight.relighting import relit
-from sailenv_ros.relight.scene_changes import Change
+from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 Picture = NDArray[np.uint8]
 

@@ -30,7 +30,7 @@ _NUMBERS: dict[str, Any] = {
 
 
 class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
-    """One light; see `sailenv_ros.lights.Light` for its units."""
+    """One light; see `sailenv_ros.types.lights.Light` for its units."""
 
     def __init__(self, props: Any) -> None:
         mi.Emitter.__init__(self, props)

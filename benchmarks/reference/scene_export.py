@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from benchmarks.reference.parts import Parts, ply_bytes
 from benchmarks.reference.surfaces import bsdf, emitter
-from sailenv_ros.camera import Camera
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.model import Material, Mesh
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Material, Mesh
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["analytic_sky", "lamp", "scene_of", "sensor", "surroundings", "world_mesh"]
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.reference.parts import Parts
-from sailenv_ros.colour import LINEAR_OF_SRGB8, srgb_from_linear
-from sailenv_ros.model import Material
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8, srgb_from_linear
+from sailenv_ros.types.model import Material
 
 __all__ = ["bsdf", "emitter"]
 

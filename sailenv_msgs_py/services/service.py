@@ -13,9 +13,9 @@ from typing import Any
 from sailenv_msgs_py.error_codes import error_from_response
 from sailenv_msgs_py.services.message_fields import field_types, read_fields, write_field
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.labels import MAX_INSTANCE_ID
-from sailenv_ros.operations import Operation
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.operations import Operation
+from sailenv_ros.types.labels import MAX_INSTANCE_ID
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["Arguments", "Service"]
 

@@ -35,18 +35,18 @@ from sailenv_msgs_py.space_msgs import (
 )
 from sailenv_msgs_py.stamps import ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
-from sailenv_ros.agents import AgentPose
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.contacts import Contact
+from sailenv_ros.authoring.viewpoints import CameraView
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame
-from sailenv_ros.lessons import LessonState
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
-from sailenv_ros.operations import Operations
-from sailenv_ros.operations.argument_checks import pose_of
-from sailenv_ros.picture_settings import NAMES
-from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.viewpoints import CameraView
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.simulation.operations.argument_checks import pose_of
+from sailenv_ros.types.agents import AgentPose
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.contacts import Contact
+from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.picture_settings import NAMES
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["AGENT_SERVICES", "SERVICES", "SIMULATOR_SERVICES"]
 

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import (
+from sailenv_ros.scene.spec_objects import ObjectSpec
+from sailenv_ros.scene.spec_room import RoomSpec
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import (
     Asset,
     BoxShape,
     CollisionShape,
@@ -22,8 +24,6 @@ from sailenv_ros.model import (
     SphereShape,
     TriangleShape,
 )
-from sailenv_ros.scene.spec_objects import ObjectSpec
-from sailenv_ros.scene.spec_room import RoomSpec
 
 __all__ = ["RESTING_GAP_M", "WALL_GAP_M", "arranged", "shape_points"]
 

@@ -11,8 +11,8 @@ from typing import Protocol
 
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import NameTaken, UnknownName
-from sailenv_ros.labels import PART_MARK
-from sailenv_ros.model import Asset, Model
+from sailenv_ros.types.labels import PART_MARK
+from sailenv_ros.types.model import Asset, Model
 
 __all__ = ["AssetLibrary", "AssetSource"]
 

@@ -11,7 +11,7 @@ import weakref
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.model import Mesh
+from sailenv_ros.types.model import Mesh
 
 __all__ = ["box_mapped"]
 

@@ -10,8 +10,8 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sailenv_ros.errors import AssetError, NameTaken
-from sailenv_ros.labels import Category, CategoryTable
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.types.labels import Category, CategoryTable
 
 __all__ = ["LAST_FIXED_ID", "load_categories"]
 

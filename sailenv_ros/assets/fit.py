@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.model import Asset, CylinderShape, SphereShape, TriangleShape
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.spec_materials import ALL_PARTS
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.model import Asset, CylinderShape, SphereShape, TriangleShape
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["ObjectFit"]
 

@@ -19,7 +19,7 @@ from PIL import Image
 from sailenv_ros.assets.gltf_emission import write_strength
 from sailenv_ros.assets.meshes import smooth_mesh
 from sailenv_ros.assets.model_files import read_parts
-from sailenv_ros.model import ConvexShape, Material, Mesh, ModelPart, Texture
+from sailenv_ros.types.model import ConvexShape, Material, Mesh, ModelPart, Texture
 
 __all__ = ["DRAWN", "glb_bytes", "read_glb"]
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.meshes import RawMesh
-from sailenv_ros.colour import LINEAR_OF_SRGB8
-from sailenv_ros.model import Material, Texture
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8
+from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["by_glow", "description_with_strength", "lit_by_picture", "write_strength"]
 

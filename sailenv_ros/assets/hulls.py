@@ -15,7 +15,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from sailenv_ros.assets.meshes import RawMesh, components, simplified, welded
 from sailenv_ros.extras import need
-from sailenv_ros.model import ConvexShape
+from sailenv_ros.types.model import ConvexShape
 
 __all__ = ["convex_hull", "convex_parts", "hulls_of_pieces", "merged"]
 

@@ -19,8 +19,8 @@ from sailenv_ros.assets.hulls import convex_hull, convex_parts, merged
 from sailenv_ros.assets.meshes import RawMesh, is_open, smooth_mesh
 from sailenv_ros.assets.model_files import MODEL_SUFFIXES, RawPart, read_parts
 from sailenv_ros.errors import AssetError, InvalidRequest
-from sailenv_ros.model import Asset, CollisionShape, Model, ModelPart
-from sailenv_ros.validation import IDENTIFIER
+from sailenv_ros.types.model import Asset, CollisionShape, Model, ModelPart
+from sailenv_ros.types.validation import IDENTIFIER
 
 __all__ = ["import_asset"]
 

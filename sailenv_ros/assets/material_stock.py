@@ -16,9 +16,9 @@ from sailenv_ros.assets.paint import painted_material
 from sailenv_ros.assets.pictures import Pictures
 from sailenv_ros.assets.surfaces import surface, surface_names
 from sailenv_ros.errors import AssetError, UnknownName
-from sailenv_ros.model import Asset, Material, ModelPart
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.spec_materials import LookSpec
+from sailenv_ros.types.model import Asset, Material, ModelPart
 
 __all__ = ["LaidMaterial", "MaterialStock", "appearance_key", "material_names"]
 

@@ -13,7 +13,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from sailenv_ros.assets.simplification import fewer_triangles
-from sailenv_ros.model import Mesh
+from sailenv_ros.types.model import Mesh
 
 __all__ = [
     "RawMesh",

@@ -22,9 +22,9 @@ from PIL import Image
 from sailenv_ros.assets.gltf_emission import by_glow, description_with_strength, lit_by_picture
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.obj_polygons import with_triangles
-from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
-from sailenv_ros.model import Material, Texture
+from sailenv_ros.types.colour import linear_from_srgb
+from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["MAX_TRIANGLES", "MODEL_SUFFIXES", "RawPart", "read_parts", "texture_of"]
 

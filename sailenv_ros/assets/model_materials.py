@@ -13,8 +13,8 @@ from dataclasses import replace
 from sailenv_ros.assets.box_mapping import box_mapped
 from sailenv_ros.assets.material_stock import LaidMaterial, MaterialStock, appearance_key
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.model import Model, ModelPart
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialSpec
+from sailenv_ros.types.model import Model, ModelPart
 
 __all__ = ["finished"]
 

@@ -17,8 +17,8 @@ from sailenv_ros.assets.pack import PACK_FILE, AssetPack, PackContent, PackEntry
 from sailenv_ros.assets.pack_writer import packed, write_content
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.errors import NameTaken
-from sailenv_ros.model import Asset, ConvexShape
 from sailenv_ros.system.files import file_lock, remove_unfinished, storage_errors
+from sailenv_ros.types.model import Asset, ConvexShape
 
 __all__ = ["add_to_own_pack"]
 

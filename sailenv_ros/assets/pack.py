@@ -20,7 +20,8 @@ from sailenv_ros.assets.checksums import file_checksum
 from sailenv_ros.assets.folders import own_pack_folder, standard_pack_folder
 from sailenv_ros.assets.glb import read_glb
 from sailenv_ros.errors import AssetError
-from sailenv_ros.model import (
+from sailenv_ros.scene.spec import CategorySpec
+from sailenv_ros.types.model import (
     Asset,
     AssetPart,
     BoxShape,
@@ -31,7 +32,6 @@ from sailenv_ros.model import (
     ModelPart,
     SphereShape,
 )
-from sailenv_ros.scene.spec import CategorySpec
 
 __all__ = ["BUILD_COMMAND", "PACK_FILE", "AssetPack", "PackContent", "PackEntry", "PackPart"]
 

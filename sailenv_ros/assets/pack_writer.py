@@ -11,8 +11,8 @@ import yaml
 
 from sailenv_ros.assets.glb import DRAWN, body_bounds, glb_bytes, triangle_count
 from sailenv_ros.assets.pack import PACK_FILE, PackContent, PackEntry, PackPart
-from sailenv_ros.model import AssetPart, ConvexShape, ModelPart
 from sailenv_ros.system.files import write_file
+from sailenv_ros.types.model import AssetPart, ConvexShape, ModelPart
 
 __all__ = ["packed", "write_content"]
 

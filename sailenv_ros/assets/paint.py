@@ -9,7 +9,7 @@ import dataclasses
 import threading
 import weakref
 
-from sailenv_ros.model import Material, Model, Texture
+from sailenv_ros.types.model import Material, Model, Texture
 
 __all__ = ["painted", "painted_material"]
 

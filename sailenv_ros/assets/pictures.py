@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 
 from sailenv_ros.errors import AssetError, InvalidRequest, InvalidState
-from sailenv_ros.model import Texture
+from sailenv_ros.types.model import Texture
 
 __all__ = [
     "MAX_PICTURE_BYTES",

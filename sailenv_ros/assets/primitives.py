@@ -18,7 +18,7 @@ from sailenv_ros.assets.solids import (
     ground_mesh,
     sphere_mesh,
 )
-from sailenv_ros.model import (
+from sailenv_ros.types.model import (
     Asset,
     BoxShape,
     CollisionShape,

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.extras import need
-from sailenv_ros.lights import SkyMap
 from sailenv_ros.system.files import write_file
+from sailenv_ros.types.lights import SkyMap
 
 __all__ = ["SKIES", "bake_sky", "load_sky", "sky_files"]
 

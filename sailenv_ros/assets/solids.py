@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.model import Mesh
+from sailenv_ros.types.model import Mesh
 
 __all__ = ["box_mesh", "cone_mesh", "cylinder_mesh", "ground_mesh", "sphere_mesh"]
 

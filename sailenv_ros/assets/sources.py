@@ -10,9 +10,9 @@ from sailenv_ros.assets.asset_library import AssetSource
 from sailenv_ros.assets.folders import pack_folders, standard_pack_folder
 from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.assets.standard.recipe import standard_recipe
+from sailenv_ros.assets.recipe import standard_recipe
 from sailenv_ros.errors import AssetError
-from sailenv_ros.model import Asset
+from sailenv_ros.types.model import Asset
 
 __all__ = ["BUILD_COMMAND", "UnbuiltPack", "installed_packs", "installed_sources"]
 

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
 from sailenv_ros.errors import RenderError
-from sailenv_ros.frame import VIEWS, checked_views, views_of
-from sailenv_ros.render.annotate import annotate
-from sailenv_ros.render.backend import RenderedViews
-from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.picture.annotate import annotate
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.views import VIEWS, checked_views, views_of
 from sailenv_ros.world.tiny_rasteriser import TinyRasteriser
 
 __all__ = ["TinyRenderer"]

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.field_types import Number
+from sailenv_ros.types.geometry import Pose
 
 __all__ = [
     "MAX_SPEED_M_S",

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from sailenv_ros.behaviours.registry import behaviour_kinds
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["lesson_errors", "moving_time_s", "presence_s"]
 

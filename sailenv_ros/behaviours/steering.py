@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.behaviours.base import MAX_SPEED_M_S, STEP_S, Action, BodyState
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 
 __all__ = [
     "MAX_TURN_RAD_S",

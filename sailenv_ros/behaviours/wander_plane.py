@@ -18,9 +18,9 @@ from sailenv_ros.behaviours.base import (
     behaviour,
 )
 from sailenv_ros.behaviours.steering import MAX_TURN_RAD_S, limited, turn_vector, vector3
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Position
+from sailenv_ros.types.geometry import Pose
 
 __all__ = ["WanderPlane", "wander_plane"]
 

@@ -17,9 +17,9 @@ from sailenv_ros.behaviours.base import (
     behaviour,
 )
 from sailenv_ros.behaviours.steering import towards, turn_vector
-from sailenv_ros.geometry import Pose, interpolate
 from sailenv_ros.scene.field_types import Number, Switch
 from sailenv_ros.scene.fields import Position, Rotation
+from sailenv_ros.types.geometry import Pose, interpolate
 
 __all__ = [
     "ObjectWaypoint",

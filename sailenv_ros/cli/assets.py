@@ -9,21 +9,21 @@ from typing import Any
 
 from rich.console import Console
 
+from sailenv_content.standard.fetch import SOURCES, kept_folder
+from sailenv_content.standard.pack_build import is_current, licence_files
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.checksums import damaged_by_manifest
 from sailenv_ros.assets.folders import own_pack_folder, pack_folders, standard_pack_folder
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.sources import installed_packs, installed_sources
-from sailenv_ros.assets.standard.fetch import SOURCES, kept_folder
-from sailenv_ros.assets.standard.pack_build import is_current, licence_files
-from sailenv_ros.bake.light_files import damaged_light
-from sailenv_ros.catalogue.import_process import import_file_apart
-from sailenv_ros.catalogue.thumbnails import is_whole_png, thumbnail_folder
 from sailenv_ros.cli.furniture import build_furniture, object_progress
 from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.light.bake.light_files import damaged_light
+from sailenv_ros.simulation.models.import_process import import_file_apart
+from sailenv_ros.simulation.models.thumbnails import is_whole_png, thumbnail_folder
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.validation import checked_integer
+from sailenv_ros.types.validation import checked_integer
 
 __all__ = ["add_parser", "run"]
 
@@ -174,8 +174,8 @@ def _credits(args: argparse.Namespace) -> int:
 
 def _sheet(args: argparse.Namespace) -> int:
     # Imported here: all other actions do without OpenGL.
-    from sailenv_ros.catalogue.preview_renderer import PreviewRenderer
-    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.simulation.models.preview_renderer import PreviewRenderer
 
     columns = checked_integer("--columns", args.columns, 1, 1000)
     tile_px = checked_integer("--tile", args.tile, 16, 2048, unit="px")
@@ -222,8 +222,8 @@ def _add(args: argparse.Namespace) -> int:
 
 
 def _preview(asset: Any) -> Path:
-    from sailenv_ros.catalogue.preview_renderer import PreviewRenderer
-    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.simulation.models.preview_renderer import PreviewRenderer
 
     with PreviewRenderer() as previews:
         pictures = {

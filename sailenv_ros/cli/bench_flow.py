@@ -8,6 +8,13 @@ import itertools
 from functools import partial
 from typing import Any
 
+from sailenv_bench.experiments.flow_accuracy import OURS, evaluate_scenario, flow_test_scene
+from sailenv_bench.experiments.flow_methods import FlowMethod, opencv_methods
+from sailenv_bench.experiments.flow_network import flow_network
+from sailenv_bench.experiments.flow_scenes import SCENARIOS
+from sailenv_bench.experiments.flow_speed import PICTURE, SIZES, WARM_UP, time_flow
+from sailenv_bench.experiments.frame_sources import agent_source, in_process_source
+from sailenv_bench.experiments.machine import provenance
 from sailenv_ros.cli.experiment import (
     checked_sizes,
     command_line,
@@ -15,13 +22,6 @@ from sailenv_ros.cli.experiment import (
     progress_bar,
 )
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.experiments.flow_accuracy import OURS, evaluate_scenario, flow_test_scene
-from sailenv_ros.experiments.flow_methods import FlowMethod, opencv_methods
-from sailenv_ros.experiments.flow_network import flow_network
-from sailenv_ros.experiments.flow_scenes import SCENARIOS
-from sailenv_ros.experiments.flow_speed import PICTURE, SIZES, WARM_UP, time_flow
-from sailenv_ros.experiments.frame_sources import agent_source, in_process_source
-from sailenv_ros.experiments.machine import provenance
 from sailenv_ros.extras import need
 
 __all__ = ["flow_accuracy", "flow_speed"]
@@ -140,7 +140,7 @@ def _methods(args: argparse.Namespace) -> list[FlowMethod]:
 
 def _save_pictures(args: argparse.Namespace, sheets: dict[str, dict[str, Any]]) -> list[str]:
     """Write one sheet for each scenario, and the four of the paper's question on one."""
-    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 
     args.output.mkdir(parents=True, exist_ok=True)
     for name, pictures in sheets.items():

@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 from functools import partial
 
+from sailenv_bench.experiments.machine import provenance
+from sailenv_bench.experiments.stream_bench import bench_stream
 from sailenv_ros.cli.experiment import command_line, finish, progress_bar
+from sailenv_ros.dataset.streams import STREAMS, stream_named
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.machine import provenance
-from sailenv_ros.experiments.stream_bench import bench_stream
 from sailenv_ros.extras import need
-from sailenv_ros.streams import STREAMS, stream_named
 
 __all__ = ["streams"]
 

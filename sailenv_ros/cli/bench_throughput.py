@@ -6,11 +6,11 @@ import argparse
 from functools import partial
 from typing import Any
 
+from sailenv_bench.experiments.machine import provenance
+from sailenv_bench.experiments.throughput import baseline_rows, measure_group, plan_of
+from sailenv_bench.experiments.workloads import TRANSPORTS
 from sailenv_ros.cli.experiment import checked_sizes, command_line, finish, progress_bar
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.machine import provenance
-from sailenv_ros.experiments.throughput import baseline_rows, measure_group, plan_of
-from sailenv_ros.experiments.workloads import TRANSPORTS
 from sailenv_ros.extras import need
 
 __all__ = ["throughput"]

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from sailenv_ros.errors import SailenvError
 
 if TYPE_CHECKING:
-    from sailenv_ros.render.backend import BackendName
+    from sailenv_ros.render.contract import BackendName
 
 __all__ = ["PROBES", "try_probe"]
 
@@ -52,7 +52,7 @@ def probe_ros() -> dict[str, Any]:
 
 def probe_graphics() -> dict[str, Any]:
     """Try every EGL device."""
-    from sailenv_ros.render.context import probe_devices
+    from sailenv_ros.render.gl.context import probe_devices
 
     return {
         "devices": [
@@ -79,8 +79,8 @@ def probe_scenes() -> dict[str, Any]:
 
 def probe_frame(backend: BackendName) -> dict[str, Any]:
     """Render a frame with the five views, as a simulator would; the second one is timed."""
-    from sailenv_ros.agents import AgentSpec
     from sailenv_ros.simulation import Simulation
+    from sailenv_ros.types.agents import AgentSpec
 
     with Simulation(mode="lockstep", backend=backend) as simulation:
         simulation.register_agent(AgentSpec(name="doctor", rate_hz=0.0))

@@ -59,13 +59,13 @@ def run(args: argparse.Namespace) -> int:
     """Evaluate; 0 if all is well."""
     import numpy as np
 
+    from sailenv_bench.experiments.coco_classes import PAPER_CLASSES
+    from sailenv_bench.experiments.detector import Detector
+    from sailenv_bench.experiments.machine import provenance
+    from sailenv_bench.experiments.viewpoints import ROOMS, Rule, Stage, rule_as_data
     from sailenv_ros.errors import UnknownName
-    from sailenv_ros.experiments.coco_classes import PAPER_CLASSES
-    from sailenv_ros.experiments.detector import Detector
-    from sailenv_ros.experiments.machine import provenance
-    from sailenv_ros.experiments.viewpoints import ROOMS, Rule, Stage, rule_as_data
     from sailenv_ros.extras import need
-    from sailenv_ros.pictures.contact_sheet import save_contact_sheet
+    from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 
     classes = tuple(args.classes or PAPER_CLASSES)
     for name in classes:
@@ -125,7 +125,7 @@ def _evaluated(
     sheet: dict[str, Any],
 ) -> dict[str, Any]:
     """Score a class's viewpoints, and put them on the sheet."""
-    from sailenv_ros.experiments.detection import class_scores, scored, with_boxes
+    from sailenv_bench.experiments.detection import class_scores, scored, with_boxes
 
     results = []
     for number, viewpoint in enumerate(viewpoints, start=1):
@@ -150,12 +150,12 @@ def _evaluated(
 
 
 def _hit_iou() -> float:
-    from sailenv_ros.experiments.detection import HIT_IOU
+    from sailenv_bench.experiments.detection import HIT_IOU
 
     return HIT_IOU
 
 
 def _overall(measured: list[dict[str, Any]]) -> dict[str, Any]:
-    from sailenv_ros.experiments.detection import overall_scores
+    from sailenv_bench.experiments.detection import overall_scores
 
     return overall_scores(measured)

@@ -110,8 +110,8 @@ def finish(
     args: argparse.Namespace, experiment: str, origin: Mapping[str, Any], data: Mapping[str, Any]
 ) -> None:
     """Write the result, print its tables and draw its plots."""
-    from sailenv_ros.experiments.result_tables import tables_of
-    from sailenv_ros.experiments.results import load_result, save_result
+    from sailenv_bench.experiments.result_tables import tables_of
+    from sailenv_bench.experiments.results import load_result, save_result
 
     path = save_result(args.output, experiment, origin, data)
     result = load_result(args.output, experiment)
@@ -121,7 +121,7 @@ def finish(
     print(f"{origin['cpu']}, {origin['cpus']} CPUs, load {load}; {data.get('renderer', '')}")
     print(path)
     if not args.no_plots:
-        from sailenv_ros.experiments.plots import save_plots
+        from sailenv_bench.experiments.plots import save_plots
 
         for plot in save_plots(result, args.output):
             print(plot)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sailenv_ros.recording.export import DatasetSummary
+    from sailenv_ros.dataset.formats import DatasetSummary
 
 __all__ = ["add_parser", "run"]
 
@@ -58,7 +58,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the data sets; 0 if all is well."""
-    from sailenv_ros.recording.export import Splits, export
+    from sailenv_ros.dataset.formats import Splits, export
 
     def tell(done: int, of: int) -> None:
         if sys.stderr.isatty():

@@ -8,7 +8,7 @@ from collections.abc import Collection
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from sailenv_ros.assets.standard.pack_build import build_standard_pack
+from sailenv_content.standard.pack_build import build_standard_pack
 
 __all__ = ["build_furniture", "object_progress"]
 

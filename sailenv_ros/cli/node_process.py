@@ -28,7 +28,7 @@ def become_node(node: str, parameters: Mapping[str, object], *, namespace: str =
     InvalidRequest
         If ROS would not accept the namespace.
     """
-    words = [sys.executable, "-m", f"sailenv_ros.nodes.{node}", "--ros-args"]
+    words = [sys.executable, "-m", f"sailenv_ros.ros.nodes.{node}", "--ros-args"]
     if namespace:
         words += ["-r", f"__ns:={checked_namespace(namespace)}"]
     for name, value in parameters.items():

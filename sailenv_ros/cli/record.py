@@ -82,13 +82,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _lockstep(args: argparse.Namespace, output: Path, options: RecordingOptions) -> int:
-    from sailenv_ros.agents import AgentSpec
-    from sailenv_ros.camera import CameraIntrinsics
     from sailenv_ros.cli.scene_bake import ensure_baked
     from sailenv_ros.recording.lockstep import record_lockstep
     from sailenv_ros.recording.writer import RecordingWriter, check_free
     from sailenv_ros.simulation import Simulation
     from sailenv_ros.simulation.scenes import default_scene
+    from sailenv_ros.types.agents import AgentSpec
+    from sailenv_ros.types.camera import CameraIntrinsics
 
     if args.frames is None:
         print("sailenv record: --lockstep needs --frames N", file=sys.stderr)

@@ -30,7 +30,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the page; 0 if all is well."""
-    from sailenv_ros.experiments.report_page import write_report
+    from sailenv_bench.experiments.report_page import write_report
 
     print(write_report(args.folder, args.output or args.folder / "report.html"))
     return 0

@@ -93,7 +93,7 @@ def _become_the_node(args: argparse.Namespace) -> int:
     if args.scenes:
         values["scene_paths"] = "[" + ", ".join(f"'{path}'" for path in args.scenes) + "]"
     given = [word for name, value in values.items() for word in ("-p", f"{name}:={value}")]
-    command = [sys.executable, "-m", "sailenv_ros.nodes.sim_node", "--ros-args", *given]
+    command = [sys.executable, "-m", "sailenv_ros.ros.nodes.sim_node", "--ros-args", *given]
     stay_local()
     sys.stdout.flush()
     os.execv(sys.executable, command)

@@ -14,8 +14,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import (
+from sailenv_ros.cli.arguments import add_allow_modules
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.light.bake.fingerprint import fingerprint
+from sailenv_ros.light.bake.light_files import (
     baked_file,
     is_baked,
     load_baked,
@@ -23,12 +25,10 @@ from sailenv_ros.bake.light_files import (
     store_baked,
     store_draft,
 )
-from sailenv_ros.bake.pipeline import bake
-from sailenv_ros.baked_light import BakedLight
-from sailenv_ros.cli.arguments import add_allow_modules
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["add_arguments", "bake_scenes", "ensure_baked", "rooms"]
 

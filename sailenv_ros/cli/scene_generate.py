@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from sailenv_ros.authoring.generation import Generator, drawn_kind, read_rules
+from sailenv_ros.authoring.generation.names import MAX_SEED
 from sailenv_ros.errors import InvalidRequest, SceneError
-from sailenv_ros.generation import Generator, drawn_kind, read_rules
-from sailenv_ros.generation.names import MAX_SEED
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.files import write_file
 from sailenv_ros.system.resources import resource_path
-from sailenv_ros.validation import checked_integer
+from sailenv_ros.types.validation import checked_integer
 
 __all__ = ["add_arguments", "generate"]
 

@@ -8,18 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
 from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.pictures.contact_sheet import save_contact_sheet, save_picture
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.colours import view_picture
+from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet, save_picture
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.simulation import Simulation
-from sailenv_ros.validation import checked_integer, checked_number
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.validation import checked_integer, checked_number
+from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 
 __all__ = ["add_arguments", "render_scene"]
 

@@ -10,8 +10,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.assets.standard.pack_build import is_current
-from sailenv_ros.assets.standard.recipe import standard_recipe
+from sailenv_content.standard.pack_build import is_current
+from sailenv_ros.assets.recipe import standard_recipe
 from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.cli.furniture import build_furniture
 from sailenv_ros.cli.scene_bake import ensure_baked, rooms

@@ -62,7 +62,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Make the stream; 0 if all is well."""
     from sailenv_ros.cli.scene_bake import ensure_baked
-    from sailenv_ros.streams import StreamJob, make_stream, stream_named
+    from sailenv_ros.dataset.streams import StreamJob, make_stream, stream_named
 
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         # A shell starts what it puts into the background so; who sends it means it.

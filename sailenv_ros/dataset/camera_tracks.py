@@ -23,9 +23,9 @@ from sailenv_ros.dataset.recipe_cameras import (
     WalkCamera,
 )
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.operations import WorldOperations
+from sailenv_ros.simulation.operations import WorldOperations
 from sailenv_ros.space.free_space import FreeSpace
+from sailenv_ros.types.geometry import Pose, look_at
 
 __all__ = ["NoPlace", "Track", "track_of", "turning"]
 

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
+from sailenv_ros.dataset.formats.data_files import write_bytes
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.shard_writer import PICTURES_FOLDER
 from sailenv_ros.dataset.stores import Store
-from sailenv_ros.pictures.contact_sheet import contact_sheet
-from sailenv_ros.recording.export.data_files import write_bytes
+from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 
 __all__ = ["CARD_FILE", "write_card"]
 

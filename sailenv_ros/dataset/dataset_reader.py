@@ -15,7 +15,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import done_shards
@@ -23,10 +22,12 @@ from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.shard_plan import ShardPlan
 from sailenv_ros.dataset.stores import FolderStore
 from sailenv_ros.errors import RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.geometry import Pose
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["Dataset", "DatasetFrame", "open_dataset"]
 

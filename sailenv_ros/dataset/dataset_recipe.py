@@ -11,16 +11,16 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.agents import MAX_RATE_HZ
+from sailenv_ros.authoring.generation.rule_files import room_kinds
+from sailenv_ros.dataset.formats.formats import FORMATS, format_class
+from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered
-from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
-from sailenv_ros.generation.rule_files import room_kinds
-from sailenv_ros.recording.export.formats import FORMATS, format_class
-from sailenv_ros.recording.export.splits import SPLITS
 from sailenv_ros.scene.field_types import Choice, Number, Several, Switch, Text
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
 from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.rules import distinct, distinct_values
+from sailenv_ros.types.agents import MAX_RATE_HZ
+from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
 __all__ = ["ClipRecipe", "Light", "DatasetRecipe", "SceneRecipe", "ShardRecipe", "SplitSizes"]
 

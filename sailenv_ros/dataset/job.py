@@ -13,9 +13,9 @@ from typing import Any
 from sailenv_ros import __version__
 from sailenv_ros.assets.pack import PACK_FILE
 from sailenv_ros.assets.sources import installed_packs
-from sailenv_ros.bake.settings import BAKE_VERSION
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.errors import RecordingError, SceneDiagnostic, SceneError
+from sailenv_ros.light.bake.settings import BAKE_VERSION
 from sailenv_ros.scene.documents import load_document
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.generated_scenes import generation_state

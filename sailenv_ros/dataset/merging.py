@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any, overload
 
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record
+from sailenv_ros.dataset.formats.formats import format_class
 from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.stores import Store
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record
-from sailenv_ros.recording.export.formats import format_class
 
 __all__ = ["RECORDS_FOLDER", "ShardRecords", "finish_formats", "frame_records", "merges"]
 

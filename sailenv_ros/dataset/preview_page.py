@@ -22,16 +22,16 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
 from sailenv_ros.dataset.dataset_reader import Dataset, DatasetFrame, open_dataset
+from sailenv_ros.dataset.formats.annotated_objects import NO_CATEGORY
+from sailenv_ros.dataset.formats.object_records import object_record
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
 from sailenv_ros.dataset.stores import FolderStore
-from sailenv_ros.frame import VIEWS
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.recording.export.annotated_objects import NO_CATEGORY
-from sailenv_ros.recording.export.object_records import object_record
+from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.system.files import storage_errors, write_file
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["preview_html", "save_preview"]
 

@@ -7,15 +7,15 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import Field
 
-from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.authoring.viewpoints.rule_table import camera_rules, checked_rule
 from sailenv_ros.errors import InvalidEntry
 from sailenv_ros.scene.field_types import Choice, Number, Several, Text
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.placing import Aimed
 from sailenv_ros.scene.rules import at_most_one, few_samples
 from sailenv_ros.scene.spec_picture import PictureSpec
-from sailenv_ros.validation import is_finite_number
-from sailenv_ros.viewpoints.rule_table import camera_rules, checked_rule
+from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
     "AgentCamera",

@@ -18,11 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.cpu_render.mesh_store import MeshStore
-from sailenv_ros.cpu_render.part_table import PartTable
-from sailenv_ros.cpu_render.texture_store import TextureStore
+from sailenv_ros.authoring.generation.names import PREFIX
+from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import NoPlace, Track, track_of, turning
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
@@ -31,16 +28,19 @@ from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_gr
 from sailenv_ros.dataset.shard_writer import ShardWriter
 from sailenv_ros.dataset.stores import Store
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.frame import Frame
-from sailenv_ros.generation.names import PREFIX
-from sailenv_ros.geometry import Pose
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import STEPS_PER_S, due_steps
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.render.cpu.mesh_store import MeshStore
+from sailenv_ros.render.cpu.part_table import PartTable
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.space.free_space import named_generator
-from sailenv_ros.viewpoints import sample_cameras
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["ShardMaker"]
 

@@ -16,13 +16,13 @@ import cv2
 import numpy as np
 
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.formats.annotated_objects import NO_CATEGORY
+from sailenv_ros.dataset.formats.data_files import write_bytes
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.formats import format_class
 from sailenv_ros.dataset.merging import RECORDS_FOLDER, merges
 from sailenv_ros.dataset.shard_plan import Clip, Shard
-from sailenv_ros.frame import Frame
-from sailenv_ros.recording.export.annotated_objects import NO_CATEGORY
-from sailenv_ros.recording.export.data_files import write_bytes
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.recording.export.formats import format_class
+from sailenv_ros.frame.frame import Frame
 
 __all__ = ["PICTURES_FOLDER", "ShardWriter"]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sailenv_ros.dataset.dataset_reader import Dataset
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["shown_frames", "shown_views"]
 

@@ -12,9 +12,9 @@ from collections.abc import Generator, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from sailenv_ros.catalogue.uploads import MAX_UPLOAD_BYTES
 from sailenv_ros.errors import ProtocolError
 from sailenv_ros.gateway.protocol_commands import HELLO, CommandKind, Field, commands_of
+from sailenv_ros.simulation.models.uploads import MAX_UPLOAD_BYTES
 
 __all__ = [
     "MAX_DOCUMENT_LENGTH",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sailenv_ros.camera import MAX_SIZE_PX
 from sailenv_ros.system.silent_peers import SILENT_S
+from sailenv_ros.types.camera import MAX_SIZE_PX
 
 __all__ = ["GatewayLimits"]
 

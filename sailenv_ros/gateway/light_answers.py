@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from typing import Any
 
-from sailenv_ros.colour import linear_from_srgb8, srgb8_from_linear
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_floats, pack_ints, pack_string, pack_strings
 from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
 from sailenv_ros.gateway.unity import unity_from_vector, vector_from_unity
-from sailenv_ros.lights import Light
-from sailenv_ros.operations import Operations
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.types.colour import linear_from_srgb8, srgb8_from_linear
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["LightAnswers"]
 

@@ -16,8 +16,8 @@ from sailenv_ros.gateway.scenario_json import (
 from sailenv_ros.gateway.scene_names import scene_of_wire
 from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
 from sailenv_ros.gateway.unity import pose_from_unity, scale_from_unity
-from sailenv_ros.operations import Operations
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["ObjectAnswers"]
 

@@ -15,10 +15,10 @@ from isal import igzip
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import ProtocolError
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.colours import grey_depth
 from sailenv_ros.gateway.codec import pack_floats, pack_ints
-from sailenv_ros.labels import UNLABELLED_CATEGORY, instance_colours
-from sailenv_ros.pictures.colours import grey_depth
+from sailenv_ros.types.labels import UNLABELLED_CATEGORY, instance_colours
 
 __all__ = ["packed_frame", "views_of_flags"]
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.gateway.unity import pose_from_unity, vector_from_unity
-from sailenv_ros.validation import is_number
+from sailenv_ros.types.validation import is_number
 
 __all__ = ["behaviours_of_dynamic", "entries_of_scenario", "mapping_of_json"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["scene_of_wire", "wire_scenes"]
 

@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from typing import Any
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import NameTaken, ProtocolError
-from sailenv_ros.frame import Frame
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.gateway.codec import Message, pack_floats, pack_ints, pack_string, pack_strings
 from sailenv_ros.gateway.light_answers import LightAnswers
 from sailenv_ros.gateway.object_answers import ObjectAnswers
@@ -25,8 +23,10 @@ from sailenv_ros.gateway.unity import (
     unity_from_vector,
     vector_from_unity,
 )
-from sailenv_ros.operations import Operations
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["AGENT_PREFIX", "Session"]
 

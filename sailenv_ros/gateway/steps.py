@@ -12,7 +12,7 @@ from typing import Any, ParamSpec, TypeAlias
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_string
-from sailenv_ros.operations import Operation
+from sailenv_ros.simulation.operations import Operation
 
 __all__ = ["Answer", "Ask", "Step", "Work", "in_words", "one_line"]
 

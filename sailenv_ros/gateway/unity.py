@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
-from sailenv_ros.validation import vector
+from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
+from sailenv_ros.types.validation import vector
 
 __all__ = [
     "orientation_xyzw_from_unity",

@@ -23,12 +23,13 @@ from sailenv_msgs_py.object_truth_msgs import objects_to_msg
 from sailenv_msgs_py.scene_msgs import scene_info_to_msg
 from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.cdr_padding import without_padding_garbage
 from sailenv_ros.recording.mcap.chunks import Buffer
 from sailenv_ros.recording.schemas import message_class, schema_text, type_hash
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import VIEWS
 
 __all__ = [
     "AGENT_TOPICS",

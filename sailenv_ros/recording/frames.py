@@ -26,10 +26,9 @@ from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS, DrawAlone, Frame
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
+from sailenv_ros.frame.frame import DrawAlone, Frame
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.channels import (
     FRAME_INFO,
     IMAGE,
@@ -41,8 +40,10 @@ from sailenv_ros.recording.channels import (
     present_form,
 )
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.validation import is_integer
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.validation import is_integer
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["RecordedFrames", "recorded_agents"]
 

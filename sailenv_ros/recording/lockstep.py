@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import Frame, checked_views
-from sailenv_ros.motion import FORWARD_VIEWS, with_forward_motion
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import FORWARD_VIEWS, with_forward_motion
 from sailenv_ros.recording.channels import (
     ON_REQUEST,
     SCENE_INFO,
@@ -24,9 +23,11 @@ from sailenv_ros.recording.channels import (
     topic,
 )
 from sailenv_ros.recording.writer import RecordingWriter
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import checked_views
 
 __all__ = [
     "FRAME_TIMEOUT_S",

@@ -14,7 +14,7 @@ import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["PlaybackClock", "Programme", "programme"]
 

@@ -14,7 +14,7 @@ import yaml
 
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.recording.mcap import Compression
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["OfferedQos", "RecordedTopic", "RecordingOptions", "qos_of_yaml"]
 

@@ -14,9 +14,9 @@ from typing import Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-from sailenv_ros.colour import hex_from_linear, linear_from_hex
 from sailenv_ros.scene.messages import nearest, shown, shown_number
-from sailenv_ros.validation import is_integer, is_number
+from sailenv_ros.types.colour import hex_from_linear, linear_from_hex
+from sailenv_ros.types.validation import is_integer, is_number
 
 __all__ = [
     "FIELD_ERROR",

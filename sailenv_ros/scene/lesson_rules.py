@@ -7,7 +7,7 @@ from typing import Any
 
 from sailenv_ros.scene.messages import shown, suggestion
 from sailenv_ros.scene.rules import Entry, Faults
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
     "after_needs_laps",

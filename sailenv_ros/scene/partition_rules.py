@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 from sailenv_ros.scene.messages import shown, shown_number
 from sailenv_ros.scene.room_rules import DOOR_SIZE_M, room_part_names
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
     "along_an_axis",

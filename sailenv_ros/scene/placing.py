@@ -6,9 +6,9 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from sailenv_ros.geometry import Pose, look_at, quat_xyzw_from_rpy_deg
 from sailenv_ros.scene.fields import Orientation, Position, Rotation, Rule, SceneModel
 from sailenv_ros.scene.rules import at_most_one, away_from_position, unit_quaternion
+from sailenv_ros.types.geometry import Pose, look_at, quat_xyzw_from_rpy_deg
 
 __all__ = ["Aimed", "Turned"]
 

@@ -10,11 +10,11 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from sailenv_ros.labels import UNLABELLED_CATEGORY
-from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.fields import Rule
 from sailenv_ros.scene.messages import shown, shown_number, suggestion
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.labels import UNLABELLED_CATEGORY
+from sailenv_ros.types.picture_settings import LIMITS
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
     "Faults",

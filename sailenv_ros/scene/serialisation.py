@@ -12,12 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.geometry import Pose, quat_xyzw_from_rpy_deg
-from sailenv_ros.lights import Light
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.scene.spec_cameras import AgentSpecModel
 from sailenv_ros.scene.spec_surroundings import (
@@ -27,6 +21,12 @@ from sailenv_ros.scene.spec_surroundings import (
     PointLightSpec,
     SpotLightSpec,
 )
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.geometry import Pose, quat_xyzw_from_rpy_deg
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.rigid_body import RigidBody
 
 __all__ = [
     "MOTION_KEYS",

@@ -12,7 +12,6 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.labels import MAX_CATEGORY_ID, Category
 from sailenv_ros.scene.field_types import Number, Switch, Text
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
 from sailenv_ros.scene.lesson_rules import pupils_exist, stays_its_lesson, visitors_stand_alone
@@ -44,6 +43,7 @@ from sailenv_ros.scene.spec_surroundings import (
     PointLightSpec,
     SpotLightSpec,
 )
+from sailenv_ros.types.labels import MAX_CATEGORY_ID, Category
 
 __all__ = [
     "FIRST_SCENE_CATEGORY_ID",

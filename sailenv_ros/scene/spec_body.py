@@ -7,10 +7,10 @@ from typing import Annotated
 
 from pydantic import Field
 
-from sailenv_ros.rigid_body import RIGID_BODY_LIMITS, RigidBody
 from sailenv_ros.scene.field_types import Number, Switch
 from sailenv_ros.scene.fields import DegreesPerSecond, MetresPerSecond, SceneModel
 from sailenv_ros.scene.rules import Entry, Faults
+from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
 
 __all__ = ["BodySpec", "forces_or_waypoints"]
 

@@ -6,10 +6,6 @@ from typing import Annotated, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.agents import MAX_RATE_HZ, AgentSpec
-from sailenv_ros.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
@@ -17,6 +13,10 @@ from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_
 from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
 from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
+from sailenv_ros.types.agents import MAX_RATE_HZ, AgentSpec
+from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
 __all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
 

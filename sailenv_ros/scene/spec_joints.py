@@ -20,7 +20,7 @@ from sailenv_ros.scene.fields import (
 )
 from sailenv_ros.scene.messages import shown, shown_number, suggestion
 from sailenv_ros.scene.rules import Faults
-from sailenv_ros.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["JointSpec", "joints_hold", "on_a_joint"]
 

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from sailenv_ros.look_at import LookAt
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.rules import Entry, Faults
+from sailenv_ros.types.look_at import LookAt
 
 __all__ = ["LookAtSpec", "faced_objects_exist"]
 

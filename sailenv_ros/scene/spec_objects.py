@@ -9,7 +9,6 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field
 
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import (
     DegreesPerSecond,
@@ -29,6 +28,7 @@ from sailenv_ros.scene.rules import at_most_one, distinct, only_beside, static_n
 from sailenv_ros.scene.spec_joints import JointSpec, on_a_joint
 from sailenv_ros.scene.spec_materials import MaterialSpec
 from sailenv_ros.scene.spec_room import WallName
+from sailenv_ros.types.geometry import Pose
 
 __all__ = ["BehaviourSpec", "ObjectSpec"]
 

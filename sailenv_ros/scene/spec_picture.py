@@ -6,9 +6,9 @@ from typing import Annotated, get_args
 
 from pydantic import Field
 
-from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
 from sailenv_ros.scene.field_types import Choice, Number, Switch
 from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.types.picture_settings import LIMITS, PictureSettings, ToneCurve
 
 __all__ = ["PictureSpec"]
 

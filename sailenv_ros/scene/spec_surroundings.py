@@ -6,10 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import Field
 
-from sailenv_ros.lights import Environment, Light
 from sailenv_ros.scene.field_types import Choice, Number
 from sailenv_ros.scene.fields import Direction, Fraction, Name, Position, Radiance, Rule, SceneModel
 from sailenv_ros.scene.rules import below, without_zero_length
+from sailenv_ros.types.lights import Environment, Light
 
 __all__ = [
     "AreaLightSpec",

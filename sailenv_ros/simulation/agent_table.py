@@ -9,14 +9,14 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sailenv_ros.agents import MAX_AGENTS, AgentPose, AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
-from sailenv_ros.geometry import Pose
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation.frame_stream import FrameStream
-from sailenv_ros.snapshot import Observation
+from sailenv_ros.types.agents import MAX_AGENTS, AgentPose, AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import Observation
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.world import World

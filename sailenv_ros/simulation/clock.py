@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.scene_info import TimeMode
+from sailenv_ros.types.scene_info import TimeMode
 
 __all__ = ["Clock"]
 

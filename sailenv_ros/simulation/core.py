@@ -17,29 +17,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.frame import Frame, checked_views
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
-from sailenv_ros.operations import Operation, WorldOperations
-from sailenv_ros.relight.relighter import Relighter
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
+from sailenv_ros.light.relight.relighter import Relighter
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
-from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.editing.editor import SceneEditor
+from sailenv_ros.simulation.editing.scene_writer import SceneWriter
 from sailenv_ros.simulation.frame_stream import FrameStream
-from sailenv_ros.simulation.orchestrator import Orchestrator
+from sailenv_ros.simulation.operations import Operation, WorldOperations
 from sailenv_ros.simulation.present_scene import PresentScene
-from sailenv_ros.simulation.randomiser import Chance, Randomiser
-from sailenv_ros.simulation.scenario import NOTHING_MORE, Additions
-from sailenv_ros.simulation.scene_writer import SceneWriter
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.script.orchestrator import Orchestrator
+from sailenv_ros.simulation.script.randomiser import Chance, Randomiser
+from sailenv_ros.simulation.script.scenario import NOTHING_MORE, Additions
 from sailenv_ros.simulation.space_queries import SpaceQueries
 from sailenv_ros.simulation.view_planes import view_planes
-from sailenv_ros.snapshot import Observation, WorldSnapshot
 from sailenv_ros.space import FreeSpace
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.views import checked_views
 from sailenv_ros.world.world import World
 
 __all__ = ["SimulationCore"]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import light_folder, load_baked, store_baked
-from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.light.bake.fingerprint import fingerprint
+from sailenv_ros.light.bake.light_files import light_folder, load_baked, store_baked
+from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.system.files import file_lock
 from sailenv_ros.world.world import World
 

@@ -11,7 +11,8 @@ import time
 from collections.abc import Callable, Collection, Iterable
 
 from sailenv_ros.errors import DeadlineExceeded, SimulationClosed
-from sailenv_ros.frame import Frame, checked_views
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.views import checked_views
 
 __all__ = ["FrameStream"]
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.folders import cache_folder, standard_pack_folder
 from sailenv_ros.assets.pack import PACK_FILE
-from sailenv_ros.generation import Generator, parsed_name
-from sailenv_ros.generation import __file__ as generation_file
+from sailenv_ros.authoring.generation import Generator, parsed_name
+from sailenv_ros.authoring.generation import __file__ as generation_file
 from sailenv_ros.system.files import make_folder, storage_errors, write_file
 from sailenv_ros.system.resources import resource_path
 

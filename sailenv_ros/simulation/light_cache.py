@@ -8,10 +8,10 @@ from __future__ import annotations
 import logging
 from typing import Literal, TypeAlias
 
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import load_baked, load_draft
-from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.errors import InvalidState
+from sailenv_ros.light.bake.fingerprint import fingerprint
+from sailenv_ros.light.bake.light_files import load_baked, load_draft
+from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.world.world import World
 
 __all__ = ["BAKE_COMMAND", "LightCache", "LightChoice"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sailenv_ros.catalogue.thumbnails import Thumbnails
-from sailenv_ros.catalogue.upload_queue import UploadQueue
+from sailenv_ros.simulation.models.thumbnails import Thumbnails
+from sailenv_ros.simulation.models.upload_queue import UploadQueue
 
 __all__ = ["ModelWorkers"]
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
+from sailenv_ros.authoring.viewpoints import ViewScene
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
-from sailenv_ros.viewpoints import ViewScene
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore

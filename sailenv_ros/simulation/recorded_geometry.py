@@ -5,11 +5,11 @@ from __future__ import annotations
 from itertools import count
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.labels import PART_MARK
-from sailenv_ros.model import Model
-from sailenv_ros.motion.scene_geometry import SceneGeometry
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.labels import PART_MARK
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["recorded_geometry"]
 

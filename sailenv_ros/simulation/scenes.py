@@ -10,7 +10,6 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
@@ -22,7 +21,8 @@ from sailenv_ros.assets.pictures import Pictures
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.bake.settings import BAKE_VERSION
+from sailenv_ros.authoring.generation import PREFIX as GENERATED
+from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
 from sailenv_ros.behaviours import (
     behaviour_errors,
     known_behaviour_errors,
@@ -31,10 +31,7 @@ from sailenv_ros.behaviours import (
 )
 from sailenv_ros.behaviours.durations import lesson_errors
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.generation import PREFIX as GENERATED
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.model import Asset, Model
+from sailenv_ros.light.bake.settings import BAKE_VERSION
 from sailenv_ros.scene.entries import (
     checked_lessons,
     checked_object,
@@ -49,8 +46,11 @@ from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
-from sailenv_ros.simulation.scenario import NOTHING_MORE, Additions
-from sailenv_ros.viewpoints.rule_table import rule_errors
+from sailenv_ros.simulation.script.scenario import NOTHING_MORE, Additions
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Asset, Model
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World

@@ -11,9 +11,9 @@ import numpy as np
 
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.serialisation import LENGTH_DECIMALS, pose_entry, rounded
 from sailenv_ros.scene.spec import ObjectSpec
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.bodies import Body
 
 __all__ = ["settled_place"]

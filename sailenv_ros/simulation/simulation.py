@@ -18,28 +18,28 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sailenv_ros.agents import AgentSpec, check_frame_rate
-from sailenv_ros.backends.selection import make_backend
-from sailenv_ros.catalogue.thumbnails import Thumbnails
-from sailenv_ros.catalogue.upload_queue import UploadQueue
-from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import DeadlineExceeded, InvalidState, SailenvError, SimulationClosed
-from sailenv_ros.joints import JointState
-from sailenv_ros.lessons import LessonState
-from sailenv_ros.notebook import scene_html
-from sailenv_ros.operations import Operation, Operations
-from sailenv_ros.render.backend import BackendName
-from sailenv_ros.scene_info import SceneInfo, TimeMode
+from sailenv_ros.frame.html import scene_html
+from sailenv_ros.render.contract import BackendName
+from sailenv_ros.render.selection import make_backend
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.model_workers import ModelWorkers
+from sailenv_ros.simulation.models.thumbnails import Thumbnails
+from sailenv_ros.simulation.models.upload_queue import UploadQueue
+from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
-from sailenv_ros.snapshot import SceneContents
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for
+from sailenv_ros.types.agents import AgentSpec, check_frame_rate
+from sailenv_ros.types.contacts import Contact
+from sailenv_ros.types.joints import JointState
+from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.scene_info import SceneInfo, TimeMode
+from sailenv_ros.types.snapshot import SceneContents
 from sailenv_ros.world.world import World
 
 __all__ = ["Simulation"]

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
+from sailenv_ros.types.camera import Camera
 
 __all__ = ["view_planes"]
 

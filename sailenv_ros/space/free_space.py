@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.geometry import Pose
 from sailenv_ros.space.paths import GridGraph, straightened
-from sailenv_ros.validation import checked_integer, checked_number, vector
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.validation import checked_integer, checked_number, vector
 
 __all__ = ["FREE", "OCCUPIED", "UNKNOWN", "BodySize", "FreeSpace"]
 

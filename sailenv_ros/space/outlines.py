@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import (
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import (
     BoxShape,
     CollisionShape,
     ConvexShape,

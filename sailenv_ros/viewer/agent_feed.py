@@ -11,9 +11,10 @@ import threading
 from collections.abc import Callable, Iterable, Sequence
 
 from sailenv_ros.errors import DeadlineExceeded, SailenvError
-from sailenv_ros.frame import VIEWS, Frame, checked_views
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.frame_stream import FrameStream
+from sailenv_ros.types.views import VIEWS, checked_views
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.encoding import FrameMessages
 from sailenv_ros.viewer.view_subscription import PROBED_VIEWS, STALLED_S, ViewSubscription

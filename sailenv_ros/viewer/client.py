@@ -22,12 +22,13 @@ from sailenv_ros.errors import (
     SailenvError,
     UnknownName,
 )
-from sailenv_ros.frame import FIVE_VIEWS, Frame
-from sailenv_ros.operations import Operation, Operations
-from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.pictures.contact_sheet import contact_sheet
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.colours import view_picture
+from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.operations import Operation, Operations
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import FIVE_VIEWS
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent

@@ -6,9 +6,9 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar
 
-from sailenv_ros.frame import Frame
-from sailenv_ros.operations import Operation
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.simulation.operations import Operation
+from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.request_arguments import Arguments
 

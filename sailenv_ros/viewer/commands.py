@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Literal
 
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
-from sailenv_ros.operations import Operations
-from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.simulation.editing.edit_records import EditOperations
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer.chance_commands import CHANCE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.joint_commands import JOINT_COMMANDS

@@ -9,11 +9,11 @@ import contextlib
 import threading
 import weakref
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import SailenvError
-from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.picture_settings import PictureSettings
 
 __all__ = ["NAME", "DebugAgent"]
 

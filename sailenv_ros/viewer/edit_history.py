@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.simulation.edit_records import (
+from sailenv_ros.simulation.editing.edit_records import (
     EditOperations,
     ObjectRecord,
     SurroundingsRecord,
 )
-from sailenv_ros.simulation.room_edits import RoomOperations, RoomRecord
+from sailenv_ros.simulation.editing.room_edits import RoomOperations, RoomRecord
 from sailenv_ros.viewer.command_context import CommandContext
 
 __all__ = ["EditHistory", "EditStep", "Record"]

@@ -14,9 +14,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame import Frame, view_spec
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.pictures.colours import view_picture
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.colours import view_picture
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.views import view_spec
 
 __all__ = ["FrameMessages", "outline", "packed", "picture_png", "view_png", "views_to_json"]
 
@@ -138,7 +139,7 @@ def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:
     Parameters
     ----------
     views : iterable of str
-        Names in `sailenv_ros.frame.VIEWS`, in the order in which the page lays them out.
+        Names in `sailenv_ros.frame.frame.VIEWS`, in the order in which the page lays them out.
     """
     return [
         {

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sailenv_ros.joints import JointState
-from sailenv_ros.operations import Operations
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.types.joints import JointState
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import edits_object
 from sailenv_ros.viewer.request_arguments import Arguments

@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import Any, get_args
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.lights import LightType
-from sailenv_ros.operations import Operations
+from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.types.lights import LightType
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import edits_surroundings
 from sailenv_ros.viewer.request_arguments import Arguments

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sailenv_ros.operations import Operations
+from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.request_arguments import Arguments
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.operations import Operations
+from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import edits_object
 from sailenv_ros.viewer.request_arguments import Arguments

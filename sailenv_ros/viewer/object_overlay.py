@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.frame import Frame
-from sailenv_ros.object_truth.object_table import EDGES
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.object_table import EDGES
 from sailenv_ros.viewer.encoding import outline
 
 __all__ = ["overlay_of"]

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.validation import checked_integer
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.validation import checked_integer
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["pixel_of", "standing_point", "values_at"]
 

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from sailenv_ros.authoring.generation.names import MAX_SEED, PREFIX
+from sailenv_ros.authoring.generation.rule_files import rules_of
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.generation.names import MAX_SEED, PREFIX
-from sailenv_ros.generation.rule_files import rules_of
-from sailenv_ros.operations.operations import Operations
-from sailenv_ros.simulation.room_edits import RoomOperations
-from sailenv_ros.validation import checked_integer
+from sailenv_ros.simulation.editing.room_edits import RoomOperations
+from sailenv_ros.simulation.operations.operations import Operations
+from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import take_down
 from sailenv_ros.viewer.request_arguments import Arguments

@@ -15,13 +15,13 @@ from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import BehaviourKind, behaviour_kinds
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import UNLABELLED_CATEGORY
-from sailenv_ros.lights import Light
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.objects import ObjectState
-from sailenv_ros.picture_settings import LIMITS, NAMES, PictureSettings
-from sailenv_ros.scene_info import MoverInfo, SceneInfo
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import UNLABELLED_CATEGORY
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.objects import ObjectState
+from sailenv_ros.types.picture_settings import LIMITS, NAMES, PictureSettings
+from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
 
 __all__ = [
     "behaviours_to_json",

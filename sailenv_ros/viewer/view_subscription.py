@@ -12,8 +12,9 @@ import time
 from collections.abc import Callable
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
-from sailenv_ros.validation import is_integer
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.validation import is_integer
+from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 from sailenv_ros.viewer.encoding import FrameMessages
 
 __all__ = ["IN_FLIGHT", "PROBED_VIEWS", "STALLED_S", "ViewSubscription"]

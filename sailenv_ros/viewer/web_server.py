@@ -16,11 +16,11 @@ from typing import Any
 
 from aiohttp import web
 
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, SailenvError, address_error
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.loop_thread import LoopThread
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.client import Client

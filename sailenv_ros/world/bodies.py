@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, InvalidState, PhysicsError
-from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
-from sailenv_ros.labels import Instance
-from sailenv_ros.model import Model
-from sailenv_ros.objects import ObjectState
+from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
+from sailenv_ros.types.labels import Instance
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision import build_collision

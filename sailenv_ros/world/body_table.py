@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, PhysicsError, UnknownName
-from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import MAX_INSTANCE_ID, PART_MARK
-from sailenv_ros.model import AssetPart
-from sailenv_ros.validation import is_integer
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.labels import MAX_INSTANCE_ID, PART_MARK
+from sailenv_ros.types.model import AssetPart
+from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.joint_table import JointTable

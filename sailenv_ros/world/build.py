@@ -16,11 +16,11 @@ from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.assets.skies import load_sky
 from sailenv_ros.behaviours import start_behaviour
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.lights import Environment
-from sailenv_ros.model import Asset
 from sailenv_ros.scene.spec import EnvironmentSpec, MoverSpec, ObjectSpec, RoomSpec, SceneSpec
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.placement import JointPlacement

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
 from sailenv_ros.world.mover import Mover, turned
 

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from sailenv_ros.contacts import Contact
+from sailenv_ros.types.contacts import Contact
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 
 __all__ = ["MAX_WINDOW_S", "ContactLog"]

@@ -6,8 +6,8 @@ A pure function of the world as it stands: who asks twice in a step, or never, c
 from __future__ import annotations
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.geometry import Pose, facing
-from sailenv_ros.look_at import LookAt
+from sailenv_ros.types.geometry import Pose, facing
+from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.world.body_table import BodyTable
 
 __all__ = ["Gaze"]

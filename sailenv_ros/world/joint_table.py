@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.joint_tree import JointTree

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import BodyState, JointMotion, RunningBehaviour, running_motion
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
-from sailenv_ros.joints import JointState
-from sailenv_ros.validation import checked_number
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.joints import JointState
+from sailenv_ros.types.validation import checked_number
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3
 from sailenv_ros.world.bullet import BulletClient

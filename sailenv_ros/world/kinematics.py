@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import POSITION_LIMIT_M, Pose
+from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.world.placement import JointPlacement
 
 __all__ = ["composed", "link_pose", "link_velocity"]

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.lights import Light
+from sailenv_ros.types.lights import Light
 from sailenv_ros.world.body_table import LabelledPiece
 
 __all__ = ["REACH_M", "lit_by"]

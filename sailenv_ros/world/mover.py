@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.geometry import Pose, interpolate
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.rigid_body import RigidBody
-from sailenv_ros.validation import vector
+from sailenv_ros.types.geometry import Pose, interpolate
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.rigid_body import RigidBody
+from sailenv_ros.types.validation import vector
 from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.mover_body import Motion, MoverBody
 

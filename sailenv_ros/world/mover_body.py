@@ -22,9 +22,9 @@ from collections.abc import Collection, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import Asset, Model, SphereShape
-from sailenv_ros.rigid_body import RigidBody
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Asset, Model, SphereShape
+from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
 from sailenv_ros.world.placement import Placement

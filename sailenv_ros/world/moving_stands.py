@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.rigid_body import RigidBody
+from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision_proxy import CollisionProxy
 from sailenv_ros.world.mover import Mover, MoverCommand

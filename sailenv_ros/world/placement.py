@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from sailenv_ros.behaviours import RunningBehaviour
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import Asset, TriangleShape
 from sailenv_ros.scene.spec import JointSpec, ObjectSpec
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Asset, TriangleShape
 
 __all__ = ["JointPlacement", "Placement"]
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.world import World
 

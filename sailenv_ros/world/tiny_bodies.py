@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sailenv_ros.colour import srgb_from_linear
-from sailenv_ros.model import Material, Model, ModelPart, Texture
-from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.types.colour import srgb_from_linear
+from sailenv_ros.types.model import Material, Model, ModelPart, Texture
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.bullet import BulletClient
 
 __all__ = ["EYE_FROM_OPTICAL", "TinyBodies"]

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.colour import srgb_from_linear
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.colour import srgb_from_linear
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.tiny_bodies import EYE_FROM_OPTICAL, TinyBodies
 

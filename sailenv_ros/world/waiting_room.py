@@ -11,7 +11,7 @@ from typing import Any
 
 from sailenv_ros.behaviours import RunningBehaviour, start_behaviour
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.labels import PART_MARK
+from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.placement import Placement
 

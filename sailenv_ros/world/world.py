@@ -15,19 +15,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.baked_light import BakedLight
-from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
-from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.joints import JointState
-from sailenv_ros.labels import PART_MARK, CategoryTable, Instance, Keypoint
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.objects import ObjectState
-from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.scene.spec import RoomSpec, SceneSpec
-from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.contacts import Contact
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.joints import JointState
+from sailenv_ros.types.labels import PART_MARK, CategoryTable, Instance, Keypoint
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.objects import ObjectState
+from sailenv_ros.types.rigid_body import RigidBody
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
 from sailenv_ros.world.body_table import BodyTable, LabelledPiece
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns

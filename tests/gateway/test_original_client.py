@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.frame.pictures.colours import grey_depth
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.gateway.session import AGENT_PREFIX
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import colour_instances
-from sailenv_ros.pictures.colours import grey_depth
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import colour_instances
+from sailenv_ros.types.views import FIVE_VIEWS
 from tests.support.sailenv_client import OriginalAgent, original_client
 from tests.support.upload_files import box_zip
 from tests.support.waiting import until

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 import sailenv_ros
-from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.types.views import FIVE_VIEWS
 from tests.packaging.project import ROOT
 
 PAGES = sorted(

@@ -66,8 +66,8 @@ from sailenv_ros import Simulation
 with Simulation(sys.argv[1], mode="lockstep") as simulation:
     agent = simulation.info.agents[0].name if simulation.info.agents else None
     if agent is None:
-        from sailenv_ros.agents import AgentSpec
-        from sailenv_ros.camera import CameraIntrinsics
+        from sailenv_ros.types.agents import AgentSpec
+        from sailenv_ros.types.camera import CameraIntrinsics
         agent = simulation.register_agent(
             AgentSpec(name="eye", intrinsics=CameraIntrinsics(width=64, height=48))
         ).name
@@ -86,7 +86,7 @@ def test_a_pack_is_read_without_them(tmp_path: Path) -> None:
 from pathlib import Path
 import numpy as np
 from sailenv_ros.assets.glb import glb_bytes, read_glb
-from sailenv_ros.model import ConvexShape
+from sailenv_ros.types.model import ConvexShape
 from tests.support.bake_scenes import ground
 file = Path(sys.argv[1]) / "one.glb"
 corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
@@ -101,7 +101,7 @@ print(len(parts), len(hulls))
 
 SENTENCES = {
     "baking light needs embreex, which is not installed: pip install 'sailenv_ros[bake]'": """
-from sailenv_ros.bake.pipeline import bake
+from sailenv_ros.light.bake.pipeline import bake
 from tests.support.bake_scenes import ground, still
 from tests.support.tiny_scenes import Thing
 bake(still([Thing(ground(1.0))]))
@@ -115,7 +115,7 @@ convex_parts(RawMesh(positions=mesh.positions, uvs=mesh.uvs, triangles=mesh.tria
 """,
     "building the furniture pack needs coacd, which is not installed: "
     "pip install 'sailenv_ros[assets]'": """
-from sailenv_ros.assets.standard.pack_build import build_standard_pack
+from sailenv_content.standard.pack_build import build_standard_pack
 build_standard_pack()
 """,
 }

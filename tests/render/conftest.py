@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.renderer import Renderer
-from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
 Render = Callable[..., dict[str, NDArray[Any]]]
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.picture_settings import PictureSettings
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import Thing, camera_at, model_of, snapshot_of, wall_mesh
 

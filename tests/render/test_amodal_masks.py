@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import Mesh
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Mesh
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.ray_cast import cast
 from tests.support.tiny_scenes import (
     Thing,

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.baked_light import SunEdges
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.frame import RENDERED_VIEWS
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment, Light
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.baked_light import SunEdges
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.views import RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.baked import SIZE, baked, chart, layer
 from tests.support.picture import linear

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.errors import ContextError, InvalidRequest, RenderError
-from sailenv_ros.render import context as contexts
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.context import DeviceReport, create_context, is_software, probe_devices
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.gl import context as contexts
+from sailenv_ros.render.gl.context import DeviceReport, create_context, is_software, probe_devices
+from sailenv_ros.render.gl.renderer import Renderer
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import camera_at, snapshot_of
 
@@ -117,10 +117,10 @@ def test_two_renderers_in_two_threads(
 WORK = """
 import json, sys
 from hashlib import sha256
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.backends.tiny_renderer import TinyRenderer
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.snapshot import Observation
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.snapshot import Observation
 from tests.support.tiny_scenes import two_instants
 before, after, then, now = two_instants()
 digests = {}
@@ -146,8 +146,8 @@ def test_two_processes_agree_to_the_byte() -> None:
 MEASURE = """
 import gc
 import numpy as np
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
 from tests.support.tiny_scenes import *
 def resident_kb():
     gc.collect()

@@ -11,12 +11,12 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.material_stock import MaterialStock
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import Pictures
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import Model
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.drawn_meshes import drawn_meshes
+from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.scene.spec_materials import MaterialSpec
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.baked import baked, chart, layer
 from tests.support.tiny_scenes import Thing, camera_at, snapshot_of

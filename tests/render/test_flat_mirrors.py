@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.flat_mirrors import FlatMirrors
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.picture import linear
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of

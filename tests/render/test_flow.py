@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import Pose
 from tests.render.conftest import Render
 from tests.support.ray_cast import cast, flow_by_arithmetic
 from tests.support.tiny_scenes import (
@@ -281,7 +281,7 @@ def test_a_still_picture_hides_nothing(render: Render) -> None:
 
 def test_occlusion_does_not_depend_on_what_was_asked_before(renderer, render: Render) -> None:  # type: ignore[no-untyped-def]  # fixture
     """With the earlier depth at hand or drawn again, the view is the same to the byte."""
-    from sailenv_ros.snapshot import Observation
+    from sailenv_ros.types.snapshot import Observation
 
     things = [Thing(BOX, Pose((3.0, 0.0, 0.0))), Thing(WALL, Pose((6.0, 0, 0)))]
     before, after = pair(things, [Pose((3.0, -0.3, 0.0)), things[1].pose])

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sailenv_ros.experiments.flow_accuracy import OURS, evaluate_scenario, flow_test_scene
-from sailenv_ros.experiments.flow_methods import opencv_methods
-from sailenv_ros.experiments.flow_scenes import SCENARIOS
-from sailenv_ros.experiments.flow_speed import PICTURE, time_flow
-from sailenv_ros.experiments.frame_sources import in_process_source
+from sailenv_bench.experiments.flow_accuracy import OURS, evaluate_scenario, flow_test_scene
+from sailenv_bench.experiments.flow_methods import opencv_methods
+from sailenv_bench.experiments.flow_scenes import SCENARIOS
+from sailenv_bench.experiments.flow_speed import PICTURE, time_flow
+from sailenv_bench.experiments.frame_sources import in_process_source
 from sailenv_ros.simulation.simulation import Simulation
 
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from tests.render.test_scene_in_motion import check, seen
 from tests.support.lockstep_core import lockstep_core
 

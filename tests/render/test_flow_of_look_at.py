@@ -6,10 +6,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import Pose
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from tests.render.test_flow_of_behaviours import scene_of
 from tests.render.test_scene_in_motion import check, seen
 from tests.support.lockstep_core import lockstep_core

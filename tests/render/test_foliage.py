@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light
-from sailenv_ros.model import Material
-from sailenv_ros.render.coverage import cutoff_by_level
+from sailenv_ros.render.scene.coverage import cutoff_by_level
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.model import Material
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import Thing, camera_at, model_of, snapshot_of, wall_mesh
 

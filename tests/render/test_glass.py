@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.colour import srgb_from_linear
-from sailenv_ros.frame import RENDERED_VIEWS
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment
-from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.types.colour import srgb_from_linear
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.views import RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     FRAME_NS,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.model import Material, Model, ModelPart
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.model import Material, Model, ModelPart
 from tests.render.conftest import Render
 from tests.support.ray_cast import cast
 from tests.support.tiny_scenes import (

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment, Light
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment, Light
 from tests.render.conftest import Render
 from tests.support.picture import linear
 from tests.support.tiny_scenes import Thing, camera_at, model_of, snapshot_of, wall_mesh

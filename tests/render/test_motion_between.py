@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
-from sailenv_ros.experiments.flow_scenes import SCENARIOS
-from sailenv_ros.experiments.motion_field import Instant, MotionField, motion_field
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import look_at
-from sailenv_ros.motion import motion
+from sailenv_bench.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
+from sailenv_bench.experiments.flow_scenes import SCENARIOS
+from sailenv_bench.experiments.motion_field import Instant, MotionField, motion_field
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import motion
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
 
 GAPS = (1, 8, 32)
 VIEWS = ("depth", "instance", "object_coords", "normals")

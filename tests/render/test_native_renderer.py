@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.lights import Environment, Light
 from sailenv_ros.native.drawing import structure_sizes
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.render.renderer import Renderer
-from sailenv_ros.snapshot import Observation
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.snapshot import Observation
 from tests.render.test_picture import gallery
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.ray_cast import cast

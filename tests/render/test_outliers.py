@@ -7,8 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.light_faults import bright_spots, dashes, outliers, surfaces_of
 from tests.support.plausible_views import plausible_views, room_at_rest
 

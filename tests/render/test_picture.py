@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.lights import Environment, Light
 from tests.render.conftest import Render
 from tests.support.picture import linear
 from tests.support.tiny_scenes import (

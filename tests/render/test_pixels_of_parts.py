@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.model import AssetPart
-from sailenv_ros.motion.scene_geometry import SceneGeometry
+from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.model import AssetPart
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World

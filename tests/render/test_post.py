@@ -7,17 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import RENDERED_VIEWS
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment
-from sailenv_ros.picture_settings import LIMITS, PictureSettings, ToneCurve
-from sailenv_ros.render.ambient_occlusion import ambient_visibility
-from sailenv_ros.render.sensor import sensor_light
-from sailenv_ros.render.tone import code_table, filmic, tone_mapped
-from sailenv_ros.render.tone_map import apply_visibility, tone_map
+from sailenv_ros.render.picture.ambient_occlusion import ambient_visibility
+from sailenv_ros.render.picture.sensor import sensor_light
+from sailenv_ros.render.picture.tone import code_table, filmic, tone_mapped
+from sailenv_ros.render.picture.tone_map import apply_visibility, tone_map
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.colour import srgb_from_linear
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.picture_settings import LIMITS, PictureSettings, ToneCurve
+from sailenv_ros.types.views import RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     SUN,

@@ -11,8 +11,8 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.catalogue.preview_process import PreviewProcess
 from sailenv_ros.errors import RenderError
+from sailenv_ros.simulation.models.preview_process import PreviewProcess
 
 
 def test_the_process_draws_names_and_models() -> None:

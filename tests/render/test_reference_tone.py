@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from benchmarks.reference.curve import picture_of
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.labels import CategoryTable
-from sailenv_ros.lights import Environment
-from sailenv_ros.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from tests.render.conftest import Render
 
 

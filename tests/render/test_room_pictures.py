@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from sailenv_ros.assets import AssetLibrary, load_categories
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.scene import SceneSpec
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.build import build_world
 from tests.render.conftest import Render
 

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import look_at
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.embree_cast import RayCast
 

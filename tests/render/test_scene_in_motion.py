@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import Pose
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.lockstep_core import lockstep_core
 from tests.support.ray_cast import cast, flow_by_arithmetic
 

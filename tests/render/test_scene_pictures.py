@@ -9,8 +9,8 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.catalogue.preview_renderer import FLOOR_COLOUR, PreviewRenderer
 from sailenv_ros.cli.main import main
+from sailenv_ros.simulation.models.preview_renderer import FLOOR_COLOUR, PreviewRenderer
 
 
 def test_a_thumbnail_fills_the_picture_whatever_the_size() -> None:

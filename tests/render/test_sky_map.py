@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from sailenv_ros.assets import load_categories
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.skies import load_sky, sky_files
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import AssetError, UnknownName
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.lights import Environment, SkyMap
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.seen_sky import FINER, seen_sky
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.scene.seen_sky import FINER, seen_sky
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.lights import Environment, SkyMap
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World

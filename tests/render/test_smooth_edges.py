@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.colour import linear_from_srgb
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.half_pixels import half_pixel_camera, pixel_shares
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.picture.half_pixels import half_pixel_camera, pixel_shares
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.colour import linear_from_srgb
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     Thing,

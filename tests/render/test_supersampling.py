@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import RENDERED_VIEWS
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.supersampling import mean_radiance
-from sailenv_ros.render.tone import tone_mapped
-from sailenv_ros.render.tone_map import apply_visibility
+from sailenv_ros.render.picture.supersampling import mean_radiance
+from sailenv_ros.render.picture.tone import tone_mapped
+from sailenv_ros.render.picture.tone_map import apply_visibility
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.views import RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     Thing,

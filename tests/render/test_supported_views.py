@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from sailenv_ros.backends.tiny_renderer import TinyRenderer
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import RENDERED_VIEWS, VIEWS, views_of
-from sailenv_ros.geometry import Pose
-from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.renderer import Renderer
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS, views_of
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "conventions.md"

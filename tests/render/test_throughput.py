@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from sailenv_bench.experiments.throughput import Group, baseline_rows, measure_group, plan_of
+from sailenv_bench.experiments.workloads import TRANSPORTS, Setting, environment_of
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.experiments.throughput import Group, baseline_rows, measure_group, plan_of
-from sailenv_ros.experiments.workloads import TRANSPORTS, Setting, environment_of
-from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.types.views import FIVE_VIEWS
 
 SMALL = Setting(kind="in process", scene="optical", width=32, height=24, views=FIVE_VIEWS)
 

@@ -11,11 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.backends.tiny_renderer import TinyRenderer
-from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidRequest, RenderError
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.lights import Environment
-from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.ray_cast import cast, flow_by_arithmetic
 from tests.support.tiny_scenes import (

@@ -11,16 +11,16 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_bench.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
+from sailenv_bench.experiments.flow_scenes import SCENARIOS
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.experiments.flow_accuracy import EYE, STEPS, begin_scenario, flow_test_scene
-from sailenv_ros.experiments.flow_scenes import SCENARIOS
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import look_at
-from sailenv_ros.motion import ObjectPoints, SceneGeometry, Tracks, track
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import ObjectPoints, SceneGeometry, Tracks, track
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.snapshot import SceneContents
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.snapshot import SceneContents
 
 SIZE = (96, 72)
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.experiments.viewpoints import Rule, Stage
+from sailenv_bench.experiments.viewpoints import Rule, Stage
 
 RULE = Rule(viewpoints=4, attempts=60)
 

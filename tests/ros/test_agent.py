@@ -23,8 +23,8 @@ from sailenv_ros.errors import (
     SimulatorLost,
     UnknownName,
 )
-from sailenv_ros.geometry import look_at
 from sailenv_ros.system.presence import simulator_is_present
+from sailenv_ros.types.geometry import look_at
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros

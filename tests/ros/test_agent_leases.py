@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros import Agent
-from sailenv_ros.agents import MAX_AGENTS, AgentSpec
 from sailenv_ros.errors import NameTaken
+from sailenv_ros.types.agents import MAX_AGENTS, AgentSpec
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 

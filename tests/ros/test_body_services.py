@@ -12,7 +12,7 @@ from sailenv_msgs.msg import RigidBody as RigidBodyMsg
 from sailenv_msgs.srv import ApplyWrench, GetMoverVelocity, SetMoverBody, Step
 from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.rigid_body import RigidBody
+from sailenv_ros.types.rigid_body import RigidBody
 from tests.support.probed_scene import probed_scene
 from tests.support.ros_probe import Probe
 

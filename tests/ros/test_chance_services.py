@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 pytestmark = pytest.mark.ros
 

@@ -13,13 +13,13 @@ from sensor_msgs.msg import Image
 
 from sailenv_msgs.msg import FrameInfo
 from sailenv_ros import Agent
-from sailenv_ros.agent.frame_client import FrameClient
-from sailenv_ros.agent.frame_topics import AgentTopics
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.frame import RENDERED_VIEWS as VIEWS
+from sailenv_ros.ros.client.frame_client import FrameClient
+from sailenv_ros.ros.client.frame_topics import AgentTopics
 from sailenv_ros.system.frame_memory import SEGMENTS
 from sailenv_ros.system.frame_socket import connect, receive, send
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.views import RENDERED_VIEWS as VIEWS
 from tests.support.ros_probe import Probe
 from tests.support.waiting import until
 

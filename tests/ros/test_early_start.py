@@ -13,7 +13,7 @@ import aiohttp
 import pytest
 
 from sailenv_msgs.srv import GetPose, Step
-from sailenv_ros.frame import FIVE_VIEWS
+from sailenv_ros.types.views import FIVE_VIEWS
 from tests.support.ros_probe import Probe
 from tests.support.viewer_socket import ViewerSocket
 from tests.support.waiting import until
@@ -28,7 +28,7 @@ class EarlyStart:
     """The process, with what it says; a context manager that ends it."""
 
     def __init__(self, setup: Path, *parameters: str) -> None:
-        module = "sailenv_ros.nodes.early_start"
+        module = "sailenv_ros.ros.nodes.early_start"
         command = [sys.executable, "-m", module, "--ros-setup", str(setup), "--", "--ros-args"]
         self.process = subprocess.Popen(
             [*command, "-p", "scene:=optical", "-p", "gateway.port:=0", *SMALL, *parameters],

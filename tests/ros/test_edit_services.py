@@ -11,7 +11,7 @@ import pytest
 
 from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 
 pytestmark = pytest.mark.ros
 

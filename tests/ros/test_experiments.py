@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailenv_ros.experiments.frame_sources import agent_source
-from sailenv_ros.experiments.throughput import Group, measure_group
-from sailenv_ros.experiments.workloads import Setting
+from sailenv_bench.experiments.frame_sources import agent_source
+from sailenv_bench.experiments.throughput import Group, measure_group
+from sailenv_bench.experiments.workloads import Setting
 
 pytestmark = pytest.mark.ros
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import yaml
 
-from sailenv_ros.nodes.parameter_table import LIVE, PARAMETERS
+from sailenv_ros.ros.nodes.parameter_table import LIVE, PARAMETERS
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until

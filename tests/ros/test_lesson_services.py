@@ -10,14 +10,14 @@ import pytest
 from std_msgs.msg import String
 
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
-from sailenv_ros.lessons import LessonState
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.lessons import LessonState
 from tests.support.ros_probe import LATCHED, Probe
 from tests.support.waiting import until
 

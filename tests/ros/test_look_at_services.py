@@ -18,9 +18,9 @@ from sailenv_msgs.srv import (
     Step,
 )
 from sailenv_ros import Agent
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.look_at import LookAt
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.look_at import LookAt
 from tests.support.probed_scene import probed_scene
 from tests.support.ros_probe import Probe
 

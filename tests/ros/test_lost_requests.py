@@ -12,8 +12,8 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 
 from sailenv_msgs.srv import Capture
-from sailenv_ros.agent.connection import Connection
 from sailenv_ros.errors import DeadlineExceeded
+from sailenv_ros.ros.client.connection import Connection
 from tests.support.ros_probe import Probe
 
 NAMESPACE = "/forgetful"

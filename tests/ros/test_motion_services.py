@@ -30,10 +30,10 @@ from sailenv_msgs.srv import (
     Step,
 )
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import Pose
-from sailenv_ros.nodes.tf_tree import TfTree
+from sailenv_ros.ros.nodes.tf_tree import TfTree
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from tests.support.ros_probe import LATCHED, Probe, Topic
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until

@@ -8,7 +8,7 @@ import pytest
 
 from sailenv_msgs.srv import Reset, SetPose, Step
 from sailenv_msgs_py.transforms import pose_to_msg
-from sailenv_ros.geometry import look_at
+from sailenv_ros.types.geometry import look_at
 from tests.support.ros_probe import Eye, Probe
 from tests.support.sim_node_process import NodeProcess
 

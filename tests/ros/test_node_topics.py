@@ -27,9 +27,9 @@ from sailenv_msgs.srv import (
 from sailenv_msgs_py.services import AGENT_SERVICES, SERVICES, SIMULATOR_SERVICES, Service
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_msgs_py.transforms import pose_from_msg, pose_to_msg
-from sailenv_ros.frame import RENDERED_VIEWS, VIEWS
-from sailenv_ros.geometry import invert, look_at
-from sailenv_ros.operations import ALL_OPERATIONS
+from sailenv_ros.simulation.operations import ALL_OPERATIONS
+from sailenv_ros.types.geometry import invert, look_at
+from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 from tests.support.ros_probe import BEST_EFFORT, LATCHED, Eye, Probe
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until

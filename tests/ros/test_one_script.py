@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import SailenvError
-from sailenv_ros.geometry import Pose
-from sailenv_ros.operations import ALL_OPERATIONS, Operations
+from sailenv_ros.simulation.operations import ALL_OPERATIONS, Operations
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from tests.support.sim_node_process import NodeProcess
 
 pytestmark = [pytest.mark.ros, pytest.mark.gl]

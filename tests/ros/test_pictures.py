@@ -14,13 +14,13 @@ from sailenv_msgs.srv import GetPicture, RegisterAgent, SetPicture
 from sailenv_msgs_py.changes import changes_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, SimulationClosed, UnknownName
-from sailenv_ros.frame import RENDERED_VIEWS as VIEWS
-from sailenv_ros.picture_settings import NAMES, PictureSettings
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.picture_settings import NAMES, PictureSettings
+from sailenv_ros.types.views import RENDERED_VIEWS as VIEWS
 from tests.support.ros_probe import Probe
 
 pytestmark = [pytest.mark.ros, pytest.mark.gl]

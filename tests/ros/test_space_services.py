@@ -15,12 +15,12 @@ from rclpy.serialization import serialize_message
 from rosbags.typesys import Stores, get_typestore
 
 from sailenv_ros import Agent, Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.nodes.free_space_topic import FreeSpaceTopic
+from sailenv_ros.ros.nodes.free_space_topic import FreeSpaceTopic
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 pytestmark = pytest.mark.ros
 

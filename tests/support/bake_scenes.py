@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.settings import BakeSettings
-from sailenv_ros.baked_light import BakedLight
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Environment
-from sailenv_ros.model import Model
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.light.bake.settings import BakeSettings
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.tiny_scenes import Thing, box_mesh, contents_of, mesh_of, model_of, snapshot_of
 
 COARSE = BakeSettings(texel_m=0.1, fine_texel_m=0.1, probe_spacing_m=1.0, rays=64, light_rays=16)

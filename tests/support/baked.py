@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_ros.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, Unwrapping
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light
-from sailenv_ros.model import Model
+from sailenv_ros.types.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, Unwrapping
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.model import Model
 
 SIZE = 32
 """Texels along an edge of the light map."""

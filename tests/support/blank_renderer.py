@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.frame import VIEWS, checked_views
-from sailenv_ros.render.backend import RenderedViews
-from sailenv_ros.snapshot import Observation, WorldSnapshot
+from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.views import VIEWS, checked_views
 
 
 class BlankRenderer:

@@ -15,16 +15,16 @@ from pathlib import Path
 
 import numpy as np
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.gateway import GatewayServer
-from sailenv_ros.geometry import Pose
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer import ViewerServer
 from tests.support.sailenv_client import original_client
 from tests.support.viewer_socket import connected

@@ -9,7 +9,7 @@ import numpy as np
 from sailenv_ros.assets.pack import PackContent
 from sailenv_ros.assets.pack_writer import packed, write_content
 from sailenv_ros.assets.solids import box_mesh
-from sailenv_ros.model import Asset, AssetPart, Material, Mesh, Model, ModelPart
+from sailenv_ros.types.model import Asset, AssetPart, Material, Mesh, Model, ModelPart
 
 LEFT, RIGHT = "left pillow", "right pillow"
 

@@ -7,8 +7,8 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 
 class RayCast:

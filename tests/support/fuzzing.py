@@ -22,20 +22,20 @@ import numpy as np
 from sailenv_ros.assets.glb import glb_bytes
 from sailenv_ros.assets.importing import import_asset
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.bake import light_files
-from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
-from sailenv_ros.catalogue.asset_file import read_asset, write_asset
-from sailenv_ros.catalogue.uploads import asset_from_upload
 from sailenv_ros.errors import AssetError, SailenvError
 from sailenv_ros.gateway.codec import MessageReader
 from sailenv_ros.gateway.scenario_json import entries_of_scenario, mapping_of_json
-from sailenv_ros.lights import Light
+from sailenv_ros.light.bake import light_files
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic, RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.scene.loader import load_scene
-from sailenv_ros.simulation.scenario import scenario_entries
+from sailenv_ros.simulation.models.asset_file import read_asset, write_asset
+from sailenv_ros.simulation.models.uploads import asset_from_upload
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.script.scenario import scenario_entries
+from sailenv_ros.types.baked_light import BakedLight, LightLayer, ProbeGrid
+from sailenv_ros.types.lights import Light
 from sailenv_ros.viewer.request_arguments import arguments_of_text
 from tests.support.upload_files import box_zip
 

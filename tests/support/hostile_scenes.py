@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.tiny_scenes import Thing, box_mesh, mesh_of, model_of, snapshot_of
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_ros.colour import linear_from_srgb
+from sailenv_ros.types.colour import linear_from_srgb
 
 
 def linear(rgb: ArrayLike) -> NDArray[np.float64]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import BoxShape
 from sailenv_ros.scene.spec import JointSpec
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import BoxShape
 from sailenv_ros.world.placement import JointPlacement, Placement
 from tests.support.simple_solids import placed, solid
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import look_at
-from sailenv_ros.render.backend import RenderBackend
+from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import DrawnInstance, WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
 
 __all__ = ["plausible_views", "room_at_rest"]
 

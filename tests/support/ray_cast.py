@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera
-from sailenv_ros.snapshot import WorldSnapshot
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
-from sailenv_ros.geometry import Pose
-from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import Category, CategoryTable, Instance
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.topics import RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.labels import Category, CategoryTable, Instance
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 
 SMALL = CameraIntrinsics(width=32, height=24, vertical_fov_deg=57.0)
 DT_NS = 33_333_333

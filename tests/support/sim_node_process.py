@@ -48,7 +48,7 @@ class NodeProcess:
             # Keywords cannot hold dots: agent__width stands for agent.width.
             ros += ["-p", f"{name.replace('__', '.')}:={json.dumps(value)}"]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "sailenv_ros.nodes.sim_node", *arguments, *ros],
+            [sys.executable, "-m", "sailenv_ros.ros.nodes.sim_node", *arguments, *ros],
             stderr=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             text=True,

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import Asset, BoxShape, Material, Mesh, Model, ModelPart, SphereShape
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Asset, BoxShape, Material, Mesh, Model, ModelPart, SphereShape
 from sailenv_ros.world.bodies import Placement
 
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import Category, CategoryTable, Instance
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.model import Material, Mesh, Model, ModelPart
-from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import Category, CategoryTable, Instance
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Material, Mesh, Model, ModelPart
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 CATEGORIES = CategoryTable(
     [

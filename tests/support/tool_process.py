@@ -15,7 +15,7 @@ class ToolProcess:
     """A node of this package as a child process; a context manager that ends it."""
 
     def __init__(self, node: str, namespace: str, ready: str, **parameters: object) -> None:
-        words = [sys.executable, "-m", f"sailenv_ros.nodes.{node}", "--ros-args"]
+        words = [sys.executable, "-m", f"sailenv_ros.ros.nodes.{node}", "--ros-args"]
         words += ["-r", f"__ns:={namespace}"]
         for name, value in parameters.items():
             words += ["-p", f"{name}:={json.dumps(value)}"]

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import Frame, checked_views
-from sailenv_ros.motion import motion, with_forward_motion
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import motion, with_forward_motion
+from sailenv_ros.types.views import checked_views
 from tests.support.recordings import noise_frame
 
 SURFACES = ("depth", "instance")

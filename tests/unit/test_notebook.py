@@ -16,13 +16,14 @@ import pytest
 from PIL import Image
 
 from sailenv_ros import show
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import FIVE_VIEWS, VIEWS, Frame
-from sailenv_ros.labels import Category, CategoryTable
-from sailenv_ros.notebook import TILE_WIDTH_PX, frame_html, scene_html
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.html import TILE_WIDTH_PX, frame_html, scene_html
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.labels import Category, CategoryTable
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 
 
 def made_frame(width: int = 32, height: int = 24, agent: str = "eye") -> Frame:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.nodes.plain_arguments import plain_parameters
+from sailenv_ros.ros.nodes.plain_arguments import plain_parameters
 
 
 def test_without_arguments_all_is_as_the_table_says() -> None:

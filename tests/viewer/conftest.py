@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.viewer import ViewerServer
 
 SMALL = CameraIntrinsics(width=160, height=120)

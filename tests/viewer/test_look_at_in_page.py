@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, expect
 
-from sailenv_ros.look_at import LookAt
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium
 from tests.support.waiting import until

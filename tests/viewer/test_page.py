@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, expect
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cli.main import main
-from sailenv_ros.frame import FIVE_VIEWS
-from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.background_build import BackgroundBuild, BuildStep
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.views import FIVE_VIEWS
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import PHONE, OpenPage, chromium
 from tests.support.waiting import until

@@ -10,12 +10,12 @@ import aiohttp
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import AddressInUse, InvalidRequest
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import light_named
-from sailenv_ros.picture_settings import NAMES, PictureSettings
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import light_named
+from sailenv_ros.types.picture_settings import NAMES, PictureSettings
 from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS
 from sailenv_ros.viewer.view_subscription import IN_FLIGHT

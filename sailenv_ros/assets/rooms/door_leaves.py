@@ -18,9 +18,9 @@ from sailenv_ros.assets.rooms.doors import (
     opening_sense,
 )
 from sailenv_ros.assets.rooms.pieces import WallFrame, collision_of
-from sailenv_ros.model import BoxShape, ModelPart
 from sailenv_ros.scene.spec_joints import JointSpec
 from sailenv_ros.scene.spec_room import DoorSpec
+from sailenv_ros.types.model import BoxShape, ModelPart
 
 __all__ = ["DoorLeaf", "door_leaf"]
 

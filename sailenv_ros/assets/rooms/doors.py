@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.rooms.pieces import Box, WallFrame, boxes_mesh, collision_of
-from sailenv_ros.model import BoxShape, Material, Mesh, ModelPart
 from sailenv_ros.scene.spec_room import DoorSpec, DoorwaySpec
+from sailenv_ros.types.model import BoxShape, Material, Mesh, ModelPart
 
 __all__ = [
     "ARCHITRAVE_M",

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.assets.surfaces import Surface
-from sailenv_ros.model import BoxShape, Mesh
+from sailenv_ros.types.model import BoxShape, Mesh
 
 __all__ = ["Box", "Faces", "WallFrame", "boxes_mesh", "collision_of"]
 

@@ -36,7 +36,6 @@ from sailenv_ros.assets.rooms.walls import (
 from sailenv_ros.assets.rooms.windows import curtain_parts, window_collision, window_parts
 from sailenv_ros.assets.solids import joined
 from sailenv_ros.assets.surfaces import Surface
-from sailenv_ros.model import Asset, BoxShape, CollisionShape, Material, Mesh, Model, ModelPart
 from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.spec_joints import JointSpec
 from sailenv_ros.scene.spec_room import (
@@ -49,6 +48,15 @@ from sailenv_ros.scene.spec_room import (
     SurfaceSpec,
     WallName,
     WindowSpec,
+)
+from sailenv_ros.types.model import (
+    Asset,
+    BoxShape,
+    CollisionShape,
+    Material,
+    Mesh,
+    Model,
+    ModelPart,
 )
 
 __all__ = ["RoomPart", "room_parts"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from sailenv_ros.assets.rooms.pieces import Box, Faces, WallFrame, collision_of
 from sailenv_ros.assets.surfaces import Surface
-from sailenv_ros.model import BoxShape, Material, Mesh, ModelPart
+from sailenv_ros.types.model import BoxShape, Material, Mesh, ModelPart
 
 __all__ = ["Hole", "box_of_slab", "skirting_parts", "slab_part", "wall_collision", "wall_parts"]
 

@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from sailenv_ros.assets.rooms.pieces import Box, WallFrame, boxes_mesh, collision_of
-from sailenv_ros.model import BoxShape, Material, Mesh, ModelPart
 from sailenv_ros.scene.spec_room import CurtainSpec, WindowSpec
+from sailenv_ros.types.model import BoxShape, Material, Mesh, ModelPart
 
 __all__ = ["curtain_parts", "window_collision", "window_parts"]
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_ros.colour import srgb_from_linear
-from sailenv_ros.model import Material, Texture
+from sailenv_ros.types.colour import srgb_from_linear
+from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["Floats", "Surface", "SurfaceMaps", "surface_of"]
 

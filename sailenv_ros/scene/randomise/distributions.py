@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from sailenv_ros.validation import is_finite_number, is_integer
+from sailenv_ros.types.validation import is_finite_number, is_integer
 
 __all__ = ["DISTRIBUTIONS", "Distribution"]
 

@@ -10,7 +10,7 @@ import pytest
 from sailenv_ros.assets import AssetLibrary, load_categories
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import AssetError, NameTaken, UnknownName
-from sailenv_ros.model import Asset, Model
+from sailenv_ros.types.model import Asset, Model
 
 
 class Chairs:

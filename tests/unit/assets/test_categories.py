@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets import load_categories
 from sailenv_ros.assets.categories import LAST_FIXED_ID
-from sailenv_ros.colour import linear_from_srgb
 from sailenv_ros.errors import AssetError
-from sailenv_ros.labels import BACKGROUND, UNLABELLED_CATEGORY
 from sailenv_ros.scene.spec import FIRST_SCENE_CATEGORY_ID
+from sailenv_ros.types.colour import linear_from_srgb
+from sailenv_ros.types.labels import BACKGROUND, UNLABELLED_CATEGORY
 
 FIXED_FOR_EVER = {
     1: "cube",

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sailenv_content.standard import pack_build as build
+from sailenv_content.standard.fetch import fetched, kept_folder
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.checksums import damaged_by_manifest, write_manifest
 from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.recipe import Recipe, standard_recipe
 from sailenv_ros.assets.skies import load_sky, sky_files
 from sailenv_ros.assets.sources import installed_sources
-from sailenv_ros.assets.standard import pack_build as build
-from sailenv_ros.assets.standard.fetch import fetched, kept_folder
-from sailenv_ros.assets.standard.recipe import Recipe, standard_recipe
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.system.files import UNFINISHED
@@ -137,8 +137,8 @@ def test_an_empty_object_is_not_up_to_date(pack: Path) -> None:
 
 BUILD = """
 import sys
-from sailenv_ros.assets.standard import pack_build as build
-from sailenv_ros.assets.standard.recipe import standard_recipe
+from sailenv_content.standard import pack_build as build
+from sailenv_ros.assets.recipe import standard_recipe
 sources = dict(zip(("sweethome3d-furniture", "blender-data"), sys.argv[1:]))
 from pathlib import Path
 if __name__ == "__main__":

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sailenv_content.procedural.forms import merged, moved
+from sailenv_content.procedural.shapes import box, part
+from sailenv_content.standard.dividing import divided
 from sailenv_ros.assets.model_files import RawPart
-from sailenv_ros.assets.standard.dividing import divided
-from sailenv_ros.assets.standard.handmade.forms import merged, moved
-from sailenv_ros.assets.standard.handmade.shapes import box, part
-from sailenv_ros.assets.standard.recipe import RecipePart
+from sailenv_ros.assets.recipe import RecipePart
 from sailenv_ros.errors import AssetError
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from sailenv_ros.assets import AssetLibrary, ObjectFit
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.model import Asset, TriangleShape
+from sailenv_ros.types.model import Asset, TriangleShape
 
 
 class Hollow:

@@ -13,7 +13,7 @@ import pytest
 
 from sailenv_ros.assets.glb import glb_bytes, read_glb
 from sailenv_ros.assets.model_files import read_parts
-from sailenv_ros.model import Material, Mesh, ModelPart
+from sailenv_ros.types.model import Material, Mesh, ModelPart
 from tests.support.tiny_scenes import box_mesh, mesh_of
 
 STRENGTH = "KHR_materials_emissive_strength"

@@ -17,7 +17,7 @@ from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.errors import AssetError, InvalidRequest, NameTaken
-from sailenv_ros.model import Asset, ConvexShape
+from sailenv_ros.types.model import Asset, ConvexShape
 
 TABLE_OBJ = """mtllib table.mtl
 v -1 0 -2\nv 1 0 -2\nv 1 0 2\nv -1 0 2\nv -1 3 -2\nv 1 3 -2\nv 1 3 2\nv -1 3 2

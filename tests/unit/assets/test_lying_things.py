@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
+from sailenv_content.procedural import HANDMADE
+from sailenv_content.procedural.airliner import RADIUS
+from sailenv_content.procedural.cutlery import PLATE, SAUCER
 from sailenv_ros.assets.model_files import RawPart
-from sailenv_ros.assets.standard.handmade import HANDMADE
-from sailenv_ros.assets.standard.handmade.airliner import RADIUS
-from sailenv_ros.assets.standard.handmade.cutlery import PLATE, SAUCER
 
 
 def points(parts: list[RawPart], word: str) -> NDArray[np.float64]:

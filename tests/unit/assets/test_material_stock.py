@@ -17,8 +17,8 @@ from sailenv_ros.assets.material_stock import MaterialStock
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES, Pictures, checked_picture
 from sailenv_ros.errors import AssetError, InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.model import Material
 from sailenv_ros.scene.spec_materials import LookSpec, MaterialSpec
+from sailenv_ros.types.model import Material
 
 
 def picture(width: int = 8, height: int = 4, kind: str = "PNG", colour: int = 200) -> bytes:

@@ -20,7 +20,7 @@ from sailenv_ros.assets.meshes import (
 )
 from sailenv_ros.assets.simplification import fewer_triangles
 from sailenv_ros.assets.solids import box_mesh, sphere_mesh
-from sailenv_ros.model import Mesh
+from sailenv_ros.types.model import Mesh
 
 
 def raw(mesh: Mesh, *, normals: bool = False) -> RawMesh:

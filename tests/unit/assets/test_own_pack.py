@@ -16,7 +16,7 @@ from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import AssetError
-from sailenv_ros.model import Asset, ConvexShape
+from sailenv_ros.types.model import Asset, ConvexShape
 
 IMPORTS = """
 from __future__ import annotations
@@ -24,7 +24,7 @@ import dataclasses
 import numpy as np
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.model import Asset, ConvexShape
+from sailenv_ros.types.model import Asset, ConvexShape
 """
 
 ADD = """

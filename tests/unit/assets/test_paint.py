@@ -8,7 +8,7 @@ import weakref
 import numpy as np
 
 from sailenv_ros.assets import AssetLibrary, painted
-from sailenv_ros.model import Material, Mesh, Model, ModelPart
+from sailenv_ros.types.model import Material, Mesh, Model, ModelPart
 
 RED = (1.0, 0.0, 0.0)
 

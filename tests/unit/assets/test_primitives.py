@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.assets import AssetLibrary
-from sailenv_ros.model import BoxShape, ConvexShape, CylinderShape, Mesh, SphereShape
+from sailenv_ros.types.model import BoxShape, ConvexShape, CylinderShape, Mesh, SphereShape
 
 LIBRARY = AssetLibrary()
 SOLIDS = ("cube", "sphere", "cylinder", "cone")

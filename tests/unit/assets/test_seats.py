@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
-from sailenv_ros.model import Asset, ConvexShape
+from sailenv_ros.types.model import Asset, ConvexShape
 
 SEATS = (
     *("bed_01", "bed_02", "couch_01", "couch_02", "couch_03", "couch_04"),

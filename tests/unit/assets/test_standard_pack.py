@@ -8,22 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sailenv_content.procedural import HANDMADE
+from sailenv_content.procedural.clutter import CLUTTER
+from sailenv_content.standard.catalogues import Catalogues
+from sailenv_content.standard.fetch import fetched
+from sailenv_content.standard.pack_build import build_standard_pack, is_current, licence_files
 from sailenv_ros.assets import AssetLibrary, load_categories
 from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.recipe import read_recipe, standard_recipe
 from sailenv_ros.assets.skies import SKIES
 from sailenv_ros.assets.sources import UnbuiltPack, installed_sources
-from sailenv_ros.assets.standard.catalogues import Catalogues
-from sailenv_ros.assets.standard.fetch import fetched
-from sailenv_ros.assets.standard.handmade import HANDMADE
-from sailenv_ros.assets.standard.handmade.clutter import CLUTTER
-from sailenv_ros.assets.standard.pack_build import (
-    build_standard_pack,
-    is_current,
-    licence_files,
-)
-from sailenv_ros.assets.standard.recipe import read_recipe, standard_recipe
 from sailenv_ros.errors import AssetError
-from sailenv_ros.model import Asset, ConvexShape
+from sailenv_ros.types.model import Asset, ConvexShape
 
 NAMES = tuple(standard_recipe().assets)
 THE_FOURTEEN = {
@@ -210,7 +206,7 @@ def test_a_failed_build_leaves_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(
-        "sailenv_ros.assets.standard.fetch.SOURCES",
+        "sailenv_content.standard.fetch.SOURCES",
         {"sweethome3d-furniture": "nowhere", "blender-data": "nowhere"},
     )
     with pytest.raises(AssetError, match=r"install Debian's or Ubuntu's package"):

@@ -28,8 +28,8 @@ from sailenv_ros.behaviours.steering import turn_vector
 from sailenv_ros.behaviours.waypoints import Waypoints, catmull_pose, linear_pose
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, SceneError
-from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 
 USERS = "tests.support.users_behaviours:drift"

@@ -23,12 +23,12 @@ from benchmarks.reference.compare import VIEWS, _cameras
 from benchmarks.reference.parts import Parts, ply_bytes
 from benchmarks.reference.surfaces import bsdf, emitter
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import CategoryTable, Instance
-from sailenv_ros.lights import Environment, Light, SkyMap
-from sailenv_ros.model import Material, Model, ModelPart
-from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import CategoryTable, Instance
+from sailenv_ros.types.lights import Environment, Light, SkyMap
+from sailenv_ros.types.model import Material, Model, ModelPart
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 angles = st.floats(-180.0, 180.0)
 metres = st.floats(-5.0, 5.0)

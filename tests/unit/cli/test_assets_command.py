@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from sailenv_content.standard.pack_build import build_standard_pack
 from sailenv_ros.assets.folders import own_pack_folder
 from sailenv_ros.assets.glb import glb_bytes
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.assets.standard.pack_build import build_standard_pack
 from sailenv_ros.cli.main import main
 from sailenv_ros.simulation.scenes import SceneLibrary
 

@@ -23,7 +23,7 @@ from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset,
 from sailenv_ros.dataset.engines import HereEngine
 from sailenv_ros.dataset.manifest import summaries_of_files
 from sailenv_ros.errors import RecordingError, UnknownName
-from sailenv_ros.motion import motion
+from sailenv_ros.frame.motion import motion
 from sailenv_ros.system.resources import resource_path
 from tests.support.waiting import until
 from tests.unit.dataset.conftest import written_recipe

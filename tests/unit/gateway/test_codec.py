@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.catalogue.uploads import MAX_UPLOAD_BYTES
 from sailenv_ros.errors import ProtocolError, UnknownName
 from sailenv_ros.gateway.codec import (
     MAX_DOCUMENT_LENGTH,
@@ -23,6 +22,7 @@ from sailenv_ros.gateway.codec import (
     pack_strings,
 )
 from sailenv_ros.gateway.protocol_commands import commands_of
+from sailenv_ros.simulation.models.uploads import MAX_UPLOAD_BYTES
 from tests.unit.gateway.wire import hello, messages
 
 PROTOCOLS = st.sampled_from(("0.5", "0.6"))

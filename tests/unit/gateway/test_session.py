@@ -13,7 +13,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import sailenv_ros.simulation.simulation as module
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest, ProtocolError, SailenvError
 from sailenv_ros.gateway.codec import Message, MessageReader
 from sailenv_ros.gateway.light_answers import LightAnswers
@@ -22,6 +21,7 @@ from sailenv_ros.gateway.protocol_commands import commands_of
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.gateway.steps import Ask
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
 from tests.support.blank_renderer import BlankRenderer
 from tests.unit.gateway.wire import hello, messages
 

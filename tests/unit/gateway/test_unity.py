@@ -18,7 +18,7 @@ from sailenv_ros.gateway.unity import (
     unity_from_vector,
     vector_from_unity,
 )
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 
 COORDINATES = st.floats(-1e4, 1e4, width=32)
 ANGLES = st.floats(-720.0, 720.0, width=32)

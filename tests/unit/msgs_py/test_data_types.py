@@ -23,12 +23,13 @@ from sailenv_msgs_py.picture_msgs import (
 )
 from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame import FIVE_VIEWS, Frame
-from sailenv_ros.geometry import Pose
-from sailenv_ros.picture_settings import NAMES, PictureSettings
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.picture_settings import NAMES, PictureSettings
+from sailenv_ros.types.views import FIVE_VIEWS
 
 COORDINATES = st.floats(-1e4, 1e4)
 ANGLES = st.floats(-360.0, 360.0)

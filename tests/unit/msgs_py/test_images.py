@@ -13,7 +13,7 @@ from std_msgs.msg import Header
 
 from sailenv_msgs_py.images import image_from_view, picture_to_image, view_from_image
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import VIEWS
+from sailenv_ros.types.views import VIEWS
 
 SIZES = st.tuples(st.integers(1, 9), st.integers(1, 9))
 

@@ -45,22 +45,23 @@ from sailenv_msgs_py.scene_msgs import (
     scene_info_to_msg,
 )
 from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.contacts import Contact
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import RENDERED_VIEWS, VIEWS, Frame
-from sailenv_ros.geometry import Pose
-from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.labels import Category, CategoryTable, Instance, Keypoint
-from sailenv_ros.lessons import LessonPhase, LessonState
-from sailenv_ros.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.object_truth import AmodalMasks
-from sailenv_ros.objects import ObjectState
-from sailenv_ros.picture_settings import LIMITS, PictureSettings
-from sailenv_ros.rigid_body import RIGID_BODY_LIMITS, RigidBody
-from sailenv_ros.scene_info import MoverInfo, SceneInfo
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth import AmodalMasks
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.contacts import Contact
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.labels import Category, CategoryTable, Instance, Keypoint
+from sailenv_ros.types.lessons import LessonPhase, LessonState
+from sailenv_ros.types.lights import LIGHT_ATTRIBUTES, LIGHT_LIMITS, Environment, Light
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.objects import ObjectState
+from sailenv_ros.types.picture_settings import LIMITS, PictureSettings
+from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
+from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
+from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 
 pytestmark = pytest.mark.ros
 

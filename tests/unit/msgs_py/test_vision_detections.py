@@ -18,7 +18,7 @@ from std_msgs.msg import Header
 
 from sailenv_msgs_py.frame_info import header_of_frame
 from sailenv_msgs_py.vision_detections import detections_2d_to_msg, detections_3d_to_msg
-from tests.unit.object_truth.test_object_table import frame_of
+from tests.unit.frame.truth.test_object_table import frame_of
 
 pytestmark = pytest.mark.ros
 

@@ -16,10 +16,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
-from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.quality import QUICK
+from sailenv_ros.light.relight.relighting import relit
+from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.ambient_visibility import find_ambient_visibility
 from sailenv_ros.native.annotation import annotate_pixels
 from sailenv_ros.native.client_views import convert_views
@@ -33,12 +33,12 @@ from sailenv_ros.native.ray_kernels import RayModels, build_tree, cast_rays
 from sailenv_ros.native.ray_tracing import build_box_tree, cover_texels
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.relight.baked_scene import BakedScene
-from sailenv_ros.relight.quality import QUICK
-from sailenv_ros.relight.relighting import relit
-from sailenv_ros.relight.scene_changes import Change
-from sailenv_ros.render.ambient_occlusion import PATTERN
+from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.picture.ambient_occlusion import PATTERN
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.picture_settings import PictureSettings
 from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of

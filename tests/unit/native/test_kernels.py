@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.frame.pictures import frame_dict
 from sailenv_ros.native import (
     ambient_visibility,
     annotation,
@@ -19,11 +19,11 @@ from sailenv_ros.native import (
     resolve,
 )
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.pictures import frame_dict
 from sailenv_ros.render import reference_kernels as reference
-from sailenv_ros.render.ambient_occlusion import PATTERN, kernel_numbers
-from sailenv_ros.render.tone import code_table
+from sailenv_ros.render.picture.ambient_occlusion import PATTERN, kernel_numbers
+from sailenv_ros.render.picture.tone import code_table
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.picture_settings import PictureSettings
 
 SIZES = [(8, 8), (9, 13), (61, 97), (48, 160), (130, 200)]
 THREADS = (1, 2, 5)

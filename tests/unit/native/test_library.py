@@ -150,8 +150,8 @@ import logging
 logging.basicConfig(format="%(message)s")
 import numpy as np
 from sailenv_ros.render import kernels, tone_map
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.tone import code_table
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.render.picture.tone import code_table
 assert kernels.make_picture.__module__ == "sailenv_ros.render.reference_kernels"
 grey = np.full((9, 9, 4), 0.5, np.float16)
 surface = np.ones((9, 9, 2), np.float32)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
-from sailenv_ros.render import lightmap_compositing as plain
-from sailenv_ros.render import reflection_map
-from sailenv_ros.render.reflection_blur import blur_with_numba
+from sailenv_ros.render.gl.reflection_blur import blur_with_numba
+from sailenv_ros.render.scene import lightmap_compositing as plain
+from sailenv_ros.render.scene import reflection_map
 
 
 @pytest.mark.parametrize("shape", [(16, 24), (7, 5), (1, 1)])

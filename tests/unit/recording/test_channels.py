@@ -12,7 +12,6 @@ from std_msgs.msg import Header
 
 from sailenv_msgs_py.images import image_from_view
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.frame import VIEWS
 from sailenv_ros.recording.channels import (
     AGENT_TOPICS,
     IMAGE,
@@ -22,6 +21,7 @@ from sailenv_ros.recording.channels import (
     topic,
 )
 from sailenv_ros.recording.schemas import message_class, schema_text, type_hash
+from sailenv_ros.types.views import VIEWS
 from tests.support.recordings import noise_frame
 
 pytestmark = pytest.mark.ros

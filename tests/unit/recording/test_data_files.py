@@ -15,10 +15,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.errors import InvalidRequest, RecordingError
-from sailenv_ros.recording.export.bop_export import BopExport
-from sailenv_ros.recording.export.coco_export import CocoExport
-from sailenv_ros.recording.export.data_files import (
+from sailenv_ros.dataset.formats.bop_export import BopExport
+from sailenv_ros.dataset.formats.coco_export import CocoExport
+from sailenv_ros.dataset.formats.data_files import (
     discard_drafts,
     json_pieces,
     open_draft,
@@ -26,7 +25,8 @@ from sailenv_ros.recording.export.data_files import (
     write_json,
     write_png,
 )
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record
+from sailenv_ros.errors import InvalidRequest, RecordingError
 
 RANDOM = np.random.default_rng(1)
 PICTURES = [

@@ -18,15 +18,15 @@ from pycocotools import mask as coco_mask
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.dataset.formats import DatasetWriter, Splits, export
+from sailenv_ros.dataset.formats.bop_export import DEPTH_STEP_MM
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.frame import Frame
-from sailenv_ros.recording.export import DatasetWriter, Splits, export
-from sailenv_ros.recording.export.bop_export import DEPTH_STEP_MM
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from tests.support.recordings import noise_frame
 
 pytestmark = pytest.mark.ros

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.cli.main import main
+from sailenv_ros.dataset.formats import DatasetWriter, Splits, export
+from sailenv_ros.dataset.formats.journal import FRAMES_PER_SYNC, JOURNAL
 from sailenv_ros.errors import InvalidRequest, InvalidState, RecordingError
-from sailenv_ros.frame import Frame
-from sailenv_ros.recording.export import DatasetWriter, Splits, export
-from sailenv_ros.recording.export.journal import FRAMES_PER_SYNC, JOURNAL
+from sailenv_ros.frame.frame import Frame
 from tests.support.recordings import noise_frame, write_noise
 
 pytestmark = pytest.mark.ros

@@ -17,11 +17,12 @@ from pycocotools import mask as coco_mask
 from pycocotools.coco import COCO
 
 from sailenv_ros.cli.main import main
+from sailenv_ros.dataset.formats import FORMATS, export
+from sailenv_ros.dataset.formats.coco_rle import run_lengths_text
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.object_truth.run_lengths import run_lengths
-from sailenv_ros.recording.export import FORMATS, export
-from sailenv_ros.recording.export.coco_rle import run_lengths_text
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.run_lengths import run_lengths
+from sailenv_ros.types.views import VIEWS
 from tests.support.recordings import write_noise
 
 pytestmark = pytest.mark.ros

@@ -7,8 +7,6 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, UnknownName
@@ -17,6 +15,8 @@ from sailenv_ros.recording.lockstep import due_steps, record_lockstep
 from sailenv_ros.recording.progress import progress_line, size_in_bytes
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 pytestmark = pytest.mark.ros
 

@@ -14,13 +14,13 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.dataset.formats.dataset_writer import DatasetWriter
+from sailenv_ros.dataset.formats.lve_export import lve_motion
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import look_at
-from sailenv_ros.recording.export.dataset_writer import DatasetWriter
-from sailenv_ros.recording.export.lve_export import lve_motion
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
 
 SIZE = 96
 

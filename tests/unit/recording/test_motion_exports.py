@@ -11,19 +11,19 @@ import cv2
 import numpy as np
 import pytest
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
+from sailenv_ros.dataset.formats import export
+from sailenv_ros.dataset.formats.dataset_writer import DatasetWriter
+from sailenv_ros.dataset.formats.movi_export import load_movi_frame
 from sailenv_ros.errors import InvalidRequest, RecordingError
-from sailenv_ros.frame import Frame
-from sailenv_ros.motion import SceneGeometry, motion, track
-from sailenv_ros.recording.export import export
-from sailenv_ros.recording.export.dataset_writer import DatasetWriter
-from sailenv_ros.recording.export.movi_export import load_movi_frame
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.motion import SceneGeometry, motion, track
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from tests.support.recordings import write_noise
 
 pytestmark = [pytest.mark.ros, pytest.mark.gl]

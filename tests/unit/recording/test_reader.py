@@ -12,14 +12,15 @@ import pytest
 from mcap.writer import CompressionType, IndexType, Writer
 
 from sailenv_ros import Agent
-from sailenv_ros.agent.recorded import RecordedAgent
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS, Frame
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.topics import RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.ros.client.recorded import RecordedAgent
+from sailenv_ros.types.views import VIEWS
 from tests.support.recordings import DT_NS, noise_frame, noise_info, write_noise
 
 pytestmark = pytest.mark.ros

@@ -8,10 +8,10 @@ import re
 import pytest
 import yaml
 
-from sailenv_ros.nodes.parameter_table import Parameter
-from sailenv_ros.nodes.player import PARAMETERS as PLAYER
-from sailenv_ros.nodes.recorder import PARAMETERS as RECORDER
 from sailenv_ros.recording.channels import AGENT_TOPICS
+from sailenv_ros.ros.nodes.parameter_table import Parameter
+from sailenv_ros.ros.nodes.player import PARAMETERS as PLAYER
+from sailenv_ros.ros.nodes.recorder import PARAMETERS as RECORDER
 from sailenv_ros.system.resources import resource_path
 
 pytestmark = pytest.mark.ros

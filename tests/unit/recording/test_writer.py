@@ -15,11 +15,11 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.msg import get_types_from_msg
 
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame import VIEWS
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.schemas import schema_text
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic, RecordingOptions, qos_of_yaml
 from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.types.views import VIEWS
 from tests.support.recordings import file_size_limit, noise_frame, noise_info, write_noise
 
 pytestmark = pytest.mark.ros

@@ -15,23 +15,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sailenv_bench.experiments.results import load_result, save_result
 from sailenv_ros.assets.folders import own_pack_folder
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.bake.light_files import load_baked, store_baked
-from sailenv_ros.baked_light import BakedLight, LightLayer, ProbeGrid
-from sailenv_ros.catalogue import thumbnails
-from sailenv_ros.catalogue.uploads import asset_from_upload
+from sailenv_ros.dataset.formats.data_files import write_png
 from sailenv_ros.errors import RecordingError, SailenvError
-from sailenv_ros.experiments.results import load_result, save_result
+from sailenv_ros.light.bake.light_files import load_baked, store_baked
 from sailenv_ros.recording.bag_recovery import recover
-from sailenv_ros.recording.export.data_files import write_png
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic, RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.scene.user_scenes import write_scene
+from sailenv_ros.simulation.models import thumbnails
+from sailenv_ros.simulation.models.uploads import asset_from_upload
 from sailenv_ros.system.files import UNFINISHED
+from sailenv_ros.types.baked_light import BakedLight, LightLayer, ProbeGrid
 from tests.support.faulty_disk import FaultyDisk, Kind, after_power_loss
 from tests.support.upload_files import box_zip
 
@@ -77,7 +77,7 @@ def scene(name: str, text: str, *, overwrite: bool) -> Callable[[Path], object]:
 def add(name: str, solid: str) -> None:
     import dataclasses
 
-    from sailenv_ros.model import ConvexShape
+    from sailenv_ros.types.model import ConvexShape
 
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (0.0, 2.0)])
     asset = dataclasses.replace(

@@ -29,7 +29,7 @@ COUNTS = {
 @pytest.fixture(autouse=True)
 def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
-    log = logging.getLogger("sailenv_ros.bake.light_files")
+    log = logging.getLogger("sailenv_ros.light.bake.light_files")
     log.disabled = True
     yield
     log.disabled = False

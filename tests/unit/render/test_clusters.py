@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import look_at
-from sailenv_ros.render.cluster_culling import MARGIN, seen_indices
-from sailenv_ros.render.clusters import CLUSTER, CLUSTER_TRIANGLES, clusters_of
+from sailenv_ros.render.gl.cluster_culling import MARGIN, seen_indices
+from sailenv_ros.render.scene.clusters import CLUSTER, CLUSTER_TRIANGLES, clusters_of
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
 
 LENS = CameraIntrinsics(width=64, height=48, vertical_fov_deg=60.0)
 

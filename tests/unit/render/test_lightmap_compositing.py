@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.lights import Environment, Light
-from sailenv_ros.render.lightmap_compositing import composite_lightmap, instance_light
+from sailenv_ros.render.scene.lightmap_compositing import composite_lightmap, instance_light
+from sailenv_ros.types.lights import Environment, Light
 from tests.support.baked import GRID, baked, layer
 
 SUN = Light(name="sun", type="directional", direction=(0, 0, -1), intensity=2.0)

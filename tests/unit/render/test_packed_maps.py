@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_ros.model import Material
-from sailenv_ros.render.packed_maps import pack_maps
+from sailenv_ros.render.scene.packed_maps import pack_maps
+from sailenv_ros.types.model import Material
 
 
 def test_both_maps_keep_what_they_hold() -> None:

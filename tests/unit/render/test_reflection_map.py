@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_ros.render.reflection_blur import blur_with_numba
-from sailenv_ros.render.reflection_map import (
+from sailenv_ros.render.gl.reflection_blur import blur_with_numba
+from sailenv_ros.render.scene.reflection_map import (
     ROUGHNESSES,
     cube_cameras,
     flattened,

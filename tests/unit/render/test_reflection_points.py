@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.render.reflection_map import view_point
-from sailenv_ros.render.reflection_points import APART_M, MOST, ReflectionPoints
+from sailenv_ros.render.scene.reflection_map import view_point
+from sailenv_ros.render.scene.reflection_points import APART_M, MOST, ReflectionPoints
+from sailenv_ros.types.geometry import Pose
 from tests.support.baked import GRID, baked
 from tests.support.tiny_scenes import Thing, box_mesh, model_of, snapshot_of
 

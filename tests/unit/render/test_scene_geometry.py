@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_ros.instance_states import InstanceStates
-from sailenv_ros.motion import SceneGeometry
+from sailenv_ros.frame.motion import SceneGeometry
+from sailenv_ros.types.instance_states import InstanceStates
 from tests.support.tiny_scenes import box_mesh, model_of, wall_mesh
 
 FORWARD = np.array([[1.0, 0.0, 0.0]])

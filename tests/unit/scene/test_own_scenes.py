@@ -13,9 +13,9 @@ from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_errors
-from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.geometry import Pose, interpolate
 from sailenv_ros.scene import SceneCatalogue, SceneKnowledge, SceneSpec, load_scene
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, interpolate
 
 LIBRARY = AssetLibrary(installed_sources())
 KNOWLEDGE = SceneKnowledge(

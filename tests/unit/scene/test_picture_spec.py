@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.scene import SceneSpec
 from sailenv_ros.scene.serialisation import agent_entry
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.picture_settings import LIMITS, PictureSettings
 
 
 def settings_of(**picture: Any) -> PictureSettings:

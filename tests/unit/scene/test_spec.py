@@ -10,12 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.colour import linear_from_hex
-from sailenv_ros.geometry import Pose, look_at
-from sailenv_ros.labels import Category
-from sailenv_ros.lights import Environment, Light
 from sailenv_ros.scene.spec import (
     AgentSpecModel,
     BehaviourSpec,
@@ -27,6 +21,12 @@ from sailenv_ros.scene.spec import (
     SpotLightSpec,
     WaypointSpec,
 )
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.colour import linear_from_hex
+from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros.types.labels import Category
+from sailenv_ros.types.lights import Environment, Light
 from tests.unit.scene.strategies import unhurried
 
 

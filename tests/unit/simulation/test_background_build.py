@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.bake.light_files import light_folder
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.geometry import Pose
+from sailenv_ros.light.bake.light_files import light_folder
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.background_build import BackgroundBuild, BuildStep, furnishing
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from tests.support.waiting import until
 
 ROOM = """

@@ -12,11 +12,11 @@ import pytest
 import yaml
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, SceneError, UnknownName
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.rigid_body import RigidBody
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.saving import described_world
+from sailenv_ros.simulation.editing.saving import described_world
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.rigid_body import RigidBody
 from tests.unit.simulation.test_look_at import make
 
 STAGE = """

@@ -12,8 +12,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidRequest,
@@ -22,10 +20,12 @@ from sailenv_ros.errors import (
     SceneError,
     UnknownName,
 )
-from sailenv_ros.geometry import Pose
-from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.scene_info import SceneInfo
 from tests.support.blank_renderer import BlankRenderer
 from tests.support.lockstep_core import lockstep_core
 

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.baked_light import BakedLight, LightChart, ProbeGrid, Unwrapping
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken, UnknownName
-from sailenv_ros.geometry import Pose
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.types.baked_light import BakedLight, LightChart, ProbeGrid, Unwrapping
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.scene_info import SceneInfo
 from tests.support.lockstep_core import lockstep_core
 
 ROOM = """

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.types.geometry import Pose
 from tests.unit.simulation.test_core import make_core
 
 OF_THE_EARTH = (0.0, 0.0, -9.81)

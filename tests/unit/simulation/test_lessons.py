@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState, SceneError
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import look_at
-from sailenv_ros.lessons import LessonState
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.scene.spec import LessonsSpec, ObjectSpec
-from sailenv_ros.simulation.lesson_plan import LessonPlan, Turn
+from sailenv_ros.simulation.script.lesson_plan import LessonPlan, Turn
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.lessons import LessonState
 from tests.support.waiting import until
 
 # Everything stands in the same place, where a wall would be met by what moves.

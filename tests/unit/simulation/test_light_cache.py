@@ -9,18 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.bake.fingerprint import fingerprint
-from sailenv_ros.bake.light_files import is_baked, store_baked, store_draft
-from sailenv_ros.bake.pipeline import bake
-from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.scene_info import TimeMode
+from sailenv_ros.light.bake.fingerprint import fingerprint
+from sailenv_ros.light.bake.light_files import is_baked, store_baked, store_draft
+from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.snapshot import SceneContents
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.scene_info import TimeMode
+from sailenv_ros.types.snapshot import SceneContents
 from tests.support.bake_scenes import COARSE
 
 ROOM = """

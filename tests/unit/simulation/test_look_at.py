@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, InvalidState, SceneError, UnknownName
-from sailenv_ros.geometry import Pose, facing
-from sailenv_ros.look_at import LookAt
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose, facing
+from sailenv_ros.types.look_at import LookAt
 from tests.support.lockstep_core import lockstep_core
 
 STAGE = """

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sailenv_bench.experiments.coco_classes import COCO_NAMES
 from sailenv_msgs_py.frame_info import header_of_frame
 from sailenv_msgs_py.images import image_from_view, view_from_image
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.category_names import NAMING_SCHEMES, names_in
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import SceneError, UnknownName
-from sailenv_ros.experiments.coco_classes import COCO_NAMES
 from sailenv_ros.gateway.payloads import packed_frame
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 
 pytestmark = pytest.mark.ros
 

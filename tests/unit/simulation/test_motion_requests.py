@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.agents import MAX_AGENTS, AgentSpec
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, InvalidState, SailenvError, UnknownName
-from sailenv_ros.geometry import Pose
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.view_planes import view_planes
+from sailenv_ros.types.agents import MAX_AGENTS, AgentSpec
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.scene_info import SceneInfo
 from tests.support.lockstep_core import lockstep_core
 
 SMALL = CameraIntrinsics(width=16, height=12)

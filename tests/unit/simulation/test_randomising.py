@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState, SceneError
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import Pose
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 
 VIEWS = ["rgb", "depth", "instance", "albedo"]
 DEN = """

@@ -12,15 +12,15 @@ import pytest
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.catalogue.uploads import asset_from_upload
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene.serialisation import light_entry
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.models.uploads import asset_from_upload
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from tests.support.lockstep_core import lockstep_core
 from tests.support.upload_files import box_zip
 

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.agents import AgentSpec
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.scene.entries import read_document
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.scenario import SCENARIO_KEYS, scenario_entries
+from sailenv_ros.simulation.script.scenario import SCENARIO_KEYS, scenario_entries
+from sailenv_ros.types.agents import AgentSpec
 from tests.support.lockstep_core import lockstep_core
 
 TRACK = {"waypoints": [{"position": {"x": 0}}, {"position": {"x": 1}}], "total_time": 2.0}

@@ -12,10 +12,10 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
-from sailenv_ros.labels import Instance
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.simulation.editing.edit_records import EditOperations
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.labels import Instance
 from tests.support.lockstep_core import lockstep_core
 
 ROOM = """

@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterator
 import pytest
 
 import sailenv_ros.simulation.simulation as module
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidRequest,
@@ -18,8 +16,10 @@ from sailenv_ros.errors import (
     SimulationClosed,
     UnknownName,
 )
-from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.scene_info import SceneInfo
 from tests.support.blank_renderer import BlankRenderer
 
 SMALL = CameraIntrinsics(width=16, height=12)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros import Simulation
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import look_at
 from sailenv_ros.space import FreeSpace
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import look_at
 
 SMALL = {"height_m": 0.5, "radius_m": 0.15}
 

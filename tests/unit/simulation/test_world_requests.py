@@ -10,8 +10,6 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from sailenv_ros.agents import AgentSpec
-from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidEntry,
@@ -20,10 +18,12 @@ from sailenv_ros.errors import (
     SailenvError,
     UnknownName,
 )
-from sailenv_ros.frame import Frame
-from sailenv_ros.geometry import Pose
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.scene_info import SceneInfo
 from tests.support.lockstep_core import lockstep_core
 
 AHEAD = Pose((2.0, 0.0, 1.0))

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import BoxShape, ConvexShape, CylinderShape, SphereShape, TriangleShape
 from sailenv_ros.space import FREE, OCCUPIED, UNKNOWN, FreeSpace
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import Solid, outlines_between, solids_of
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import BoxShape, ConvexShape, CylinderShape, SphereShape, TriangleShape
 
 ONE = (1.0, 1.0, 1.0)
 FLOOR = BoxShape(half_extents_m=(2.0, 1.5, 0.1), centre_m=(0.0, 0.0, -0.1))

@@ -6,7 +6,7 @@ import asyncio
 from types import SimpleNamespace
 from typing import Any, cast
 
-from sailenv_ros.simulation.room_edits import RoomRecord
+from sailenv_ros.simulation.editing.room_edits import RoomRecord
 from sailenv_ros.viewer.command_context import CommandContext
 from sailenv_ros.viewer.edit_history import EditHistory, EditStep
 

@@ -10,13 +10,14 @@ import cv2
 import numpy as np
 import pytest
 
-from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame import VIEWS, Frame
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import Instance
-from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.scene_info import SceneInfo
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.colours import view_picture
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import Instance
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import VIEWS
 from sailenv_ros.viewer.encoding import FrameMessages, outline, view_png, views_to_json
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from tests.support.tiny_scenes import CATEGORIES

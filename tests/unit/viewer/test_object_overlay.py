@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.object_truth.amodal_masks import AmodalMasks
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.viewer.object_overlay import overlay_of
-from tests.unit.object_truth.test_object_table import frame_of
+from tests.unit.frame.truth.test_object_table import frame_of
 
 
 def masks_of(only: int = 0) -> AmodalMasks:

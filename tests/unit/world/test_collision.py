@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.model import (
+from sailenv_ros.types.model import (
     BoxShape,
     CollisionShape,
     ConvexShape,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.collision_proxy import PROXY_RADIUS_M
 from sailenv_ros.world.mover import Mover, MoverCommand, WaypointTrack
 from sailenv_ros.world.world import World

@@ -10,7 +10,7 @@ import pytest
 
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.world import World
 from tests.support.plain_doors import DOOR_INERTIA, DOOR_KG, door, joined

@@ -8,7 +8,7 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.pack import AssetPack, PackContent
 from sailenv_ros.assets.pack_writer import packed, write_content
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.placement import Placement
 from sailenv_ros.world.world import World

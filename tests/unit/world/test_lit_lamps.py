@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from sailenv_ros.geometry import Pose
-from sailenv_ros.lights import Light
-from sailenv_ros.model import Asset, BoxShape
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.model import Asset, BoxShape
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.world import World
 from tests.support.tiny_scenes import CATEGORIES, box_mesh, model_of

@@ -12,10 +12,10 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import AssetError, InvalidRequest, NameTaken, UnknownName
-from sailenv_ros.model import AssetPart
 from sailenv_ros.simulation.recorded_geometry import recorded_geometry
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.simulation import Simulation
+from sailenv_ros.types.model import AssetPart
 from tests.support.divided_bed import LEFT, RIGHT, divided_bed, write_bed_pack
 
 

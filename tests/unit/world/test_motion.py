@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.behaviours.waypoints import Waypoints, catmull_pose, linear_pose
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.model import BoxShape
+from sailenv_ros.types.model import BoxShape
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from tests.support.simple_solids import UNIT_BALL, placed, solid

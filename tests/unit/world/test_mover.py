@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.geometry import Pose
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.mover import Mover, WaypointTrack
 
 SQUARE = (

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.geometry import Pose
-from sailenv_ros.look_at import LookAt
-from sailenv_ros.rigid_body import RigidBody
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.world.mover import Mover, WaypointTrack
 from sailenv_ros.world.world import World
 from tests.support.plain_doors import DOOR_INERTIA, door

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from sailenv_ros.assets import AssetLibrary, load_categories
-from sailenv_ros.geometry import Pose
 from sailenv_ros.scene import SceneSpec
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.build import build_world
 from sailenv_ros.world.support import overlap_m, standing_place
 from sailenv_ros.world.world import World

@@ -9,9 +9,9 @@ import pytest
 
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError
-from sailenv_ros.geometry import Pose
-from sailenv_ros.labels import Category, CategoryTable
-from sailenv_ros.model import BoxShape, TriangleShape
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import Category, CategoryTable
+from sailenv_ros.types.model import BoxShape, TriangleShape
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
 from tests.support.simple_solids import UNIT_BALL, placed, solid

@@ -10,8 +10,8 @@ import pytest
 
 from sailenv_ros.behaviours import RunningBehaviour, start_behaviour
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.geometry import Pose
-from sailenv_ros.model import BoxShape
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import BoxShape
 from sailenv_ros.world.bodies import MAX_WRENCHES
 from tests.support.simple_solids import UNIT_BALL, placed, solid
 from tests.unit.world.test_world import make_world

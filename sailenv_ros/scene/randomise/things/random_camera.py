@@ -6,12 +6,12 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.picture_settings import LIMITS
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Position, Rotation, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
 from sailenv_ros.scene.rules import at_most_one, only_beside
+from sailenv_ros.types.picture_settings import LIMITS
 
 __all__ = ["RandomCamera"]
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets import load_categories
 from sailenv_ros.assets.rooms import RoomPart, room_parts
-from sailenv_ros.model import BoxShape
 from sailenv_ros.scene.spec_room import RoomSpec
+from sailenv_ros.types.model import BoxShape
 
 WINDOW = {"type": "window", "wall": "north", "at": 0.4, "width": 1.4, "height": 1.3, "sill": 0.9}
 DOOR = {"type": "door", "wall": "east", "at": -0.8, "width": 0.9, "height": 2.05}

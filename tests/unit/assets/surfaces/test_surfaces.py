@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.surfaces import Surface, surface, surface_names
 from sailenv_ros.assets.surfaces.maps import SurfaceMaps, surface_of
 from sailenv_ros.assets.surfaces.surface_catalogue import _made
-from sailenv_ros.colour import LINEAR_OF_SRGB8
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 
 NAMES = surface_names()
 

@@ -1,0 +1,129 @@
+"""Fine structures of surfaces that have no picture of their own: weave, terry, leather, grain.
+
+Each is a tile made by code, the same bytes every time: near-white colours that multiply the
+material's, and where it matters a normal map. Coordinates run along the faces, in metres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from sailenv_ros.types.model import Texture
+
+__all__ = ["PATTERNS", "Pattern", "pattern_maps"]
+
+EDGE_PX = 256
+Field = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pattern:
+    """One structure.
+
+    Attributes
+    ----------
+    tile_m : float
+        Edge of what one tile covers [m].
+    height : callable
+        Gives (EDGE_PX, EDGE_PX) float64 heights, 0 to 1, that tile without a seam.
+    shade : float
+        How much darker than the peaks the valleys are, 0 to 1.
+    relief : float
+        Slope of the normal map; 0 for none.
+    """
+
+    tile_m: float
+    height: Callable[[], Field]
+    shade: float
+    relief: float = 0.0
+
+
+def pattern_maps(pattern: Pattern) -> Mapping[str, Texture]:
+    """Return the textures by their attributes' names in `Material`; the same objects each time."""
+    return _maps(next(name for name, known in PATTERNS.items() if known is pattern))
+
+
+@cache
+def _maps(name: str) -> Mapping[str, Texture]:
+    pattern = PATTERNS[name]
+    height = pattern.height()
+    bright = 1.0 - pattern.shade * (1.0 - height)
+    pixels = np.full((EDGE_PX, EDGE_PX, 4), 255, np.uint8)
+    pixels[..., :3] = np.rint(255.0 * np.clip(bright, 0.0, 1.0))[..., None]
+    maps = {"base_colour_texture": pixels}
+    if pattern.relief:
+        maps["normal_texture"] = _normals(height, pattern.relief)
+    for texture in maps.values():
+        texture.flags.writeable = False
+    return maps
+
+
+def _normals(height: Field, relief: float) -> Texture:
+    """Return the tangent-space normals of a height field that wraps around."""
+    right = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) * 0.5 * relief * 16.0
+    # Rows run downwards and v upwards.
+    up = (np.roll(height, 1, axis=0) - np.roll(height, -1, axis=0)) * 0.5 * relief * 16.0
+    normal = np.dstack([-right, -up, np.ones_like(height)])
+    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    pixels = np.full((EDGE_PX, EDGE_PX, 4), 255, np.uint8)
+    pixels[..., :3] = np.rint(127.5 * normal + 127.5)
+    return pixels
+
+
+def _noise(seed: int, *sigmas: float | tuple[float, float]) -> Field:
+    """Sum smoothed white noise of several scales, wrapped around, spread over 0 to 1."""
+    generator = np.random.default_rng(seed)
+    total = np.zeros((EDGE_PX, EDGE_PX))
+    for sigma in sigmas:
+        layer = ndimage.gaussian_filter(generator.standard_normal(total.shape), sigma, mode="wrap")
+        total += layer / layer.std()
+    low, high = np.percentile(total, (1.0, 99.0))
+    return np.asarray(np.clip((total - low) / (high - low), 0.0, 1.0))
+
+
+def _weave() -> Field:
+    """Plain weave: threads that go over and under each other."""
+    v, u = np.mgrid[0:EDGE_PX, 0:EDGE_PX] * (32.0 * np.pi / EDGE_PX)
+    over = np.abs(np.sin(u)) ** 0.6 * (0.5 + 0.5 * np.sign(np.sin(u) * np.sin(v)))
+    under = np.abs(np.sin(v)) ** 0.6 * (0.5 - 0.5 * np.sign(np.sin(u) * np.sin(v)))
+    return np.asarray(np.clip(0.75 * (over + under) + 0.25 * _noise(11, 1.0, 6.0), 0.0, 1.0))
+
+
+def _terry() -> Field:
+    """Loops of towelling and carpet pile."""
+    return np.asarray(np.clip(0.8 * _noise(12, 1.0, 1.6) + 0.2 * _noise(16, 7.0), 0.0, 1.0))
+
+
+def _leather() -> Field:
+    """Grain: cells with creases between them."""
+    generator = np.random.default_rng(13)
+    seeds = np.zeros((EDGE_PX, EDGE_PX), bool)
+    seeds[tuple(generator.integers(0, EDGE_PX, (2, 900)))] = True
+    tiled = np.tile(seeds, (3, 3))
+    distance, places = ndimage.distance_transform_edt(~tiled, return_indices=True)
+    labels = places[0] * tiled.shape[1] + places[1]
+    middle = slice(EDGE_PX, 2 * EDGE_PX)
+    rim = (labels != np.roll(labels, 1, 0)) | (labels != np.roll(labels, 1, 1))
+    crease = ndimage.gaussian_filter(rim.astype(np.float64), 1.2)[middle, middle]
+    return np.asarray(np.clip(1.0 - 1.6 * crease - 0.02 * distance[middle, middle], 0.0, 1.0))
+
+
+def _grain() -> Field:
+    """Wood's fibres, along u."""
+    broad, fine = _noise(14, (10.0, 80.0)), _noise(15, (1.0, 40.0))
+    rings = 0.5 + 0.5 * np.sin(2.0 * np.pi * (4.0 * broad + 0.5 * fine))
+    return np.asarray(np.clip(0.6 * rings + 0.4 * fine, 0.0, 1.0))
+
+
+PATTERNS = {
+    "weave": Pattern(tile_m=0.06, height=_weave, shade=0.45),
+    "terry": Pattern(tile_m=0.14, height=_terry, shade=0.3, relief=0.2),
+    "leather": Pattern(tile_m=0.12, height=_leather, shade=0.3, relief=0.25),
+    "grain": Pattern(tile_m=0.60, height=_grain, shade=0.3),
+}

@@ -1,0 +1,1 @@
+"""Making scenes: generated rooms, imported scenes, rules for cameras."""

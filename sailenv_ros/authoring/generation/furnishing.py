@@ -1,0 +1,223 @@
+"""Furniture by its rules: a piece and all that belongs to it is placed together, or not at all.
+
+An `Area` of a `RoomPlan` and rules in, `Item`s out. A place is drawn and kept if nothing is in the
+way, what must stay free stays free, and all doors can still be reached.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from sailenv_ros.authoring.generation.companion_spots import CompanionSpots
+from sailenv_ros.authoring.generation.items import Item, Namer
+from sailenv_ros.authoring.generation.plan import Area, Block, RoomPlan
+from sailenv_ros.authoring.generation.positions import Positioner
+from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.rule_files import Rules
+from sailenv_ros.authoring.generation.rule_models import CompanionRule, FurnitureRule, PieceRule
+from sailenv_ros.authoring.generation.stock import Stock
+
+__all__ = ["Furnisher"]
+
+TRIES = 60
+COMPANION_TRIES = 8
+FROM_WALL_M = 0.07
+LEAST_GAP_M = 0.001
+"""Between pieces that belong together."""
+
+_RUG_GAP_M = 0.03
+
+
+@dataclass(slots=True)
+class _Group:
+    """A piece with what belongs to it, before it is accepted."""
+
+    items: list[Item] = field(default_factory=list)
+    clear: list[Block] = field(default_factory=list)
+    ends: dict[tuple[int, str], Item] = field(default_factory=dict)
+    names: list[tuple[Item, str]] = field(default_factory=list)
+
+
+@dataclass(slots=True, kw_only=True)
+class Furnisher:
+    """Furnishes one area.
+
+    Parameters
+    ----------
+    area : Area
+    plan : RoomPlan
+        What stands there is added to it.
+    rules : Rules
+    stock : Stock
+    dice : Dice
+    namer : Namer
+    skirting_m : float
+        How far the skirting keeps off what stands at a wall [m].
+    """
+
+    area: Area
+    plan: RoomPlan
+    rules: Rules
+    stock: Stock
+    dice: Dice
+    namer: Namer
+    skirting_m: float
+    items: list[Item] = field(default_factory=list)
+    positioner: Positioner = field(init=False)
+    spots: CompanionSpots = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.positioner = Positioner(
+            area=self.area, stock=self.stock, dice=self.dice, skirting_m=self.skirting_m
+        )
+        self.spots = CompanionSpots(self.positioner)
+
+    def furnish(self, pieces: Sequence[PieceRule]) -> bool:
+        """Place all pieces in their order; say if all that is needed has its place."""
+        for piece in pieces:
+            if not (piece.needed or self.dice.chance(piece.chance)):
+                continue
+            if piece.once and any(item.base == piece.put for item in self.items):
+                continue
+            count = self.dice.whole(piece.count)
+            count += int(piece.per_metre * self.area.floor_m2)
+            for number in range(count):
+                placed = self.place(piece.put, needed=piece.needed and number == 0)
+                if not placed and piece.needed and number == 0:
+                    return False
+        return True
+
+    def place(self, name: str, *, needed: bool = False) -> bool:
+        """Place a piece with what belongs to it; say if there was a place."""
+        rule = self.rules.furniture[name]
+        for _ in range(TRIES):
+            group = _Group()
+            item = self._proposed(name, rule, group)
+            if item is None or not self._with_companions(item, rule, group):
+                continue
+            if self.plan.connects(each.block for each in group.items):
+                item.needed = needed
+                self._accept(group, name)
+                return True
+        return False
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _accept(self, group: _Group, heading: str) -> None:
+        for item, base in group.names:
+            prefix = f"{self.area.name} " if self.area.name else ""
+            item.name = self.namer.name(prefix + base)
+            item.base = base
+            item.section = f"{self.area.name}:{heading}"
+        self.plan.stand(
+            [_thin(item.block) if item.is_flat else item.block for item in group.items],
+            group.clear,
+        )
+        self.items.extend(group.items)
+
+    def _proposed(self, name: str, rule: FurnitureRule, group: _Group) -> Item | None:
+        """Draw a place for a piece; None if it cannot stand there."""
+        asset, scale = self._fresh(rule), round(self.dice.between(rule.scale), 2)
+        if rule.at in ("wall", "corner") or rule.height is not None:
+            item = self.positioner.at_wall(rule, asset, scale, corner=rule.at == "corner")
+        elif rule.at == "ceiling":
+            x, y = self.positioner.middle()
+            item = self.positioner.hung_up(rule, asset, scale, round(x, 2), round(y, 2))
+        else:
+            item = self.positioner.in_the_room(rule, asset, scale)
+        return item if item is not None and self._fits(item, rule, name, group) else None
+
+    def _fresh(self, rule: FurnitureRule) -> str:
+        """Return an object of a piece, one that the room has not got yet where there is one."""
+        present = {item.asset for item in self.items}
+        return self.dice.one([a for a in rule.assets if a not in present] or rule.assets)
+
+    def _fits(self, item: Item, rule: FurnitureRule, name: str, group: _Group) -> bool:
+        """Return whether a piece can stand where it was drawn; it is in the group then."""
+        # What stands free keeps off sill boards and curtains.
+        stands_free = item.side is None and not rule.flat and rule.at != "ceiling"
+        if not self.area.holds(item.block, FROM_WALL_M if stands_free else 0.0):
+            return False
+        if rule.flat:
+            if not self._rug_fits(item, group):
+                return False
+        else:
+            mates = [each.block for each in group.items if not each.is_flat]
+            if any(item.block.meets(mate, LEAST_GAP_M) for mate in mates):
+                return False
+            rugs = [each for each in (*self.items, *group.items) if each.is_flat]
+            if item.side is not None and any(_over(item.block, rug.block) for rug in rugs):
+                return False
+            if not self.plan.is_free(item.block):
+                return False
+            if not all(self.area.holds(c) and self.plan.is_empty(c) for c in item.clear):
+                return False
+            if any(c.meets(mate) for c in item.clear for mate in mates):
+                return False
+        group.items.append(item)
+        group.clear.extend(item.clear)
+        group.names.append((item, name))
+        return True
+
+    def _rug_fits(self, item: Item, group: _Group) -> bool:
+        """Return whether a rug lies on bare floor, or under what stands free and never moves."""
+        for other in (*self.items, *group.items):
+            standing = other.side is not None or not other.entry.get("static", False)
+            if (other.is_flat or standing) and _over(item.block, other.block):
+                return False
+        doors = [c for c in self.plan.clear if c.low == 0.0]
+        return not any(_over(item.block, door) for door in doors)
+
+    def _with_companions(self, item: Item, rule: FurnitureRule, group: _Group) -> bool:
+        """Place what belongs to a piece, and what belongs to that; say if all needed is there."""
+        for companion in rule.companions:
+            if not companion.needed and not self.dice.chance(companion.chance):
+                continue
+            least = 1 if companion.needed else 0
+            if self._companions(item, companion, group) < least:
+                return False
+        return True
+
+    def _companions(self, item: Item, companion: CompanionRule, group: _Group) -> int:
+        """Place the companions of one rule; return how many found a place."""
+        rule = self.rules.furniture[companion.put]
+        asset = self._fresh(rule)  # all of them alike
+        placed, count = 0, self.dice.whole(companion.count)
+        for spot in self.spots.spots(item, companion, rule, asset, count, group.ends):
+            if placed == count:
+                break
+            for _ in range(COMPANION_TRIES):
+                scale = round(self.dice.between(rule.scale), 2)
+                proposed = spot(asset, scale)
+                if proposed is None or not self._fits(proposed, rule, companion.put, group):
+                    continue
+                mark = len(group.items), len(group.clear), len(group.names)
+                if self._with_companions(proposed, rule, group):
+                    placed += 1
+                    group.ends[id(item), companion.where] = proposed
+                    if companion.where == "around":
+                        item.around.append(proposed)
+                    break
+                del group.items[mark[0] - 1 :], group.names[mark[2] - 1 :]
+                del group.clear[mark[1] - len(proposed.clear) :]
+        return placed
+
+
+def _thin(block: Block) -> Block:
+    """Return a rug as it is in the plan: nothing that anything could run into."""
+    return Block(
+        x=block.x, y=block.y, half_x=block.half_x, half_y=block.half_y,
+        yaw_rad=block.yaw_rad, low=-0.02, high=-0.01,
+    )  # fmt: skip
+
+
+def _over(first: Block, second: Block) -> bool:
+    """Return whether two boxes that stand on the floor overlap, seen from above."""
+    if second.low > 0.1:
+        return False
+    flat = [
+        Block(x=b.x, y=b.y, half_x=b.half_x, half_y=b.half_y, yaw_rad=b.yaw_rad)
+        for b in (first, second)
+    ]
+    return flat[0].meets(flat[1], _RUG_GAP_M)

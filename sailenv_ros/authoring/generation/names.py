@@ -1,0 +1,41 @@
+"""Names of generated scenes: ``generated:kitchen:17`` stands for the kitchen of seed 17."""
+
+from __future__ import annotations
+
+import re
+
+from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.rule_files import Rules
+from sailenv_ros.errors import InvalidRequest
+
+__all__ = ["MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]
+
+PREFIX = "generated:"
+"""How the name of a scene begins that is made when it is asked for."""
+
+MAX_SEED = 2**31 - 1
+
+_NAME = re.compile(r"generated:([a-z][a-z0-9_]{0,62}):([0-9]{1,10})")
+
+
+def parsed_name(name: str, rules: Rules) -> tuple[str, int]:
+    """Return kind and seed of a name.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is not ``generated:KIND:SEED``.
+    UnknownName
+        If there is no such kind.
+    """
+    match = _NAME.fullmatch(name)
+    if match is None:
+        kinds = ", ".join(sorted(rules.kinds))
+        raise InvalidRequest("scene", name, f"generated:KIND:SEED with a KIND of: {kinds}")
+    rules.kind(match[1])
+    return match[1], int(match[2])
+
+
+def drawn_kind(seed: int, rules: Rules) -> str:
+    """Return the kind of room that a seed stands for where none is asked for."""
+    return Dice("kind", seed).one(sorted(rules.kinds))

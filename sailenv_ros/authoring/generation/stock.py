@@ -1,0 +1,60 @@
+"""The catalogue as a generator sees it: how large an object is, where it carries others.
+
+Names in, sizes in the body frame out. An object's size is that of what is drawn and of what
+collides, whichever reaches further.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.assets.arranging import shape_points
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.types.model import Asset
+
+__all__ = ["Stock"]
+
+Floats = NDArray[np.float64]
+
+
+class Stock:
+    """Sizes of objects, each worked out once.
+
+    Parameters
+    ----------
+    assets : AssetLibrary
+    """
+
+    def __init__(self, assets: AssetLibrary) -> None:
+        self._assets = assets
+        self._bounds = lru_cache(maxsize=None)(self._measure)
+
+    @property
+    def assets(self) -> AssetLibrary:
+        """Where they come from."""
+        return self._assets
+
+    def asset(self, name: str) -> Asset:
+        """Return an object; see `AssetLibrary.get` for errors."""
+        return self._assets.get(name)
+
+    def bounds(self, name: str, scale: float = 1.0) -> Floats:
+        """Return (2, 3) float64: lowest and highest corner in the body frame [m]."""
+        return np.asarray(self._bounds(name) * scale)
+
+    def back_m(self, name: str, scale: float = 1.0) -> float:
+        """Return how far what is drawn reaches behind the origin [m]; negative for behind."""
+        return float(self.asset(name).model.bounds()[0, 0] * scale)
+
+    def _measure(self, name: str) -> Floats:
+        asset = self.asset(name)
+        bounds = asset.model.bounds().copy()
+        if asset.collision:
+            points = shape_points(asset.collision)
+            bounds[0] = np.minimum(bounds[0], points.min(axis=0))
+            bounds[1] = np.maximum(bounds[1], points.max(axis=0))
+        bounds.flags.writeable = False
+        return bounds

@@ -1,0 +1,154 @@
+"""What lies on what: things from lists, placed on furniture and before the chairs of a table.
+
+`Item`s that stand in, `Item`s that lie on them out. Heights are found when the scene is built.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+
+from sailenv_ros.authoring.generation.items import Item, Namer, block_of
+from sailenv_ros.authoring.generation.plan import Block
+from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.rule_files import Rules
+from sailenv_ros.authoring.generation.rule_models import ThingRule
+from sailenv_ros.authoring.generation.stock import Stock
+
+__all__ = ["lay_things"]
+
+TRIES = 12
+EDGE_M = 0.012
+"""Between a thing and the edge of what carries it [m]."""
+
+APART_M = 0.012
+
+
+def lay_things(
+    items: Sequence[Item], rules: Rules, stock: Stock, dice: Dice, namer: Namer
+) -> Iterator[Item]:
+    """Yield what lies on furniture."""
+    for item in items:
+        if item.rule is None:
+            continue
+        taken: list[Block] = []
+        prefix = _area_of(item)
+        if item.rule.setting is not None:
+            kinds: dict[int, str] = {}
+            for guest in item.around:
+                for index, thing in enumerate(rules.things[item.rule.setting]):
+                    if not dice.chance(thing.chance):
+                        continue
+                    asset = kinds.setdefault(index, dice.one(thing.put))
+                    laid = _laid_before(item, guest, thing, asset, stock, dice)
+                    yield from _kept(laid, item, taken, stock, namer, prefix)
+        if item.rule.holds is not None:
+            for thing in rules.things[item.rule.holds]:
+                if not dice.chance(thing.chance):
+                    continue
+                for _ in range(dice.whole(thing.count)):
+                    for _ in range(TRIES):
+                        asset = dice.one(thing.put)
+                        laid = _laid(item, thing, asset, stock, dice)
+                        found = list(_kept(laid, item, taken, stock, namer, prefix))
+                        if found:
+                            yield from found
+                            break
+
+
+def _area_of(item: Item) -> str:
+    return item.section.rpartition(":")[0]
+
+
+def _laid(item: Item, thing: ThingRule, asset: str, stock: Stock, dice: Dice) -> Item:
+    """Return a thing somewhere on a piece, in the piece's own axes."""
+    scale = round(dice.between(thing.scale), 2)
+    turn = float(round(dice.between(thing.turn)))
+    low, high = stock.bounds(item.asset, item.scale)
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    block = block_of(stock, asset, scale, 0.0, 0.0, turn)
+    reach = np.abs(block.corners() - (block.x, block.y)).max(axis=0)
+    free = np.maximum(half[:2] - reach - EDGE_M, 0.0)
+    x = float(middle[0] + dice.between(thing.x) * free[0] - block.x)
+    y = float(middle[1] + dice.between(thing.y) * free[1] - block.y)
+    return _thing(item, thing, asset, scale, x, y, turn, stock, dice)
+
+
+def _laid_before(
+    item: Item, guest: Item, thing: ThingRule, asset: str, stock: Stock, dice: Dice
+) -> Item:
+    """Return a thing of a place that is laid before a guest, in the table's own axes."""
+    yaw = math.radians(item.yaw_deg)
+    c, s = math.cos(yaw), math.sin(yaw)
+    dx, dy = guest.block.x - item.block.x, guest.block.y - item.block.y
+    place = np.array([c * dx + s * dy, -s * dx + c * dy])
+    half = np.array([item.block.half_x, item.block.half_y])
+    # The guest sits at the side beyond which the chair stands.
+    axis = int(np.argmax(np.abs(place) - half))
+    inward = np.zeros(2)
+    inward[axis] = -np.sign(place[axis])
+    right = np.array([inward[1], -inward[0]])
+    at = place.copy()
+    at[axis] = -inward[axis] * half[axis]
+    at += inward * thing.inset + right * thing.aside
+    looks = math.degrees(math.atan2(inward[1], inward[0]))
+    turn = float(round(looks + dice.between(thing.turn)))
+    scale = round(dice.between(thing.scale), 2)
+    low, high = stock.bounds(item.asset, item.scale)
+    at += ((low + high) / 2.0)[:2]
+    return _thing(item, thing, asset, scale, float(at[0]), float(at[1]), turn, stock, dice)
+
+
+def _thing(
+    item: Item,
+    thing: ThingRule,
+    asset: str,
+    scale: float,
+    x: float,
+    y: float,
+    turn: float,
+    stock: Stock,
+    dice: Dice,
+) -> Item:
+    x, y, turn = round(x, 3), round(y, 3), (turn + 180.0) % 360.0 - 180.0
+    entry: dict[str, object] = {"on": item.name, "position": [x, y, 0.0]}
+    entry |= {"rotation": [0, 0, turn]} if turn else {}
+    entry |= {"scale": scale} if scale != 1.0 else {}
+    entry |= {"static": True} if thing.static else {}
+    yaw = math.radians(item.yaw_deg)
+    c, s = math.cos(yaw), math.sin(yaw)
+    light = None
+    if thing.light is not None:
+        tall = float(stock.bounds(asset, scale)[1, 2])
+        light = (tall + 0.04, round(dice.between(thing.light), 2))
+    return Item(
+        name="",
+        asset=asset,
+        entry=entry,
+        block=block_of(stock, asset, scale, x, y, turn, 0.0),
+        x=item.x + c * x - s * y,
+        y=item.y + s * x + c * y,
+        yaw_deg=item.yaw_deg + turn,
+        scale=scale,
+        section=item.section,
+        light=light,
+    )
+
+
+def _kept(
+    laid: Item, item: Item, taken: list[Block], stock: Stock, namer: Namer, prefix: str
+) -> Iterable[Item]:
+    """Yield a thing if it lies within its carrier and touches no other."""
+    low, high = stock.bounds(item.asset, item.scale)
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    offsets = np.abs(laid.block.corners() - middle[:2])
+    if (offsets > half[:2] - EDGE_M + 1e-6).any():
+        return
+    if any(laid.block.meets(other, APART_M) for other in taken):
+        return
+    taken.append(laid.block)
+    category = stock.asset(laid.asset).category
+    laid.name = namer.name(f"{prefix} {category}" if prefix else category)
+    yield laid

@@ -1,0 +1,138 @@
+"""Frames → COCO's instance annotations: masks as run lengths, boxes, categories.
+
+The format is that of https://cocodataset.org/#format-data. An annotation is one object in one
+picture; `instance_id` joins those of one object, and `parent_id` is that of the object that it is a
+part of, 0 for none. With amodal masks `amodal_segmentation`, its box
+and area, and `occlusion` (the share of the object that is hidden) are added.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.assets.category_names import NAMING_SCHEMES, names_in
+from sailenv_ros.dataset.formats.annotated_objects import (
+    annotated_objects,
+    categories_of,
+    merged_categories,
+)
+from sailenv_ros.dataset.formats.coco_rle import run_lengths_text
+from sailenv_ros.dataset.formats.data_files import write_json, write_png
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.image_formats import frame_record
+from sailenv_ros.frame.truth.object_table import ObjectTable
+from sailenv_ros.frame.truth.run_lengths import crop_runs
+
+__all__ = ["CocoExport"]
+
+
+class CocoExport(DatasetFormat):
+    """`images/*.png` and `annotations.json`, in each split's folder."""
+
+    views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
+
+    def add(self, sample: Sample) -> Made:
+        """Write the picture of a frame and take its objects."""
+        frame, number = sample.frame, sample.number
+        found = annotated_objects(sample, "COCO")
+        name = f"{sample.stem}.png"
+        write_png(self.folder / sample.split / "images" / name, frame["rgb"])
+        height, width = frame["instance"].shape
+        image = {"id": number, "file_name": name, "width": width, "height": height}
+        table, masks = found.table, found.masks
+        annotations = []
+        for row, instance_id in enumerate(table.ids.tolist()):
+            left, top, right, bottom = table.visible_boxes[row].tolist()
+            seen = frame["instance"][top : bottom + 1, left : right + 1] == instance_id
+            annotation = {
+                "image_id": number,
+                "category_id": int(table.category_ids[row]),
+                "instance_id": instance_id,
+                "instance_name": table.names[row],
+                "parent_id": int(table.parents[row]),
+                "segmentation": _segmentation(seen, left, top, height, width),
+                "area": int(table.visible_pixels[row]),
+                "bbox": _bbox(table.visible_boxes[row]),
+                "iscrowd": 0,
+            }
+            if masks is not None:
+                crop, box = masks.crops[masks.row(instance_id)], table.amodal_boxes[row]
+                annotation |= _amodal(table, row)
+                annotation["amodal_segmentation"] = _segmentation(
+                    crop, int(box[0]), int(box[1]), height, width
+                )
+            annotations.append(annotation)
+        return Made(
+            record={
+                "image": {**frame_record(number, frame), **image},
+                "categories": categories_of(sample, "COCO"),
+                "annotations": annotations,
+            },
+            written={"images": 1, "annotations": len(annotations)},
+            left_out=found.left_out,
+        )
+
+    def finish(self, records: Sequence[Record]) -> None:
+        """Write the annotations of each split; ids of annotations count on over all of them."""
+        splits: set[str] = set()
+
+        def tables() -> Iterator[Mapping[str, str]]:
+            for record in records:
+                splits.add(record.split)
+                yield record.value["categories"]
+
+        categories = merged_categories(tables())
+        ids = itertools.count(1)
+        others = {scheme: names_in(scheme) for scheme in NAMING_SCHEMES}
+        listed = [
+            {
+                "id": id_,
+                "name": name,
+                "supercategory": "",
+                **{scheme: names.get(name, "") for scheme, names in others.items()},
+            }
+            for id_, name in categories.items()
+        ]
+        # All records may be more than fits into memory: each list is read and written as it goes.
+        for split in sorted(splits):
+            table = {
+                "info": {"description": "recorded by sailenv_ros"},
+                "images": (value["image"] for value in _of_split(records, split)),
+                "annotations": (
+                    {"id": next(ids), **annotation}
+                    for value in _of_split(records, split)
+                    for annotation in value["annotations"]
+                ),
+                "categories": listed,
+            }
+            write_json(self.folder / split / "annotations.json", table)
+
+
+def _of_split(records: Iterable[Record], split: str) -> Iterator[Any]:
+    return (record.value for record in records if record.split == split)
+
+
+def _segmentation(
+    crop: NDArray[np.bool_], left: int, top: int, height: int, width: int
+) -> dict[str, Any]:
+    counts = crop_runs(crop, left, top, height, width).tolist()
+    return {"size": [height, width], "counts": run_lengths_text(counts)}
+
+
+def _amodal(table: ObjectTable, row: int) -> dict[str, Any]:
+    return {
+        "amodal_area": int(table.amodal_pixels[row]),
+        "amodal_bbox": _bbox(table.amodal_boxes[row]),
+        "occlusion": float(1.0 - table.visible_share[row]),
+        "truncation": float(table.truncated_share[row]),
+    }
+
+
+def _bbox(box: NDArray[np.int32]) -> list[int]:
+    left, top, right, bottom = box.tolist()
+    return [left, top, right - left + 1, bottom - top + 1]

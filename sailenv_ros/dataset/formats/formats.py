@@ -1,0 +1,69 @@
+"""The table of data set formats: names, and where each is found; loaded when it is used."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat
+from sailenv_ros.errors import InvalidRequest, UnknownName
+
+__all__ = ["FORMATS", "check_views", "format_class"]
+
+FORMATS: Mapping[str, str] = MappingProxyType(
+    {
+        "png": "image_formats.PngExport",
+        "coco": "coco_export.CocoExport",
+        "kitti": "flow_exports.KittiExport",
+        "sintel": "flow_exports.SintelExport",
+        "flo": "image_formats.FloExport",
+        "movi": "movi_export.MoviExport",
+        "tapvid": "tapvid_export.TapVidExport",
+        "mp4": "video.VideoExport",
+        "bop": "bop_export.BopExport",
+        "mot": "mot_export.MotExport",
+        "yolo": "yolo_export.YoloExport",
+        "yolo_segments": "yolo_export.YoloSegmentsExport",
+        "lve": "lve_export.LveExport",
+        "voc": "voc_export.VocExport",
+        "webdataset": "webdataset_export.WebDatasetExport",
+        "parquet": "parquet_export.ParquetExport",
+        "lerobot": "lerobot_export.LeRobotExport",
+        "mcap": "mcap_export.McapExport",
+    }
+)
+"""Module in this folder and class of each format, by its name."""
+
+
+def format_class(name: str) -> type[DatasetFormat]:
+    """Load a format.
+
+    Raises
+    ------
+    UnknownName
+        If there is none of that name.
+    """
+    if name not in FORMATS:
+        raise UnknownName("format", name, FORMATS)
+    module, _, cls = FORMATS[name].partition(".")
+    loaded = importlib.import_module(f"sailenv_ros.dataset.formats.{module}")
+    made: type[DatasetFormat] = getattr(loaded, cls)
+    return made
+
+
+def check_views(name: str, views: Iterable[str]) -> None:
+    """Refuse frames that lack views which a format needs.
+
+    Raises
+    ------
+    InvalidRequest
+    """
+    made, there = format_class(name), list(views)
+    lacking = [view for view in made.views if view not in there]
+    none_of = made.any_of and not set(made.any_of) & set(there)
+    if lacking or none_of:
+        needed = ", ".join(made.views or made.any_of)
+        which = "the views" if made.views else "one of the views"
+        accepted = f"recorded with {which} that {name} needs: {needed}"
+        raise InvalidRequest("recording", f"the views {', '.join(there)}", accepted)

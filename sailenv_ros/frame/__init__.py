@@ -1,0 +1,1 @@
+"""Frames: the views of one camera at one instant, and all that can be asked of them."""

@@ -1,0 +1,119 @@
+"""What motion needs to know of a frame, whether it is a `Frame` or the dict of an agent."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.instance_states import InstanceStates
+
+__all__ = ["AnyFrame", "Moment", "moment_of", "require_common_past"]
+
+AnyFrame: TypeAlias = Frame | Mapping[str, Any]
+"""A `Frame`, or a frame as `Agent.get_frame` gives it."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Moment:
+    """A camera and all instances at one instant.
+
+    Attributes
+    ----------
+    scene : str
+    epoch : int
+        Of the scene: two epochs have no common past.
+    stamp_ns : int
+        Simulated time [ns].
+    camera : Camera
+    states : InstanceStates
+    depth, instance : (H, W) float32, uint16 or None
+        The frame's views; None if it has none.
+    """
+
+    scene: str
+    epoch: int
+    stamp_ns: int
+    camera: Camera
+    states: InstanceStates
+    depth: NDArray[np.float32] | None
+    instance: NDArray[np.uint16] | None
+
+    def surfaces(self, what: str) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
+        """Return depth and instance ids.
+
+        Parameters
+        ----------
+        what : str
+            Which frame it is, for the error.
+
+        Raises
+        ------
+        InvalidRequest
+            If the frame has not both.
+        """
+        if self.depth is None or self.instance is None:
+            missing = "without " + " and ".join(
+                name
+                for name, view in (("depth", self.depth), ("instance", self.instance))
+                if view is None
+            )
+            raise InvalidRequest(what, missing, "a frame with the views depth and instance")
+        return np.ascontiguousarray(self.depth), np.ascontiguousarray(self.instance)
+
+
+def moment_of(frame: AnyFrame, what: str = "frame") -> Moment:
+    """Read what motion needs of a frame.
+
+    Parameters
+    ----------
+    frame : Frame or mapping
+    what : str
+        Which frame it is, for errors.
+
+    Raises
+    ------
+    InvalidRequest
+        If it is no frame, or the states of its instances were not recorded.
+    """
+    if isinstance(frame, Frame):
+        fields: Mapping[str, Any] = {
+            "scene": frame.scene,
+            "epoch": frame.epoch,
+            "stamp_ns": frame.stamp_ns,
+            "camera": frame.camera,
+            "states": frame.states,
+            "depth": frame.views.get("depth"),
+            "instance": frame.views.get("instance"),
+        }
+    elif isinstance(frame, Mapping) and {"camera", "states", "epoch"} <= frame.keys():
+        names = ("scene", "epoch", "stamp_ns", "camera", "states")
+        fields = {name: frame[name] for name in names}
+        fields |= {"depth": frame.get("depth_m"), "instance": frame.get("instance")}
+    else:
+        raise InvalidRequest(what, type(frame).__name__, "a Frame, or a frame of an Agent")
+    if fields["states"] is None:
+        accepted = "a frame with the states of its instances, which version 0.2.0 did not record"
+        raise InvalidRequest(what, "without states", accepted)
+    return Moment(**fields)
+
+
+def require_common_past(one: Moment, other: Moment) -> None:
+    """Refuse moments of different scenes, or of different lives of one scene.
+
+    Raises
+    ------
+    InvalidRequest
+    """
+    if (one.scene, one.epoch) != (other.scene, other.epoch):
+        raise InvalidRequest(
+            "frames",
+            f"of {one.scene!r}, epoch {one.epoch}, and {other.scene!r}, epoch {other.epoch}",
+            "frames of one epoch of a scene: a change of scene and a reset begin a new one",
+        )

@@ -1,0 +1,1 @@
+"""Light of a scene: baked beforehand, and kept right while objects move."""

@@ -1,0 +1,187 @@
+"""Hands light on from patch to patch. From what arrives straight to what arrives in the end.
+
+A patch is a tile of 4 by 4 texels, as far as they belong to one object and face one way. Which
+patches see which is found once, with few rays from each texel, and serves all lights and bounces.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.ray_patterns import TURN
+from sailenv_ros.light.bake.rays import in_chunks
+from sailenv_ros.light.bake.static_geometry import StaticGeometry
+from sailenv_ros.light.bake.texels import Texels
+
+__all__ = ["Patches", "bounced_radiance", "patches_of"]
+
+Floats = NDArray[np.float32]
+
+
+CHUNK_PATCHES = 4096
+
+FEWEST_RAYS = 2 * TURN
+"""Of each texel count at least in a patch of many."""
+
+BLOCK = 8
+"""Channels that are added up at a time."""
+
+MOST_LEFT = 0.9
+"""Share of its light that a bounce leaves to the next, at most."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Patches:
+    """Texels in groups.
+
+    Attributes
+    ----------
+    of_texel : (N,) int32
+    count : int
+    """
+
+    of_texel: NDArray[np.int32]
+    count: int
+
+    def means(self, values: Floats, valid: NDArray[np.bool_]) -> Floats:
+        """Return (count, C) float32: means over the valid texels of each, 0 where it has none."""
+        owner = self.of_texel[valid]
+        number = np.maximum(np.bincount(owner, minlength=self.count), 1)
+        sums = [
+            np.bincount(owner, weights=values[valid, c], minlength=self.count)
+            for c in range(values.shape[1])
+        ]
+        means: Floats = (np.stack(sums, axis=1) / number[:, None]).astype(np.float32)
+        return means
+
+
+def patches_of(geometry: StaticGeometry, texels: Texels) -> Patches:
+    """Group the texels."""
+    side = texels.index.shape[1]
+    tile = (texels.rows // 4).astype(np.int64) * (side // 4 + 1) + texels.columns // 4
+    axis = np.argmax(np.abs(texels.normals), axis=1)
+    sign = texels.normals[np.arange(texels.count), axis] > 0
+    owner = geometry.owner[texels.triangle].astype(np.int64)
+    key = ((tile * 6 + axis * 2 + sign) * (len(geometry.instances) + 1)) + owner
+    _, of_texel = np.unique(key, return_inverse=True)
+    count = int(of_texel.max()) + 1 if len(of_texel) else 0
+    return Patches(of_texel=of_texel.astype(np.int32), count=count)
+
+
+def bounced_radiance(
+    patches: Patches,
+    seen: NDArray[np.int32],
+    valid: NDArray[np.bool_],
+    stands_in: NDArray[np.int32],
+    first: Floats,
+    albedo: Floats,
+    bounces: int,
+    workers: int = 1,
+) -> Floats:
+    """Return (N, C) float32: radiance of each texel with all that was handed on to it.
+
+    Parameters
+    ----------
+    seen : (N, M) int32
+        Texels that the rays of each texel met; negative ones are dark. Of each texel in a patch of
+        many only some count, one after another: see `ray_patterns.in_turns`.
+    valid : (N,) bool
+        Texels inside of something know nothing.
+    stands_in : (N,) int32
+        Which texel's light rays to each texel meet; see `denoise.stand_ins`.
+    first : (N, C) float32
+        Radiance of each texel by what arrives straight and what it emits.
+    albedo : (N, 3) float32
+    """
+    channels = first.shape[1]
+    start = patches.means(first, valid)
+    share = np.tile(patches.means(albedo, valid), channels // 3)
+    order = np.argsort(patches.of_texel, kind="stable")
+    members = order[valid[order]].astype(np.int32)
+    bounds = np.searchsorted(patches.of_texel[members], np.arange(patches.count + 1))
+    met = patches.of_texel[stands_in]
+    ends, sources = _sources_of(members, bounds, seen, met)
+    # Padded, so that channels are added up in blocks of a fixed size.
+    radiance = np.zeros((patches.count, -(-channels // BLOCK) * BLOCK), np.float32)
+    radiance[:, :channels] = start
+    arriving = np.zeros_like(start)
+    grown = [np.ones(channels), np.ones(channels)]
+    for _ in range(bounces):
+        before, arriving = arriving, np.zeros_like(start)
+
+        def hand_on(begin: int, end: int, arriving: Floats = arriving) -> None:
+            _hand_on(ends, sources, radiance, arriving, begin, end)
+
+        in_chunks(hand_on, patches.count, CHUNK_PATCHES, workers)
+        radiance[:, :channels] = start + share * arriving
+        grown = [grown[1], np.sum(arriving - before, axis=0, dtype=np.float64)]
+    if bounces > 1:
+        # All further bounces shrink like the last: they are a geometric series.
+        ratio = np.clip(grown[1] / np.maximum(grown[0], 1e-12), 0.0, MOST_LEFT)
+        arriving += ((arriving - before) * (ratio / (1.0 - ratio))).astype(np.float32)
+    return first + np.tile(albedo, channels // 3) * arriving[patches.of_texel]
+
+
+def _sources_of(
+    members: NDArray[np.int32],
+    bounds: NDArray[np.intp],
+    seen: NDArray[np.int32],
+    met: NDArray[np.int32],
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Return (count + 1,) where the rays of each patch end in a list, and which patches they met.
+
+    `met` is the patch of each texel; rays that met nothing have -1.
+    """
+    size = np.diff(bounds)
+    turns = np.clip(size, 1, max(seen.shape[1] // FEWEST_RAYS, 1))
+    ends = np.concatenate([[0], np.cumsum(size * (seen.shape[1] // turns))]).astype(np.int64)
+    sources = np.empty(int(ends[-1]), np.int32)
+    _find_sources(members, bounds, seen, met, turns, ends, sources)
+    return ends, sources
+
+
+@numba.njit(cache=True, nogil=True)
+def _find_sources(  # type: ignore[no-untyped-def]
+    members, bounds, seen, of_texel, turns, ends, sources
+):
+    for patch in range(len(bounds) - 1):
+        at = ends[patch]
+        # Neighbours take turns with the rays: together they have all directions.
+        rays = seen.shape[1] // turns[patch]
+        for place in range(bounds[patch], bounds[patch + 1]):
+            begin = (place - bounds[patch]) % turns[patch] * rays
+            for m in range(begin, begin + rays):
+                texel = seen[members[place], m]
+                sources[at] = of_texel[texel] if texel >= 0 else -1
+                at += 1
+
+
+@numba.njit(cache=True, nogil=True)
+def _hand_on(ends, sources, radiance, arriving, first, end):  # type: ignore[no-untyped-def]
+    channels = arriving.shape[1]
+    for patch in range(first, end):
+        rays = ends[patch + 1] - ends[patch]
+        if rays == 0:
+            continue
+        for begin in range(0, radiance.shape[1], BLOCK):
+            # In registers: eight sums in memory would wait for each other.
+            a = b = c = d = e = f = g = h = np.float32(0.0)
+            for place in range(ends[patch], ends[patch + 1]):
+                source = sources[place]
+                if source < 0:
+                    continue
+                a += radiance[source, begin]
+                b += radiance[source, begin + 1]
+                c += radiance[source, begin + 2]
+                d += radiance[source, begin + 3]
+                e += radiance[source, begin + 4]
+                f += radiance[source, begin + 5]
+                g += radiance[source, begin + 6]
+                h += radiance[source, begin + 7]
+            for k, total in enumerate((a, b, c, d, e, f, g, h)):
+                if begin + k < channels:
+                    arriving[patch, begin + k] = total / rays

@@ -1,0 +1,74 @@
+"""Which side of two-sided surfaces the light map shows. From `Texels` to `Texels`.
+
+A light map holds one side. Of a closed body whose triangles were wound either way that must be
+the outer one, of a sheet that hangs before a wall the open one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
+from sailenv_ros.light.bake.rays import RayScene, in_chunks
+from sailenv_ros.light.bake.static_geometry import StaticGeometry
+from sailenv_ros.light.bake.texels import Texels
+
+__all__ = ["facing_the_light"]
+
+RAYS = 42
+FAR_M = 0.5
+"""What is farther counts as open."""
+
+CLEARLY = 1.5
+"""How many times more open the back must be than the front."""
+
+LIFT_M = 1e-3
+
+CHUNK_TRIANGLES = 8192
+
+SPOTS = np.array(
+    [[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [3, 3, 1], [1, 3, 3], [3, 1, 3]], np.float32
+)
+SPOTS /= SPOTS.sum(axis=1, keepdims=True)
+"""Points of a triangle, as weights of its corners."""
+
+
+def facing_the_light(
+    geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int = 1
+) -> Texels:
+    """Turn the texels of two-sided triangles whose back is the open side."""
+    shown = np.zeros(geometry.triangle_count, dtype=bool)
+    shown[texels.triangle] = True
+    asked = np.flatnonzero(geometry.two_sided & shown)
+    if not len(asked):
+        return texels
+    turned = np.zeros(geometry.triangle_count, dtype=bool)
+
+    def find(first: int, end: int) -> None:
+        own = asked[first:end]
+        front, back = (_openness(geometry, scene, own, sign) for sign in (1.0, -1.0))
+        turned[own] = back > CLEARLY * front
+
+    in_chunks(find, len(asked), CHUNK_TRIANGLES, workers)
+    sign = np.where(turned[texels.triangle], np.float32(-1.0), np.float32(1.0))[:, None]
+    return replace(texels, normals=texels.normals * sign, faces=texels.faces * sign)
+
+
+def _openness(
+    geometry: StaticGeometry, scene: RayScene, triangles: NDArray[np.intp], sign: float
+) -> NDArray[np.float64]:
+    """Return (T,) float64: mean distance that one side of each triangle sees, at most `FAR_M`."""
+    normals = geometry.faces[triangles] * np.float32(sign)
+    total = np.zeros(len(triangles))
+    for number, direction in enumerate(fibonacci_sphere(RAYS)):
+        # One point alone might lie inside of another thing.
+        spot = SPOTS[number % len(SPOTS)]
+        points = np.einsum("c,tcx->tx", spot, geometry.corners[triangles])
+        side = np.where(normals @ direction < 0.0, np.float32(-1.0), np.float32(1.0))
+        origins = points + normals * np.float32(LIFT_M)
+        hits = scene.hits(origins, direction * side[:, None])
+        total += np.minimum(hits.distance, FAR_M)
+    return total / RAYS

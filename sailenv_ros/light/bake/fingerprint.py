@@ -1,0 +1,92 @@
+"""Names a scene by everything its baked light depends on. From `WorldSnapshot` to a hash."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import asdict
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.settings import BAKE_VERSION, BakeSettings
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Material, Model
+from sailenv_ros.types.snapshot import WorldSnapshot
+
+__all__ = ["fingerprint"]
+
+_NOT_BAKED = ("colour", "intensity", "indirect_multiplier")
+"""Of lights: each has a layer of its own, which they scale."""
+
+
+def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -> str:
+    """Return 32 hexadecimal digits, alike for two snapshots whose baked light is alike."""
+    contents = snapshot.contents
+    digest = hashlib.blake2b(digest_size=16)
+    _add(digest, [BAKE_VERSION, asdict(settings or BakeSettings())])
+    _add(digest, [_light(light) for light in contents.lights])
+    _add_sky(digest, contents.environment)
+    for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
+        if drawn.is_baked:
+            _add(digest, [drawn.instance.id, list(drawn.scale), list(drawn.lit_by)])
+            _add_array(digest, pose)
+            digest.update(_of_model(drawn.model))
+    return digest.hexdigest()
+
+
+def _add(digest: hashlib.blake2b, values: Iterable[object]) -> None:
+    digest.update(json.dumps(list(values), sort_keys=True).encode())
+
+
+def _add_array(digest: hashlib.blake2b, array: NDArray[Any]) -> None:
+    digest.update(repr(array.shape).encode())
+    digest.update(np.ascontiguousarray(array).data)
+
+
+def _light(light: Light) -> dict[str, object]:
+    return {name: value for name, value in asdict(light).items() if name not in _NOT_BAKED}
+
+
+def _add_sky(digest: hashlib.blake2b, environment: Environment) -> None:
+    if environment.background == "colour":
+        _add(digest, ["colour", environment.background_colour])
+    elif environment.sky is not None:
+        _add_array(digest, environment.sky.radiance)
+    else:
+        _add(
+            digest,
+            [environment.sky_zenith, environment.sky_horizon, environment.sky_ground],
+        )
+
+
+@lru_cache(maxsize=512)
+def _of_model(model: Model) -> bytes:
+    """Hash a model; models are compared by identity and never change."""
+    digest = hashlib.blake2b(digest_size=16)
+    for part in model.parts:
+        mesh = part.mesh
+        for array in (mesh.positions, mesh.normals, mesh.uvs, mesh.triangles):
+            _add_array(digest, array)
+        _add_material(digest, part.material)
+    return digest.digest()
+
+
+def _add_material(digest: hashlib.blake2b, material: Material) -> None:
+    _add(
+        digest,
+        [
+            material.base_colour,
+            material.emission,
+            material.glow,
+            material.alpha,
+            material.alpha_cutoff,
+            material.double_sided,
+        ],
+    )
+    texture = material.base_colour_texture
+    if texture is not None:
+        _add_array(digest, texture)

@@ -1,0 +1,148 @@
+"""The place of every instance in the light map. From `StaticGeometry` to `Layout`.
+
+Knows neither rays nor light.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.packing import packed
+from sailenv_ros.light.bake.settings import BakeSettings
+from sailenv_ros.light.bake.static_geometry import StaticGeometry, StaticInstance
+from sailenv_ros.light.bake.unwrap import Chart, unwrapped
+from sailenv_ros.types.baked_light import LightChart
+from sailenv_ros.types.model import Model
+
+__all__ = ["Layout", "laid_out"]
+
+SIMPLE_TRIANGLES = 1000
+"""Models of fewer triangles are boards and walls, whose large faces show fine shadows."""
+
+MOST_TEXELS = 50_000
+"""That a model of many triangles takes, if larger texels can help it: leaves are many."""
+
+TRIALS = 8
+
+COARSER = 1.15
+"""Growth of the texels until everything fits."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Layout:
+    """The light map's plan.
+
+    Attributes
+    ----------
+    side : int
+        Of the map [texels].
+    charts : dict of int to LightChart
+        By instance id.
+    places : (T, 3, 2) float32
+        Of each triangle's corners in the map, x then y [texels]; texel (i, j) covers j to j + 1
+        in x and i to i + 1 in y.
+    """
+
+    side: int
+    charts: dict[int, LightChart]
+    places: NDArray[np.float32]
+
+
+def laid_out(
+    geometry: StaticGeometry,
+    settings: BakeSettings,
+    visible_triangles: NDArray[np.bool_],
+    report: Callable[[float], None] = lambda share: None,
+) -> Layout:
+    """Unwrap all models and pack their charts.
+
+    Parameters
+    ----------
+    visible_triangles : (T,) bool
+        Triangles that are seen at all.
+    """
+    coarser = 1.0
+    while True:
+        charts = _unwrapped_models(geometry, settings, visible_triangles, coarser, report)
+        own = [charts[instance.model] for instance in geometry.instances]
+        # The border keeps neighbours' texels out of look-ups that rounding moves by a hair.
+        fit = packed([(chart.width + 1, chart.height + 1) for chart in own], settings.max_map)
+        if fit is not None:
+            break
+        coarser *= COARSER
+    side, corners = fit
+    places = np.zeros((geometry.triangle_count, 3, 2), dtype=np.float32)
+    for instance, chart, corner in zip(geometry.instances, own, corners, strict=True):
+        _place(places, instance, chart, corner)
+    return Layout(
+        side=side,
+        places=places,
+        charts={
+            instance.id: LightChart(
+                unwrapping=chart.unwrapping,
+                offset=(x / side, y / side),
+                scale=(chart.width / side, chart.height / side),
+                world_from_body=instance.world_from_body,
+            )
+            for instance, chart, (x, y) in zip(geometry.instances, own, corners, strict=True)
+        },
+    )
+
+
+def _unwrapped_models(
+    geometry: StaticGeometry,
+    settings: BakeSettings,
+    visible_triangles: NDArray[np.bool_],
+    coarser: float,
+    report: Callable[[float], None],
+) -> dict[Model, Chart]:
+    users: dict[Model, list[StaticInstance]] = {}
+    for instance in geometry.instances:
+        users.setdefault(instance.model, []).append(instance)
+    charts = {}
+    for model, instances in users.items():
+        seen = np.zeros(model.triangle_count, dtype=bool)
+        for instance in instances:
+            first = instance.first_triangle
+            seen |= visible_triangles[first : first + model.triangle_count]
+        largest = np.abs([instance.scale for instance in instances]).max(axis=0)
+        charts[model] = _unwrapped(model, tuple(largest.tolist()), seen, settings, coarser)
+        report(len(charts) / len(users))
+    return charts
+
+
+def _unwrapped(
+    model: Model,
+    scale: tuple[float, float, float],
+    seen: NDArray[np.bool_],
+    settings: BakeSettings,
+    coarser: float,
+) -> Chart:
+    if model.triangle_count <= SIMPLE_TRIANGLES:
+        return unwrapped(model, scale, coarser * settings.texel_m, seen)
+    texel = coarser * settings.fine_texel_m
+    trial = 0
+    while True:
+        chart = unwrapped(model, scale, texel * COARSER**trial, seen)
+        size = chart.width * chart.height
+        if size <= MOST_TEXELS or trial == TRIALS - 1:
+            return chart
+        # Borders do not shrink with the texels: it takes at least so many steps.
+        steps = math.floor(math.log(size / MOST_TEXELS) / (2.0 * math.log(COARSER)))
+        trial = min(trial + max(steps, 1), TRIALS - 1)
+
+
+def _place(
+    places: NDArray[np.float32], instance: StaticInstance, chart: Chart, corner: tuple[int, int]
+) -> None:
+    first = instance.first_triangle
+    size = np.array([chart.width, chart.height], dtype=np.float32)
+    offset = np.array(corner, dtype=np.float32)
+    for triangles, uvs in zip(chart.unwrapping.triangles, chart.unwrapping.uvs, strict=True):
+        places[first : first + len(triangles)] = (uvs * size + offset)[triangles]
+        first += len(triangles)

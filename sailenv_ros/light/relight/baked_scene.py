@@ -1,0 +1,353 @@
+"""A scene as its light was baked: texels, patches of them, what they give back, shapes for rays.
+
+From a `BakedLight` and the objects that it was baked for. Made once for a bake, when something
+moves first. Knows no change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.returned_light import returned
+from sailenv_ros.light.bake.sky_picture import sky_picture
+from sailenv_ros.light.bake.static_geometry import StaticGeometry, static_geometry_of
+from sailenv_ros.light.relight.ray_shapes import Shape, shape_of, tree_over
+from sailenv_ros.native.ray_tracing import cover_texels
+from sailenv_ros.types.baked_light import BakedLight, Unwrapping
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8
+from sailenv_ros.types.model import Material, Model
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+
+__all__ = ["BakedScene", "Panes", "TexelPatches", "albedo_of_model"]
+
+Floats = NDArray[np.float32]
+
+REACH = 1.5
+"""How far from a triangle texels stand for it [texels]; as in `bake.texels`."""
+
+EDGE, EDGE_M = 1e-3, 3e-3
+"""Points of which a corner's weight is less than `EDGE` are moved in by `EDGE_M` [m]."""
+
+TILE = 4
+"""Side of a patch [texels]."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class TexelPatches:
+    """Tiles of texels, as far as they belong to one object and face one way.
+
+    Attributes
+    ----------
+    of_map : (side, side) int32
+        Of each texel of the map, -1 for none.
+    of_texel : (N,) int32
+    places, positions, normals : (P, 2), (P, 3), (P, 3) float32
+        Column and row, world position [m] and unit normal of the texel that stands for each.
+    owners : (P,) int32
+        Instance id.
+    size : (P,) float32
+        How many texels each has.
+    albedo : (P, 3) float32
+    emission : (P, 3) float32
+    materials : (P,) int32
+        Place of each one's material in `BakedScene.materials`.
+    """
+
+    of_map: NDArray[np.int32]
+    of_texel: NDArray[np.int32]
+    places: Floats
+    positions: Floats
+    normals: Floats
+    owners: NDArray[np.int32]
+    size: Floats
+    albedo: Floats
+    emission: Floats
+    materials: NDArray[np.int32]
+
+    def means(self, values: Floats) -> Floats:
+        """Return (P,) float32: means of (N,) values of texels."""
+        sums = np.bincount(self.of_texel, weights=values, minlength=len(self.size))
+        return (sums / self.size).astype(np.float32)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Panes:
+    """Glass of what stands still, in the world frame: a tree, (G, 9) triangles, (G,) shares."""
+
+    nodes: NDArray[np.void]
+    triangles: Floats
+    passes: Floats
+
+
+class BakedScene:
+    """What relighting needs to know of a bake; arrays are read-only by agreement.
+
+    Parameters
+    ----------
+    baked : BakedLight
+    contents : SceneContents
+        Holds the objects that it was baked for.
+    threads : int
+
+    Attributes
+    ----------
+    baked : BakedLight
+    drawn : dict of int to DrawnInstance
+        What has a chart, by instance id.
+    side : int
+        Of the light map [texels].
+    places, positions, normals, owners : (N,) int32, (N, 3), (N, 3) float32, (N,) int32
+        Place in the map, world position [m], unit normal and instance of each texel in use.
+    patches : TexelPatches
+    irradiance : (P, C) float32
+        Means of the layers' bounced light, the three colours of each layer in turn.
+    direct : (P, L) float32
+        Means of the layers' direct light.
+    sent : (P, C) float32
+        What patches send out by these; see `radiance`.
+    brightest : float
+        Bounced light of all layers that nine patches of ten do not exceed.
+    materials : tuple of Material
+    panes : Panes or None
+    sky : (H, 2 H, 3) float32
+    """
+
+    def __init__(self, baked: BakedLight, contents: SceneContents, threads: int) -> None:
+        self.baked = baked
+        self.drawn = {
+            drawn.instance.id: drawn
+            for drawn in contents.instances
+            if drawn.instance.id in baked.charts and drawn.model.triangle_count
+        }
+        self._shapes: dict[tuple[int, tuple[float, ...], int], tuple[object, Shape]] = {}
+        self.side = len(baked.layers[0].direct)
+        geometry = static_geometry_of(_as_baked(baked, contents, tuple(self.drawn.values())))
+        self.materials = geometry.materials
+        self._lay_out(geometry)
+        self.panes = _panes(geometry)
+        self.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
+        with ThreadPoolExecutor(max(threads, 1)) as pool:
+            list(pool.map(self.shape, self.drawn))
+
+    def shape(self, instance_id: int) -> Shape:
+        """Return the shape of an instance that was baked."""
+        drawn = self.drawn[instance_id]
+        return self.shape_of(drawn.model, drawn.scale, self.baked.charts[instance_id].unwrapping)
+
+    def shape_of(
+        self, model: Model, scale: tuple[float, float, float], flat: Unwrapping | None
+    ) -> Shape:
+        """Return a model's shape; each is made once."""
+        key = id(model), scale, id(flat)
+        found = self._shapes.get(key)
+        if found is None:
+            found = self._shapes[key] = (model, flat), shape_of(model, scale, flat)
+        return found[1]
+
+    def albedo_with(self, painted: Mapping[int, Model]) -> Floats:
+        """Return (P, 3) float32: the albedo of the patches where some objects look otherwise.
+
+        Parameters
+        ----------
+        painted : mapping of int to Model
+            Models of the same shape with other materials, by instance id.
+        """
+        return self.looks_with(painted)[0]
+
+    def looks_with(self, painted: Mapping[int, Model]) -> tuple[Floats, Floats]:
+        """Return albedo and emission, (P, 3) float32 each, of the patches; see `albedo_with`."""
+        albedo, emission = self.patches.albedo.copy(), self.patches.emission.copy()
+        for id_, model in painted.items():
+            own = self.patches.owners == id_
+            looks = {
+                id(before.material): _look(after.material)
+                for before, after in zip(self.drawn[id_].model.parts, model.parts, strict=True)
+            }
+            for place in np.unique(self.patches.materials[own]):
+                chosen = own & (self.patches.materials == place)
+                albedo[chosen], emission[chosen] = looks[id(self.materials[place])]
+        return albedo, emission
+
+    def radiance(
+        self,
+        irradiance: Floats,
+        direct: Floats,
+        albedo: Floats | None = None,
+        emission: Floats | None = None,
+    ) -> Floats:
+        """Return (P, C) float32: what patches send out by what arrives there.
+
+        Parameters
+        ----------
+        irradiance : (P, C) float32
+        direct : (P, L) float32
+        albedo, emission : (P, 3) float32 or None
+            None takes that of the bake.
+        """
+        albedo = self.patches.albedo if albedo is None else albedo
+        layers = direct.shape[1]
+        light = irradiance.reshape(-1, layers, 3) + direct[:, :, None]
+        radiance = light * albedo[:, None, :]
+        radiance[:, 0] += self.patches.emission if emission is None else emission
+        return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
+
+    def _lay_out(self, geometry: StaticGeometry) -> None:
+        side = self.side
+        owner, weights = cover_texels(self._places(geometry), side, REACH)
+        rows, columns = np.nonzero(owner >= 0)
+        triangle = owner[rows, columns]
+        share = np.empty((len(rows), 3), np.float32)
+        share[:, 1:] = weights[rows, columns]
+        share[:, 0] = 1.0 - share[:, 1] - share[:, 2]
+        share = _off_the_edges(geometry.corners[triangle], share)
+        ids = np.array([instance.id for instance in geometry.instances], np.int32)
+        faces = geometry.faces[triangle]
+        normals = np.einsum("nc,ncx->nx", share, geometry.normals[triangle])
+        facing = np.einsum("nx,nx->n", normals, faces)
+        normals[facing < 0.05] = faces[facing < 0.05]
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+        self.places = (rows * side + columns).astype(np.int32)
+        self.positions = np.ascontiguousarray(
+            np.einsum("nc,ncx->nx", share, geometry.corners[triangle]), np.float32
+        )
+        self.normals = np.ascontiguousarray(normals, np.float32)
+        self.owners = ids[geometry.owner[triangle]]
+        self.patches = self._patches(geometry, rows, columns, triangle)
+        layers = self.baked.layers
+        self.irradiance = np.empty((len(self.patches.size), 3 * len(layers)), np.float32)
+        self.direct = np.empty((len(self.patches.size), len(layers)), np.float32)
+        for number, layer in enumerate(layers):
+            bounced = layer.bounced.reshape(-1, 3)[self.places].astype(np.float32)
+            for colour in range(3):
+                self.irradiance[:, 3 * number + colour] = self.patches.means(bounced[:, colour])
+            direct = layer.direct.reshape(-1)[self.places].astype(np.float32)
+            self.direct[:, number] = self.patches.means(direct)
+        self.sent = self.radiance(self.irradiance, self.direct)
+        self.brightest = float(np.percentile(self.irradiance.sum(axis=1), 90))
+
+    def _places(self, geometry: StaticGeometry) -> Floats:
+        """Return (T, 3, 2) float32: the corners of the triangles in the map [texels]."""
+        places = np.zeros((geometry.triangle_count, 3, 2), np.float32)
+        for instance in geometry.instances:
+            chart = self.baked.charts[instance.id]
+            first = instance.first_triangle
+            size, offset = np.asarray(chart.scale), np.asarray(chart.offset)
+            flat = chart.unwrapping
+            for triangles, uvs in zip(flat.triangles, flat.uvs, strict=True):
+                own = (uvs * size + offset) * self.side
+                places[first : first + len(triangles)] = own[triangles]
+                first += len(triangles)
+        return places
+
+    def _patches(
+        self,
+        geometry: StaticGeometry,
+        rows: NDArray[np.intp],
+        columns: NDArray[np.intp],
+        triangle: NDArray[np.int32],
+    ) -> TexelPatches:
+        tiles = self.side // TILE + 1
+        axis = np.argmax(np.abs(self.normals), axis=1)
+        sign = self.normals[np.arange(len(axis)), axis] > 0.0
+        key = (rows // TILE).astype(np.int64) * tiles + columns // TILE
+        key = (key * 6 + axis * 2 + sign) * (len(geometry.instances) + 1) + geometry.owner[triangle]
+        _, of_texel, size = np.unique(key, return_inverse=True, return_counts=True)
+        of_map = np.full((self.side, self.side), -1, np.int32)
+        of_map[rows, columns] = of_texel
+        # The texel that is nearest to the middle of its patch stands for it.
+        count = size.astype(np.float64)
+        middle = [np.bincount(of_texel, weights=w) / count for w in (columns, rows)]
+        far = (columns - middle[0][of_texel]) ** 2 + (rows - middle[1][of_texel]) ** 2
+        order = np.lexsort((far, of_texel))
+        chosen = order[np.concatenate([[0], np.cumsum(size)[:-1]])]
+        looks = [_look(material) for material in geometry.materials]
+        albedo = np.array([look[0] for look in looks], np.float32).reshape(-1, 3)
+        emission = np.array([look[1] for look in looks], np.float32).reshape(-1, 3)
+        material = geometry.material[triangle[chosen]]
+        return TexelPatches(
+            of_map=of_map,
+            of_texel=np.asarray(of_texel, np.int32),
+            places=np.stack([columns[chosen], rows[chosen]], axis=1).astype(np.float32),
+            positions=np.ascontiguousarray(self.positions[chosen]),
+            normals=np.ascontiguousarray(self.normals[chosen]),
+            owners=np.ascontiguousarray(self.owners[chosen]),
+            size=size.astype(np.float32),
+            albedo=albedo[material],
+            emission=emission[material],
+            materials=np.asarray(material, np.int32),
+        )
+
+
+def _off_the_edges(corners: Floats, share: Floats) -> Floats:
+    """Return the weights of points a little further in: at the very edge others may begin."""
+    points = np.einsum("nc,ncx->nx", share, corners)
+    far = np.maximum(np.linalg.norm(corners.mean(axis=1) - points, axis=1), 1e-9)
+    inwards = np.where(share.min(axis=1) < EDGE, np.minimum(EDGE_M / far, 1.0 / 3.0), 0.0)
+    moved = share * (1.0 - inwards[:, None]) + inwards[:, None] / 3.0
+    return np.asarray(moved, np.float32)
+
+
+def albedo_of_model(model: Model) -> Floats:
+    """Return (3,) float32: the mean share of light that a model's parts give back."""
+    if not model.parts:
+        return np.zeros(3, np.float32)
+    looks = np.array([_look(part.material)[0] for part in model.parts], np.float32)
+    mean: Floats = looks.mean(axis=0)
+    return mean
+
+
+def _as_baked(
+    baked: BakedLight, contents: SceneContents, drawn: tuple[DrawnInstance, ...]
+) -> WorldSnapshot:
+    poses = [baked.charts[one.instance.id].world_from_body for one in drawn]
+    still = tuple(replace(one, instance=replace(one.instance, static=True)) for one in drawn)
+    return WorldSnapshot(
+        sim_time_ns=0,
+        step=0,
+        contents=replace(contents, instances=still, baked=None),
+        world_from_body=np.array(poses).reshape(-1, 4, 4),
+        histories=np.zeros(len(drawn), np.int64),
+    )
+
+
+def _look(material: Material) -> tuple[Floats, Floats]:
+    """Return the mean albedo and the emission of a material."""
+    base = np.asarray(material.base_colour[:3], np.float64)
+    texture = material.base_colour_texture
+    if texture is not None:
+        step = max(texture.shape[0] // 64, 1)
+        texels = texture[::step, ::step]
+        colours = LINEAR_OF_SRGB8[texels[..., :3]].reshape(-1, 3)
+        weight = texels[..., 3].reshape(-1, 1) / 255.0 if material.alpha == "mask" else 1.0
+        weight = np.broadcast_to(weight, (len(colours), 1))
+        pattern = (colours * weight).sum(axis=0) / max(float(weight.sum()), 1e-6)
+        base = base * pattern
+    finish = np.array([[material.roughness, material.metallic]])
+    if material.metallic_roughness_texture is not None:
+        finish = finish * material.metallic_roughness_texture[..., 1:3].mean(axis=(0, 1)) / 255.0
+    albedo = returned(base[None], finish[:, :1], finish[:, 1:])[0]
+    emission = np.asarray(material.emission, np.float32)
+    if texture is not None and emission.any():
+        emission = (emission * pattern).astype(np.float32)
+    return np.clip(albedo, 0.0, 0.95).astype(np.float32), emission
+
+
+def _panes(geometry: StaticGeometry) -> Panes | None:
+    glass = np.flatnonzero(~geometry.solid & (geometry.passes < 1.0))
+    if not len(glass):
+        return None
+    triangles = geometry.corners[glass]
+    nodes, order = tree_over(triangles)
+    triangles = triangles[order]
+    edges = np.concatenate(
+        [triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]],
+        axis=1,
+    )
+    return Panes(
+        nodes, np.ascontiguousarray(edges), np.ascontiguousarray(geometry.passes[glass][order])
+    )

@@ -1,0 +1,118 @@
+"""What rays meet before and after changes, and the lights they go to, as kernels take it.
+
+From `BakedScene` and changes to structures of `native.ray_types`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.light_shapes import LAMP_RADIUS_M, SUN_RADIUS, area_sides
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.scene_changes import Change, Standing, ray_instances, standing
+from sailenv_ros.native.ray_tracing import build_box_tree
+from sailenv_ros.native.ray_types import RAY_LIGHT, RAY_SCENE
+from sailenv_ros.native.render_types import address, record
+from sailenv_ros.types.lights import Light
+
+__all__ = ["RayWorld", "ray_light", "ray_world"]
+
+Floats = NDArray[np.float32]
+
+_KINDS = {"directional": 0, "point": 1, "spot": 2, "area": 3}
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RayWorld:
+    """A scene before and after, and everything that its `record` points to.
+
+    Attributes
+    ----------
+    record : (1,) RAY_SCENE
+    changed : list of Standing
+        What stands there before or after alone.
+    """
+
+    record: NDArray[np.void]
+    changed: list[Standing]
+    kept: tuple[object, ...]
+
+
+def ray_world(
+    scene: BakedScene,
+    changes: Sequence[Change],
+    before: Floats,
+    after: Floats,
+    radiance_of: Callable[[Change], Floats | None],
+) -> RayWorld:
+    """Put a scene and its changes together.
+
+    Parameters
+    ----------
+    before, after : (P, C) float32
+        Radiance of the patches; read whenever rays are followed.
+    radiance_of : callable
+        Gives (C,) float32, what something sends out that came.
+    """
+    moved = {change.id for change in changes if change.came is None}
+    charts = scene.baked.charts
+    resting = [
+        Standing(scene.shape(id_), charts[id_].world_from_body, charts[id_], None, True, True)
+        for id_ in scene.drawn
+        if id_ not in moved
+    ]
+    changed = [
+        thing for change in changes for thing in standing(scene, change, radiance_of(change))
+    ]
+    rows, boxes = ray_instances(resting)
+    nodes, order = build_box_tree(boxes) if len(rows) else (None, None)
+    changed_rows, _ = ray_instances(changed)
+    panes = scene.panes
+    made = record(
+        RAY_SCENE,
+        nodes_at=address(nodes),
+        order_at=address(order),
+        resting_at=address(rows),
+        changed_at=address(changed_rows),
+        glass_nodes_at=address(None if panes is None else panes.nodes),
+        glass_at=address(None if panes is None else panes.triangles),
+        passes_at=address(None if panes is None else panes.passes),
+        sky_at=address(scene.sky),
+        patches_at=address(scene.patches.of_map),
+        before_at=address(before),
+        after_at=address(after),
+        changed_count=len(changed_rows),
+        patch_count=len(before),
+        resting_count=len(rows),
+        glass_count=0 if panes is None else len(panes.triangles),
+        sky_height=scene.sky.shape[0],
+        sky_width=scene.sky.shape[1],
+        height=scene.side,
+        width=scene.side,
+        channels=before.shape[1],
+    )
+    return RayWorld(made, changed, (resting, rows, nodes, order, changed_rows, before, after))
+
+
+def ray_light(light: Light) -> NDArray[np.void]:
+    """Return (1,) RAY_LIGHT."""
+    row = record(
+        RAY_LIGHT,
+        position=light.position_m,
+        direction=light.direction,
+        range=max(light.range_m, 1e-6),
+        inner_cosine=np.cos(np.radians(light.inner_cone_deg)),
+        outer_cosine=np.cos(np.radians(light.outer_cone_deg)),
+        kind=_KINDS[light.type],
+    )
+    if light.type == "area":
+        row["across"][0], row["up"][0] = area_sides(light)
+    elif light.type == "directional":
+        row["range"] = SUN_RADIUS
+    else:
+        row["across"][0] = LAMP_RADIUS_M
+    return row

@@ -1,0 +1,324 @@
+"""Keeps the baked light of a running scene right. From each `WorldSnapshot` to one that is lit.
+
+What was baked and moves, goes or comes changes the light in the frame that shows it first, roughly;
+once everything stands still it is worked out with more rays, on a thread of its own or, where time
+stands still between frames, within a frame. Nothing is changed in the world: its bake stays.
+"""
+
+from __future__ import annotations
+
+import logging
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
+from sailenv_ros.light.relight.relighting import relit
+from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.native.library import native_is_usable, thread_count
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+
+__all__ = ["READY_FRAMES", "Relighter"]
+
+_log = logging.getLogger(__name__)
+
+REST_NS = 500_000_000
+"""Simulated time for which everything must stand still before light is refined within a frame."""
+
+STILL_NS, STILL_FRAMES = 250_000_000, 5
+"""In real time, what moved a second time rests again after this time or so many frames."""
+
+READY_FRAMES = 3
+"""In lockstep a scene is made ready for moves once so many frames were rendered: what renders
+fewer does not pay for it."""
+
+SMALLEST_M = 0.15
+"""Objects that came and are smaller in two directions change no light but their own."""
+
+_Key = tuple[tuple[int, bytes | None, object], ...]
+
+
+@dataclass(eq=False, slots=True)
+class _Relit:
+    """Light for one set of changes."""
+
+    key: _Key
+    light: BakedLight
+    refined: bool
+    since_ns: int
+
+
+@dataclass(eq=False, slots=True)
+class _Place:
+    """Where something was seen last."""
+
+    pose: bytes
+    moved_ns: int
+    frames: int = 0
+    in_motion: bool = False
+
+    def follow(self, pose: bytes, now_ns: int) -> None:
+        """Take in where it is now: what moves twice in a row is in motion until it rests."""
+        recent = self.frames < STILL_FRAMES and 0 <= now_ns - self.moved_ns < STILL_NS
+        if pose != self.pose:
+            self.pose, self.moved_ns, self.frames, self.in_motion = pose, now_ns, 0, recent
+            return
+        self.frames += 1
+        self.in_motion = self.in_motion and recent
+
+
+class Relighter:
+    """Follows one simulation; used by one thread."""
+
+    def __init__(self) -> None:
+        self._usable = native_is_usable()
+        self._pool: ThreadPoolExecutor | None = None
+        self._refining: tuple[_Key, Future[BakedLight]] | None = None
+        self._preparing: Future[BakedScene] | None = None
+        self._rendered = 0
+        self._original: SceneContents | None = None
+        self._scene: BakedScene | None = None
+        self._places: dict[int, _Place] = {}
+        self._of: tuple[SceneContents, list[tuple[int, int, NDArray[np.float64]]]] | None = None
+        self._light: _Relit | None = None
+        self._seen: WorldSnapshot | None = None
+        self._changes: list[Change] = []
+        self._painted: dict[int, Model] = {}
+        self._contents: tuple[SceneContents, BakedLight, SceneContents] | None = None
+
+    def watch(self, snapshot: WorldSnapshot) -> None:
+        """Take a scene's bake to heart, before anything moves or goes."""
+        contents = snapshot.contents
+        baked = contents.baked
+        if baked is None:
+            self._original = None
+        elif (
+            self._original is None
+            or self._original.baked is None
+            or (self._original.baked.layers is not baked.layers)
+        ):
+            self._original = contents
+        else:
+            return
+        self._scene, self._light, self._seen, self._of = None, None, None, None
+        self._places, self._refining, self._changes, self._painted = {}, None, [], {}
+        self._preparing, self._rendered = None, 0
+
+    def lit(
+        self,
+        snapshot: WorldSnapshot,
+        *,
+        wanted: bool,
+        lockstep: bool,
+        changed_ns: int | None = None,
+    ) -> WorldSnapshot:
+        """Return the same instant with the light that belongs to it.
+
+        Parameters
+        ----------
+        snapshot : WorldSnapshot
+            As the world has it, with the light that was baked.
+        wanted : bool
+            False if no picture is made: light that is out of date will do.
+        lockstep : bool
+            True refines light within a frame, so that frames do not depend on the wall clock.
+        changed_ns : int or None
+            When what stands still changed last [ns]: in lockstep light then depends on the world
+            alone, not on which frames were rendered. None takes the frame that shows it first.
+        """
+        self.watch(snapshot)
+        if self._original is None or not self._usable:
+            return snapshot
+        if wanted:
+            self._rendered += 1
+            soon = not lockstep or self._rendered > READY_FRAMES
+            if soon and self._scene is None and self._preparing is None:
+                # Beside the frames, so that the first move finds everything ready.
+                self._preparing = self._background().submit(_scene_of, self._original, 1)
+            self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
+        if self._light is None:
+            return snapshot
+        contents, light = snapshot.contents, self._light.light
+        if self._contents is None or self._contents[:2] != (contents, light):
+            environment = None if contents.baked is None else contents.baked.environment
+            lit = replace(contents, baked=replace(light, environment=environment))
+            self._contents = contents, light, lit
+        return replace(snapshot, contents=self._contents[2])
+
+    def close(self) -> None:
+        """Wait for what is being worked out; a second call does nothing."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=True, cancel_futures=True)
+            self._pool = None
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _bring_up_to_date(
+        self, snapshot: WorldSnapshot, *, lockstep: bool, changed_ns: int | None
+    ) -> None:
+        if snapshot is not self._seen:
+            self._changes = self._changed(snapshot, lockstep=lockstep)
+            self._seen = snapshot
+        key = _key_of(self._changes, self._painted)
+        if not key:
+            self._light = None
+            return
+        if self._light is None or self._light.key != key:
+            since_ns = snapshot.sim_time_ns if changed_ns is None else changed_ns
+            rested = lockstep and snapshot.sim_time_ns - since_ns >= REST_NS
+            light = self._relit(FINE if rested else QUICK)
+            self._light = _Relit(key, light, refined=rested, since_ns=since_ns)
+        elif not self._light.refined:
+            self._refine(self._light, snapshot, lockstep=lockstep)
+
+    def _refine(self, shown: _Relit, snapshot: WorldSnapshot, *, lockstep: bool) -> None:
+        if lockstep:
+            if snapshot.sim_time_ns - shown.since_ns >= REST_NS:
+                shown.light, shown.refined = self._relit(FINE), True
+            return
+        if self._refining is not None:
+            key, future = self._refining
+            if not future.done():
+                return
+            self._refining = None
+            if key == shown.key:
+                shown.light, shown.refined = future.result(), True
+                return
+        # One thread: the others draw meanwhile.
+        future = self._background().submit(
+            relit, self._prepared(), self._changes, FINE, threads=1, painted=self._painted
+        )
+        self._refining = shown.key, future
+
+    def _relit(self, quality: Quality) -> BakedLight:
+        return relit(
+            self._prepared(),
+            self._changes,
+            quality,
+            threads=thread_count(),
+            painted=self._painted,
+        )
+
+    def _background(self) -> ThreadPoolExecutor:
+        if self._pool is None:
+            self._pool = ThreadPoolExecutor(1, "relighting")
+        return self._pool
+
+    def _prepared(self) -> BakedScene:
+        if self._scene is None:
+            assert self._original is not None
+            if self._preparing is None:
+                self._scene = _scene_of(self._original, thread_count())
+            else:
+                self._scene = self._preparing.result()
+                self._preparing = None
+        return self._scene
+
+    def _changed(self, snapshot: WorldSnapshot, *, lockstep: bool) -> list[Change]:
+        """Return what stands elsewhere than when the light was baked."""
+        original, contents = self._original, snapshot.contents
+        assert original is not None
+        assert original.baked is not None
+        if self._of is None or self._of[0] is not contents:
+            self._of = contents, self._rows(contents)
+            self._painted = self._repainted(contents)
+        changes: list[Change] = []
+        places: dict[int, _Place] = {}
+        present = set()
+        for row, id_, baked_pose in self._of[1]:
+            present.add(id_)
+            pose = snapshot.world_from_body[row]
+            came = None
+            before: NDArray[np.float64] | None = baked_pose
+            if np.isnan(baked_pose[0, 0]):
+                drawn = contents.instances[row]
+                came, before = (drawn.model, drawn.scale), None
+            elif np.array_equal(pose, baked_pose):
+                continue
+            name, now_ns = pose.tobytes(), snapshot.sim_time_ns
+            place = places[id_] = self._places.get(id_) or _Place(name, now_ns)
+            place.follow(name, now_ns)
+            # In real time, what moves on is lit as things are that can move: at no cost.
+            after = None if place.in_motion and not lockstep else pose
+            if before is not None or after is not None:
+                changes.append(Change(id=id_, before=before, after=after, came=came))
+        self._places = places
+        charts = original.baked.charts
+        for drawn in original.instances:
+            id_ = drawn.instance.id
+            if id_ in charts and id_ not in present and drawn.model.triangle_count:
+                changes.append(Change(id=id_, before=charts[id_].world_from_body, after=None))
+        for change in [c for c in changes if c.came is not None and c.id in charts]:
+            # Another model or size in the place of what was baked.
+            gone = Change(id=change.id, before=charts[change.id].world_from_body, after=None)
+            changes.append(gone)
+        return changes
+
+    def _rows(self, contents: SceneContents) -> list[tuple[int, int, NDArray[np.float64]]]:
+        """Return row, id and baked pose of what light depends on; NaN where it is not baked."""
+        original = self._original
+        assert original is not None
+        assert original.baked is not None
+        assert contents.baked is not None
+        known = {drawn.instance.id: drawn for drawn in original.instances}
+        rows = []
+        for row, drawn in enumerate(contents.instances):
+            id_ = drawn.instance.id
+            before = known.get(id_)
+            same = before is not None and _has_shape_of(drawn, before)
+            if same and id_ in contents.baked.charts and drawn.model.triangle_count:
+                rows.append((row, id_, original.baked.charts[id_].world_from_body))
+            elif drawn.is_baked and drawn.model.triangle_count and not same:
+                size = np.ptp(drawn.model.bounds(), axis=0) * np.abs(drawn.scale)
+                if np.sort(size)[1] >= SMALLEST_M:
+                    rows.append((row, id_, np.full((4, 4), np.nan)))
+        return rows
+
+    def _repainted(self, contents: SceneContents) -> dict[int, Model]:
+        """Return the models of what was baked and is of other materials now."""
+        assert self._original is not None
+        assert self._original.baked is not None
+        charts = self._original.baked.charts
+        known = {drawn.instance.id: drawn for drawn in self._original.instances}
+        return {
+            drawn.instance.id: drawn.model
+            for drawn in contents.instances
+            if drawn.instance.id in charts
+            and drawn.model is not known[drawn.instance.id].model
+            and _has_shape_of(drawn, known[drawn.instance.id])
+        }
+
+
+def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
+    assert contents.baked is not None
+    return BakedScene(contents.baked, contents, threads)
+
+
+def _has_shape_of(drawn: DrawnInstance, before: DrawnInstance) -> bool:
+    """Return whether something has the very triangles that another has, of whatever material."""
+    if drawn.scale != before.scale or len(drawn.model.parts) != len(before.model.parts):
+        return False
+    return drawn.model is before.model or all(
+        now.mesh is then.mesh
+        or (
+            len(now.mesh.triangles) == len(then.mesh.triangles)
+            and np.array_equal(
+                now.mesh.positions[now.mesh.triangles], then.mesh.positions[then.mesh.triangles]
+            )
+        )
+        for now, then in zip(drawn.model.parts, before.model.parts, strict=True)
+    )
+
+
+def _key_of(changes: list[Change], painted: dict[int, Model]) -> _Key:
+    """Return what tells sets of changes apart; it keeps the models, which are told by identity."""
+    looks = tuple((id_, None, model) for id_, model in painted.items())
+    return looks + tuple(
+        (change.id, None if change.after is None else change.after.tobytes(), change.came)
+        for change in changes
+    )

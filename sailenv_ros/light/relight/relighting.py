@@ -1,0 +1,459 @@
+"""Baked light as it would be if some objects stood elsewhere. From `BakedScene` to `BakedLight`.
+
+Only rays that meet what moved, before or after, are followed: the difference between what they
+met and what they meet now is added to what was baked. A surface that was hidden, and what moved
+itself, gets its light anew. Results do not depend on the number of threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere, net
+from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.light.relight.quality import Quality
+from sailenv_ros.light.relight.ray_world import ray_light, ray_world
+from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.relight_kernels import (
+    gather_change,
+    gather_probe_change,
+    light_of_probes,
+    shine_change,
+    smooth_change,
+    spread_change,
+)
+from sailenv_ros.types.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, SunEdges
+from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.model import Model
+
+__all__ = ["relit"]
+
+Floats = NDArray[np.float32]
+
+LEAST_KNOWN = 0.004
+"""Share of what most patches get below which nothing is known of what others would get."""
+
+
+def relit(
+    scene: BakedScene,
+    changes: Sequence[Change],
+    quality: Quality,
+    *,
+    threads: int,
+    painted: Mapping[int, Model] | None = None,
+) -> BakedLight:
+    """Return the light of a scene in which some objects stand elsewhere.
+
+    Parameters
+    ----------
+    scene : BakedScene
+        As it was baked.
+    changes : sequence of Change
+        All that is different now.
+    quality : Quality
+    painted : mapping of int to Model or None
+        Models of the same shape with other materials, by instance id.
+    """
+    return _Relighting(scene, changes, quality, threads, painted or {}).run()
+
+
+class _Relighting:
+    """One set of changes; what the steps share."""
+
+    def __init__(
+        self,
+        scene: BakedScene,
+        changes: Sequence[Change],
+        quality: Quality,
+        threads: int,
+        painted: Mapping[int, Model],
+    ) -> None:
+        self._scene, self._changes, self._threads = scene, changes, threads
+        self._quality = quality
+        self._layers = scene.baked.layers
+        self._lights = [layer.light for layer in self._layers]
+        area = [(n, one) for n, one in enumerate(self._lights) if one and one.type == "area"]
+        self._area, self._area_lights = [n for n, _ in area], [light for _, light in area]
+        self._move()
+        self._bounces = quality.bounces if painted else 0
+        self._far = quality.with_far or bool(painted)
+        self._albedo, self._emission = scene.patches.albedo, scene.patches.emission
+        self._before, self._after = scene.sent, scene.sent.copy()
+        if painted:
+            self._albedo, self._emission = scene.looks_with(painted)
+            self._before = scene.sent.copy()
+            self._after = scene.radiance(
+                scene.irradiance, scene.direct, self._albedo, self._emission
+            )
+        self._world = ray_world(scene, changes, self._before, self._after, self._radiance_of_new)
+        self._rays = self._world.record
+
+    def run(self) -> BakedLight:
+        """Do everything."""
+        quality = self._quality
+        found, change, area = self._gather(self._wanted, quality.first_rays or quality.rays)
+        # Where surfaces were hidden, direct light is worked out anew, too.
+        irradiance, direct = self._scene.irradiance.copy(), self._scene.direct.copy()
+        _take(irradiance, found, change)
+        self._take_area(direct, found, area)
+        shone = self._shine(found, direct)
+        self._send_out(irradiance, direct)
+        if quality.first_rays:
+            wanted = np.where(found == 2, 2, self._wanted)
+            found, change, area = self._gather(wanted, quality.rays)
+        found_far, change, far, near = self._bounced(found, change, direct)
+        if quality.by_texels:
+            layers = [
+                self._with_direct(layer, shone.get(number))
+                for number, layer in enumerate(self._spread(found_far, change, area, {}))
+            ]
+        else:
+            layers = self._spread(found_far, change, area, shone)
+        layers = self._with_probes(layers, far, near)
+        return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
+
+    def _send_out(self, irradiance: Floats, direct: Floats) -> None:
+        self._after[:] = self._scene.radiance(
+            np.maximum(irradiance, 0.0), direct, self._albedo, self._emission
+        )
+
+    def _bounced(
+        self, found: NDArray[np.uint8], change: Floats, direct: Floats
+    ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
+        """Add what comes from surfaces that became brighter or darker; also by further bounces."""
+        share = self._share_of_probes() if self._bounces else None
+        for left in range(self._bounces, -1, -1):
+            far, near = self._probe_change()
+            found_far, changed = found.copy(), change.copy()
+            if self._far:
+                self._add_far(found_far, changed, far, share)
+            if left:
+                irradiance = self._scene.irradiance.copy()
+                _take(irradiance, found_far, changed)
+                self._send_out(irradiance, direct)
+        return found_far, changed, far, near
+
+    def _share_of_probes(self) -> Floats:
+        """Return (P, 1): what patches get by the bake, over what they get by way of the probes.
+
+        Probes within and behind surfaces know nothing, and four numbers are not all directions:
+        near walls and in corners light that comes by the probes falls short.
+        """
+        before, after = self._before.copy(), self._after.copy()
+        self._after[:], self._before[:] = before, 0.0
+        total, _ = self._probe_change()
+        self._before[:], self._after[:] = before, after
+        by_probes = self._of_probes(total, self._patch_positions, self._patch_normals)
+        # What the sky gives straight is no light of surfaces.
+        lamps = [n for n, light in enumerate(self._lights) if light is not None]
+        channels = [3 * n + colour for n in lamps for colour in range(3)]
+        known = self._scene.irradiance[:, channels].sum(axis=1)
+        guessed = by_probes[:, channels].sum(axis=1)
+        least = LEAST_KNOWN * float(np.percentile(known, 90)) if known.any() else np.inf
+        share = np.where(guessed > least, known / np.maximum(guessed, 1e-12), 1.0)
+        return np.clip(share, 0.25, 4.0).astype(np.float32)[:, None]
+
+    # -- what is there -----------------------------------------------------------------------
+
+    def _move(self) -> None:
+        """Put the texels and patches of what moved to where they are now."""
+        scene, patches = self._scene, self._scene.patches
+        self._positions, self._normals = scene.positions, scene.normals
+        self._patch_positions, self._patch_normals = patches.positions, patches.normals
+        self._wanted = np.ones(len(patches.size), np.uint8)
+        moved = [change for change in self._changes if change.came is None]
+        if moved:
+            self._positions, self._normals = scene.positions.copy(), scene.normals.copy()
+            self._patch_positions = patches.positions.copy()
+            self._patch_normals = patches.normals.copy()
+        for change in moved:
+            own, own_patches = scene.owners == change.id, patches.owners == change.id
+            self._wanted[own_patches] = 0 if change.after is None else 2
+            if change.after is None:
+                continue
+            motion = change.after @ invert(scene.baked.charts[change.id].world_from_body)
+            for points, directions, chosen in (
+                (self._positions, self._normals, own),
+                (self._patch_positions, self._patch_normals, own_patches),
+            ):
+                points[chosen] = points[chosen] @ motion[:3, :3].T + motion[:3, 3]
+                directions[chosen] = directions[chosen] @ motion[:3, :3].T
+
+    def _radiance_of_new(self, change: Change) -> Floats | None:
+        """Return (C,) float32: what an object sends out that has no texels, by its colour."""
+        if change.came is None or change.after is None:
+            return None
+        point = change.after[None, :3, 3].astype(np.float32)
+        up = np.array([[0.0, 0.0, 1.0]], np.float32)
+        probes = np.concatenate(
+            [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in self._layers],
+            axis=-1,
+        )
+        light = np.maximum(self._of_probes(probes, point, up)[0], 0.0).reshape(-1, 3)
+        return np.ascontiguousarray((light * albedo_of_model(change.came[0])).reshape(-1))
+
+    def _charts(self) -> dict[int, LightChart]:
+        charts = dict(self._scene.baked.charts)
+        for change in self._changes:
+            if change.came is not None:
+                continue
+            if change.after is None:
+                charts.pop(change.id, None)
+            else:
+                charts[change.id] = replace(charts[change.id], world_from_body=change.after)
+        return charts
+
+    # -- light ---------------------------------------------------------------------------------
+
+    def _gather(
+        self, wanted: NDArray[np.integer], rays: int
+    ) -> tuple[NDArray[np.uint8], Floats, Floats]:
+        """Gather at all patches, and smooth what was found."""
+        if not self._changes:
+            patches = len(wanted)
+            empty = np.zeros((patches, len(self._area)), np.float32)
+            return np.zeros(patches, np.uint8), np.zeros_like(self._before), empty
+        lights = np.concatenate(
+            [np.zeros(0, RAY_LIGHT), *(ray_light(light) for light in self._area_lights)]
+        )
+        found, change, area, nearness = gather_change(
+            self._rays, self._patch_positions, self._patch_normals, wanted.astype(np.uint8),
+            net(rays), lights, net(self._quality.area_rays), self._quality.least,
+            threads=self._threads,
+        )  # fmt: skip
+        # Both in one go: they share their neighbours.
+        smooth_found, both = smooth_change(
+            self._scene.patches.of_map, self._patches(), self._quality.smoothing, found, nearness,
+            np.concatenate([change, area], axis=1), threads=self._threads,
+        )  # fmt: skip
+        channels = change.shape[1]
+        change, area = (np.ascontiguousarray(part) for part in np.split(both, [channels], axis=1))
+        return smooth_found, change, area
+
+    def _patches(self) -> tuple[Floats, Floats, Floats, NDArray[np.int32]]:
+        patches = self._scene.patches
+        return patches.places, self._patch_positions, self._patch_normals, patches.owners
+
+    def _take_area(self, direct: Floats, found: NDArray[np.uint8], area: Floats) -> None:
+        for place, number in enumerate(self._area):
+            column = direct[:, number : number + 1]
+            _take(column, found, area[:, place : place + 1])
+            np.maximum(column, 0.0, out=column)
+
+    def _shine(
+        self, found: NDArray[np.uint8], direct: Floats
+    ) -> dict[int, tuple[NDArray[np.uint8], Floats, Floats]]:
+        """Find what changes of lamps and sun, and bring means of patches up to date.
+
+        Returns
+        -------
+        shone : dict of int to tuple
+            By layer: state, light and share of it that arrives, of texels or of patches.
+        """
+        patches, shone = self._scene.patches, {}
+        by_texels = self._quality.by_texels
+        places = (
+            (self._positions, self._normals, patches.of_texel)
+            if by_texels
+            else (
+                self._patch_positions,
+                self._patch_normals,
+                np.arange(len(patches.size), dtype=np.int32),
+            )
+        )
+        for number, light in enumerate(self._lights):
+            if light is None or light.type == "area" or not self._changes:
+                continue
+            state, value, share = shine_change(
+                self._rays, ray_light(light), *places,
+                found, net(self._quality.light_rays), threads=self._threads,
+            )  # fmt: skip
+            if by_texels:
+                old = self._layers[number].direct.reshape(-1)[self._scene.places].astype(np.float32)
+            else:
+                old = direct[:, number]
+            new = np.where(state == 2, value, old + value)
+            difference = np.where(state > 0, np.maximum(new, 0.0) - old, 0.0)
+            if by_texels:
+                difference = patches.means(difference)
+            direct[:, number] = np.maximum(direct[:, number] + difference, 0.0)
+            shone[number] = state, value, share
+        return shone
+
+    def _probe_change(self) -> tuple[Floats, Floats]:
+        """Return (Z, Y, X, 4, C) float32 twice: see `gather_probe_change`."""
+        grid = self._scene.baked.probes
+        points = _probe_points(grid)
+        far, near = gather_probe_change(
+            self._rays, points, fibonacci_sphere(self._quality.probe_rays),
+            with_far=self._far, threads=self._threads,
+        )  # fmt: skip
+        near[self._inside(points)] = 0.0
+        shape = (*grid.shape, 4, far.shape[-1])
+        return far.reshape(shape), near.reshape(shape)
+
+    def _inside(self, points: Floats) -> NDArray[np.bool_]:
+        """Return which points lie in the box of something that changes: nothing is known there."""
+        inside = np.zeros(len(points), bool)
+        for thing in self._world.changed:
+            if not thing.shape.kept:
+                continue
+            root = thing.shape.kept[0][0]
+            inverse = invert(thing.pose)
+            own = points @ inverse[:3, :3].T + inverse[:3, 3]
+            inside |= ((own > root["low"]) & (own < root["high"])).all(axis=1)
+        return inside
+
+    def _of_probes(self, probes: Floats, points: Floats, normals: Floats) -> Floats:
+        grid = self._scene.baked.probes
+        return light_of_probes(
+            np.ascontiguousarray(probes), grid.origin_m, grid.spacing_m, points, normals,
+            threads=self._threads,
+        )  # fmt: skip
+
+    def _add_far(
+        self, found: NDArray[np.uint8], change: Floats, far: Floats, share: Floats | None
+    ) -> None:
+        """Add what comes from surfaces whose own light has changed, where it is seen."""
+        light = self._of_probes(far, self._patch_positions, self._patch_normals)
+        if share is not None:
+            light *= share
+        seen = np.abs(light).sum(axis=1) > self._quality.least_far * self._scene.brightest
+        chosen = seen & (found < 2) & (self._wanted == 1)
+        change[chosen] += light[chosen]
+        found[chosen] = 1
+
+    # -- results -------------------------------------------------------------------------------
+
+    def _spread(
+        self,
+        found: NDArray[np.uint8],
+        change: Floats,
+        area: Floats,
+        shone: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
+    ) -> list[LightLayer]:
+        """Bring texels up to date by what was found at patches.
+
+        Parameters
+        ----------
+        shone : dict of int to tuple
+            What lamps and sun give to patches, by layer; see `_shine`.
+        """
+        bounced = [layer.bounced.copy() for layer in self._layers]
+        direct = {number: self._layers[number].direct.copy() for number in self._area}
+        columns = [change, area]
+        shares: dict[int, NDArray[np.float16]] = {}
+        for number, (state, value, share) in shone.items():
+            if not state.any():
+                continue
+            # What is worked out anew is so for all lights alike.
+            found = np.maximum(found, state)
+            layer = self._layers[number]
+            direct[number] = layer.direct.copy()
+            columns.append(np.where(state > 0, value, np.float32(0.0))[:, None])
+            if layer.visibility is not None:
+                shares[number] = layer.visibility.astype(np.float16)
+                columns.append(
+                    np.where(state > 0, np.float32(255.0) * share, np.float32(0.0))[:, None]
+                )
+        maps = [*bounced]
+        for number, texels in direct.items():
+            maps.append(texels)
+            if number in shares:
+                maps.append(shares[number])
+        # In one go: they share their neighbours.
+        self._spread_over(found, np.concatenate(columns, axis=1), maps)
+        result = []
+        for number, (layer, texels) in enumerate(zip(self._layers, bounced, strict=True)):
+            lit = replace(layer, bounced=texels)
+            if number in shares:
+                bytes_ = np.rint(np.minimum(shares[number], np.float16(255.0))).astype(np.uint8)
+                lit = _shown(lit, direct[number], bytes_)
+            elif number in direct:
+                lit = replace(lit, direct=direct[number])
+            result.append(lit)
+        return result
+
+    def _spread_over(
+        self,
+        found: NDArray[np.uint8],
+        change: Floats,
+        layers: list[NDArray[np.float16]],
+    ) -> None:
+        scene, patches = self._scene, self._scene.patches
+        spread_change(
+            scene.side, (scene.places, self._positions, self._normals, scene.owners),
+            patches.of_map,
+            self._patches(), found, change, layers, threads=self._threads,
+        )  # fmt: skip
+
+    def _with_direct(
+        self, layer: LightLayer, shone: tuple[NDArray[np.uint8], Floats, Floats] | None
+    ) -> LightLayer:
+        if shone is None:
+            return layer
+        state, value, share = shone
+        direct = layer.direct.copy()
+        _put(direct, self._scene.places, state, value, 6e4)
+        if layer.visibility is None:
+            return replace(layer, direct=direct)
+        visibility = layer.visibility.copy()
+        _put(visibility, self._scene.places, state, 255.0 * share, 255.0)
+        return _shown(layer, direct, visibility)
+
+    def _with_probes(self, layers: list[LightLayer], far: Floats, near: Floats) -> list[LightLayer]:
+        result = []
+        for number, layer in enumerate(layers):
+            own = slice(3 * number, 3 * number + 3)
+            probes = layer.probe_bounced + far[..., own] + near[..., own]
+            probes[..., 0, :] = np.maximum(probes[..., 0, :], 0.0)
+            result.append(replace(layer, probe_bounced=probes.astype(np.float16)))
+        return result
+
+
+def _take(values: Floats, found: NDArray[np.uint8], change: Floats) -> None:
+    """Add what has changed, and replace what was worked out anew."""
+    values[found == 1] += change[found == 1]
+    values[found == 2] = change[found == 2]
+
+
+def _put(
+    layer: NDArray[np.generic],
+    places: NDArray[np.int32],
+    state: NDArray[np.uint8],
+    value: Floats,
+    most: float,
+) -> None:
+    flat = layer.reshape(-1)
+    chosen = np.flatnonzero(state)
+    at = places[chosen]
+    kept = np.where(state[chosen] == 1, flat[at].astype(np.float32), 0.0)
+    new = np.clip(kept + value[chosen], 0.0, most)
+    flat[at] = np.rint(new) if layer.dtype == np.uint8 else new
+
+
+def _shown(
+    layer: LightLayer, direct: NDArray[np.float16], visibility: NDArray[np.uint8]
+) -> LightLayer:
+    """Return a layer of a light whose share that arrives is known, with other shares."""
+    edges = _elsewhere(layer.edges, visibility != layer.visibility)
+    return replace(layer, direct=direct, visibility=visibility, edges=edges)
+
+
+def _elsewhere(edges: SunEdges | None, changed: NDArray[np.bool_]) -> SunEdges | None:
+    """Return edges of shadows without those at texels whose light has changed."""
+    if edges is None:
+        return None
+    index = np.where(changed, np.int32(-1), edges.index)
+    return replace(edges, index=np.ascontiguousarray(index, np.int32))
+
+
+def _probe_points(grid: ProbeGrid) -> Floats:
+    z, y, x = np.indices(grid.shape).reshape(3, -1)
+    points = np.stack([x, y, z], axis=1) * np.asarray(grid.spacing_m) + np.asarray(grid.origin_m)
+    return np.ascontiguousarray(points, np.float32)

@@ -1,0 +1,99 @@
+"""What stands elsewhere than where its light was baked. From poses to changes and back to rays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.ray_shapes import Shape
+from sailenv_ros.native.ray_types import RAY_INSTANCE
+from sailenv_ros.native.render_types import address
+from sailenv_ros.types.baked_light import LightChart
+from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.model import Model
+
+__all__ = ["Change", "Standing", "ray_instances", "standing"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Change:
+    """An object that was baked and moved or went, or that came.
+
+    Attributes
+    ----------
+    id : int
+        Of the instance.
+    before, after : (4, 4) float64 or None
+        Where it stands in the bake and now; None for nowhere.
+    came : tuple or None
+        Model and scale of an object that has no baked light.
+    """
+
+    id: int
+    before: NDArray[np.float64] | None
+    after: NDArray[np.float64] | None
+    came: tuple[Model, tuple[float, float, float]] | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Standing:
+    """One thing that rays may meet."""
+
+    shape: Shape
+    pose: NDArray[np.float64]
+    chart: LightChart | None
+    radiance: NDArray[np.float32] | None
+    before: bool
+    after: bool
+
+
+def standing(
+    scene: BakedScene, change: Change, radiance: NDArray[np.float32] | None
+) -> list[Standing]:
+    """Return what a change takes away and puts there."""
+    if change.came is not None:
+        model, scale = change.came
+        shape = scene.shape_of(model, scale, None)
+        assert change.after is not None
+        return [Standing(shape, change.after, None, radiance, False, True)]
+    shape, chart = scene.shape(change.id), scene.baked.charts[change.id]
+    things = []
+    if change.before is not None:
+        things.append(Standing(shape, change.before, chart, None, True, False))
+    if change.after is not None:
+        things.append(Standing(shape, change.after, chart, None, False, True))
+    return things
+
+
+def ray_instances(things: list[Standing]) -> tuple[NDArray[np.void], NDArray[np.float32]]:
+    """Return (N,) RAY_INSTANCE, and (N, 6) float32 boxes around them; `things` keeps the memory."""
+    rows = np.zeros(len(things), RAY_INSTANCE)
+    boxes = np.zeros((len(things), 6), np.float32)
+    for row, box, thing in zip(rows, boxes, things, strict=True):
+        shape, pose = thing.shape, thing.pose
+        row["shape_at"] = address(shape.record)
+        row["radiance_at"] = address(thing.radiance)
+        row["body_from_world"] = invert(pose)[:3].reshape(-1)
+        centre = pose[:3, :3] @ shape.centre + pose[:3, 3]
+        row["sphere"] = (*centre, shape.radius * 1.0001 + 1e-4)
+        if thing.chart is not None:
+            row["chart"] = (*thing.chart.offset, *thing.chart.scale)
+            row["has_chart"] = 1
+        row["before"], row["after"] = thing.before, thing.after
+        box[:3], box[3:] = _box(shape, pose)
+    return rows, boxes
+
+
+def _box(
+    shape: Shape, pose: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if not shape.kept:
+        return pose[:3, 3], pose[:3, 3]
+    root = shape.kept[0][0]
+    low, high = root["low"].astype(np.float64), root["high"].astype(np.float64)
+    middle = pose[:3, :3] @ ((low + high) / 2.0) + pose[:3, 3]
+    half = np.abs(pose[:3, :3]) @ ((high - low) / 2.0) + 1e-4
+    return middle - half, middle + half

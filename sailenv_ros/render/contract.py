@@ -1,0 +1,86 @@
+"""What every renderer is: the contract between the simulation and a back end.
+
+Imports no graphics library, so that the fallback and the simulation can share it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, Protocol, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+
+__all__ = ["BACKEND_NAMES", "BackendName", "RenderBackend", "RenderedViews"]
+
+BackendName: TypeAlias = Literal["auto", "native", "gl", "tiny"]
+
+BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
+"""What can be asked for."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class RenderedViews:
+    """What one call of `RenderBackend.render` made.
+
+    Attributes
+    ----------
+    views : mapping of str to array
+        The wanted views as `frame.VIEWS` says; fresh arrays, the caller's own.
+    depth : (H, W) float32 or None
+        The depth view, wanted or not, if it was made on the way: the next frame's past.
+    timings_s : mapping of str to float
+        Wall time of each stage [s].
+    """
+
+    views: Mapping[str, NDArray[Any]]
+    depth: NDArray[np.float32] | None
+    timings_s: Mapping[str, float] = field(default_factory=dict)
+
+
+class RenderBackend(Protocol):
+    """A renderer; used by the thread that made it and by no other."""
+
+    @property
+    def description(self) -> str:
+        """One line: back end, device, driver."""
+
+    @property
+    def software(self) -> bool:
+        """True if no graphics hardware is used."""
+
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that it can make, in the order of `frame.VIEWS`."""
+
+    def render(
+        self,
+        snapshot: WorldSnapshot,
+        previous: Observation | None,
+        camera: Camera,
+        views: Iterable[str],
+    ) -> RenderedViews:
+        """Make the wanted views of one camera.
+
+        Parameters
+        ----------
+        snapshot : WorldSnapshot
+            The world now.
+        previous : Observation or None
+            What the same camera saw before; None if flow has nothing to refer to.
+        camera : Camera
+        views : iterable of str
+            Names in `frame.VIEWS`.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            If there is no such view, or none that this renderer can make.
+        """
+
+    def close(self) -> None:
+        """Free everything; a second call does nothing."""

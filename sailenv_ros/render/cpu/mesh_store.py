@@ -1,0 +1,97 @@
+"""Meshes as the native kernels read them; each is made once and kept while it is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.render_types import CLUSTER
+from sailenv_ros.render.scene.clusters import clusters_of
+from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, corners_of
+
+__all__ = ["MeshArrays", "MeshStore"]
+
+_PADDING = 8
+"""Corners are read eight at a time."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MeshArrays:
+    """One mesh.
+
+    Attributes
+    ----------
+    drawn : DrawnMesh
+        Kept: its number is unique only while it lives.
+    corners : (3, K + 8) float32
+        Positions [m], each once, coordinate by coordinate.
+    corner_count : int
+    corner_indices, vertex_indices : (3 M,) uint32
+        Triangles in the order of the clusters.
+    vertices : (V, 8) float32
+        Normal, uv, place in the light map, 0.
+    clusters : (C,) CLUSTER
+    sphere : (4,) float64
+        Centre and radius of a sphere around everything [m].
+    """
+
+    drawn: DrawnMesh
+    corners: NDArray[np.float32]
+    corner_count: int
+    corner_indices: NDArray[np.uint32]
+    vertex_indices: NDArray[np.uint32]
+    vertices: NDArray[np.float32]
+    clusters: NDArray[np.void]
+    sphere: NDArray[np.float64]
+
+
+class MeshStore:
+    """The meshes of the scenes that were shown last."""
+
+    def __init__(self) -> None:
+        self._meshes: dict[tuple[int, int], MeshArrays] = {}
+
+    def get(self, drawn: DrawnMesh) -> MeshArrays:
+        """Return a mesh; it is made if it is not there."""
+        found = self._meshes.get(drawn.key)
+        if found is None:
+            found = self._meshes[drawn.key] = _mesh_arrays(drawn)
+        return found
+
+    def trim(self, shown: Iterable[DrawnMesh]) -> None:
+        """Forget what is not shown, if that is more than what is."""
+        kept = {drawn.key for drawn in shown}
+        sizes = {key: len(mesh.vertices) for key, mesh in self._meshes.items()}
+        if sum(sizes.values()) > 2 * sum(sizes[key] for key in kept):
+            self._meshes = {key: mesh for key, mesh in self._meshes.items() if key in kept}
+
+
+def _mesh_arrays(drawn: DrawnMesh) -> MeshArrays:
+    made = drawn.interleaved()
+    triangles, clusters = clusters_of(made["position"], drawn.triangles)
+    corners, numbers = corners_of(made["position"], triangles)
+    columns = np.zeros((3, len(corners) + _PADDING), np.float32)
+    columns[:, : len(corners)] = corners.T
+    vertices = np.zeros((len(made), 8), np.float32)
+    vertices[:, :3] = made["normal"]
+    vertices[:, 3:5] = made["uv"]
+    vertices[:, 5:7] = made["light_uv"]
+    sphere = np.zeros(4)
+    if len(corners):
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        sphere[:3] = 0.5 * (low.astype(np.float64) + high)
+        # Kernels read it in single precision.
+        sphere[3] = 1.0001 * np.linalg.norm(corners - sphere[:3], axis=1).max() + 1e-6
+    return MeshArrays(
+        drawn=drawn,
+        corners=columns,
+        corner_count=len(corners),
+        corner_indices=np.ascontiguousarray(numbers.reshape(-1), np.uint32),
+        vertex_indices=np.ascontiguousarray(triangles.reshape(-1), np.uint32),
+        vertices=vertices,
+        clusters=np.ascontiguousarray(clusters.astype(CLUSTER)),
+        sphere=sphere,
+    )

@@ -1,0 +1,271 @@
+"""The native renderer: draws on the processor, without OpenGL.
+
+A snapshot, a camera and names of views come in, arrays go out. What no wanted view needs is not
+drawn.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import RenderError
+from sailenv_ros.native.drawing import Drawing
+from sailenv_ros.native.library import native_library, thread_count
+from sailenv_ros.native.render_types import PART, VIEW, record
+from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.cpu.frame_light import FrameLight
+from sailenv_ros.render.cpu.part_table import PartTable
+from sailenv_ros.render.picture import annotate as ground_truth
+from sailenv_ros.render.picture.finishing import Finisher
+from sailenv_ros.render.picture.half_pixels import half_pixel_camera
+from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, Window
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.views import VIEWS, checked_views, views_of
+
+__all__ = ["NativeRenderer", "native_view"]
+
+_ATTRIBUTES = ("normals", "albedo")
+"""Views that the library writes as they are; `Drawing.picture` takes an array for each."""
+
+_NO_GLASS = np.zeros(0, PART)
+
+
+class NativeRenderer:
+    """Draws with the native library; belongs to the thread that makes it.
+
+    Parameters
+    ----------
+    threads : int or None
+        How many threads draw; None for `library.thread_count`. Frames do not depend on it.
+    table : PartTable or None
+        With stores of meshes and textures that outlive this renderer; None for its own.
+
+    Raises
+    ------
+    NativeLibraryError
+        If there is no native library.
+    """
+
+    def __init__(self, *, threads: int | None = None, table: PartTable | None = None) -> None:
+        self._threads = thread_count() if threads is None else threads
+        self._drawing = Drawing(self._threads)
+        self._table = PartTable() if table is None else table
+        self._light = FrameLight(self._drawing, self._threads)
+        self._finisher = Finisher(self._threads)
+        self._mirrors = FlatMirrors()
+        self._closed = False
+
+    @property
+    def description(self) -> str:
+        """One line: back end, instruction set, threads."""
+        threads = "1 thread" if self._threads == 1 else f"{self._threads} threads"
+        return f"native renderer on the CPU ({native_library().instruction_set}, {threads})"
+
+    @property
+    def part_table(self) -> PartTable:
+        """The meshes that are shown; for who draws in the same thread."""
+        return self._table
+
+    @property
+    def software(self) -> bool:
+        """True: no graphics hardware is used."""
+        return True
+
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that it can make, in the order of `frame.VIEWS`."""
+        made = {*views_of("lighting", "annotation"), *_ATTRIBUTES}
+        return tuple(view for view in VIEWS if view in made)
+
+    def render(
+        self,
+        snapshot: WorldSnapshot,
+        previous: Observation | None,
+        camera: Camera,
+        views: Iterable[str],
+    ) -> RenderedViews:
+        """Make the wanted views of one camera; see `RenderBackend.render`."""
+        if self._closed:
+            raise RenderError("the renderer was closed")
+        wanted = frozenset(checked_views(views, supported=self.supported_views))
+        needs_past_depth = any(VIEWS[view].needs_past_depth for view in wanted)
+        if needs_past_depth and previous is not None and previous.depth is None:
+            previous = self._with_depth(previous)
+        timings: dict[str, float] = {}
+        arrays = self._draw(snapshot, camera, wanted, timings)
+        return self._finisher.finish(
+            arrays,
+            snapshot,
+            previous,
+            camera,
+            wanted,
+            lambda: self._table.at_baked_pose(snapshot),
+            timings,
+        )
+
+    def close(self) -> None:
+        """Free everything; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        self._drawing.close()
+
+    def _draw(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        wanted: frozenset[str],
+        timings: dict[str, float],
+    ) -> dict[str, NDArray[Any]]:
+        """Draw surfaces, and what else is wanted."""
+        began = time.perf_counter()
+        table = self._table
+        table.show(snapshot.contents)
+        marked = time.perf_counter()
+        timings["upload"] = marked - began
+        light = None
+        if "rgb" in wanted:
+            light = self._light.at(snapshot, table, partial(self._radiance, snapshot))
+            timings["shadow"] = time.perf_counter() - marked
+            marked = time.perf_counter()
+        poses = np.ascontiguousarray(snapshot.world_from_body)
+        at_baked_pose = table.at_baked_pose(snapshot)
+        instances = table.instances(poses, at_baked_pose)
+        # With supersampling the picture is drawn apart: ground truth is of pixel centres.
+        sampled = light is not None and camera.picture.supersampling > 1
+        height, width = camera.intrinsics.height, camera.intrinsics.width
+        arrays: dict[str, NDArray[Any]] = {"surface": np.empty((height, width, 2), np.float32)}
+        for view in _ATTRIBUTES:
+            if view in wanted:
+                arrays[view] = np.empty(VIEWS[view].shape(height, width), VIEWS[view].dtype)
+        radiance = None
+        if light is not None and not sampled:
+            radiance = arrays["rgb"] = np.empty((height, width, 4), np.float16)
+        self._drawing.picture(
+            native_view(camera),
+            instances,
+            table.opaque,
+            table.glass,
+            None if radiance is None else light,
+            surface=arrays["surface"],
+            radiance=radiance,
+            **{view: arrays.get(view) for view in _ATTRIBUTES},
+        )
+        if sampled:
+            fine = camera.of_samples()
+            height, width = fine.intrinsics.height, fine.intrinsics.width
+            arrays["rgb"] = np.empty((height, width, 4), np.float16)
+            if camera.picture.occlusion_strength > 0.0:
+                arrays["samples"] = np.empty((height, width, 2), np.float32)
+            self._drawing.picture(
+                native_view(fine),
+                instances,
+                table.opaque,
+                table.glass,
+                light,
+                surface=arrays.get("samples"),
+                radiance=arrays["rgb"],
+            )
+        if light is not None:
+            self._reflect(snapshot, fine if sampled else camera, light, arrays)
+        timings["draw"] = time.perf_counter() - marked
+        return arrays
+
+    def _reflect(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        light: NDArray[np.void],
+        arrays: dict[str, NDArray[Any]],
+    ) -> None:
+        """Put into the picture what its flat mirrors show."""
+        mirrors = self._mirrors.seen(snapshot, camera)
+        if not mirrors:
+            return
+        poses = np.ascontiguousarray(snapshot.world_from_body)
+        at_baked_pose = self._table.at_baked_pose(snapshot)
+
+        def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
+            view = native_view(behind, window)
+            size = int(view["height"][0]), int(view["width"][0])
+            radiance = np.empty((*size, 4), np.float16)
+            instances = self._table.instances(poses, at_baked_pose, only)
+            opaque = self._table.opaque
+            self._drawing.picture(view, instances, opaque, _NO_GLASS, light, radiance=radiance)
+            return radiance
+
+        def surface_of(view: NDArray[np.void]) -> NDArray[np.float32]:
+            surface = np.empty((int(view["height"][0]), int(view["width"][0]), 2), np.float32)
+            instances = self._table.instances(poses, at_baked_pose)
+            opaque = self._table.opaque
+            self._drawing.picture(view, instances, opaque, _NO_GLASS, None, surface=surface)
+            return surface
+
+        def samples(window: Window) -> NDArray[np.float32]:
+            return surface_of(native_view(half_pixel_camera(camera), closer_window(window)))
+
+        surface = arrays["samples" if "samples" in arrays else "surface"]
+        if surface.shape[:2] != arrays["rgb"].shape[:2]:
+            surface = surface_of(native_view(camera))
+        smoothed = camera.picture.smooth_edges
+        reflect(mirrors, camera, arrays["rgb"], surface, look, samples if smoothed else None)
+
+    def _radiance(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        light: NDArray[np.void],
+        only: NDArray[np.bool_],
+        glows: bool,
+    ) -> NDArray[np.float32]:
+        """Draw linear radiance of some instances, without glass, as an array (H, W, 3)."""
+        parts = self._table.unlit
+        if not glows:
+            parts = parts.copy()
+            parts["emission"] = 0.0
+        poses = np.ascontiguousarray(snapshot.world_from_body)
+        at_baked_pose = self._table.at_baked_pose(snapshot)
+        radiance = np.empty((camera.intrinsics.height, camera.intrinsics.width, 4), np.float16)
+        self._drawing.picture(
+            native_view(camera),
+            self._table.instances(poses, at_baked_pose, only),
+            parts,
+            _NO_GLASS,
+            light,
+            radiance=radiance,
+        )
+        return radiance[..., :3].astype(np.float32)
+
+    def _with_depth(self, previous: Observation) -> Observation:
+        """Draw the depth that an earlier frame was not asked for; its poses say it."""
+        arrays = self._draw(previous.snapshot, previous.camera, frozenset({"depth"}), {})
+        truth = ground_truth.annotate(
+            arrays["surface"], previous.snapshot, None, previous.camera, frozenset()
+        )
+        return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
+
+
+def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void]:
+    """Return (1,) VIEW of a camera or of a window of it, as the native kernels read it."""
+    lens = camera.intrinsics
+    rows, columns = window or (slice(0, lens.height), slice(0, lens.width))
+    return record(
+        VIEW,
+        camera_from_world=camera.camera_from_world.reshape(-1),
+        world_from_camera=camera.world_from_camera.reshape(-1),
+        focal=lens.fx,
+        cx=lens.cx - columns.start,
+        cy=lens.cy - rows.start,
+        far_m=lens.far_m,
+        width=columns.stop - columns.start,
+        height=rows.stop - rows.start,
+        smooth_edges=camera.picture.smooth_edges,
+    )

@@ -1,0 +1,1 @@
+"""The OpenGL renderer; the only package that imports moderngl."""

@@ -1,0 +1,71 @@
+"""GLSL programs: sources with includes and switches, compiled once per context."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import moderngl
+
+from sailenv_ros.errors import RenderError
+
+__all__ = ["ProgramCache", "shader_source"]
+
+_INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
+
+
+@cache
+def _read(name: str) -> str:
+    text = (resources.files("sailenv_ros.render.gl") / "shaders" / name).read_text(encoding="utf-8")
+    return _INCLUDE.sub(lambda match: _read(match[1]), text)
+
+
+def shader_source(name: str, switches: tuple[tuple[str, int], ...] = ()) -> str:
+    """Return a shader's text with its includes, the version line and the switches defined."""
+    defines = "".join(f"#define {key} {value}\n" for key, value in switches)
+    return f"#version 430\n{defines}{_read(name)}"
+
+
+class ProgramCache:
+    """Compiles each combination of shaders and switches at most once."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._programs: dict[Any, moderngl.Program] = {}
+
+    def get(self, vertex: str, fragment: str, **switches: int) -> moderngl.Program:
+        """Return the program of two shader files.
+
+        Raises
+        ------
+        RenderError
+            If the driver does not accept it; carries the driver's words.
+        """
+        ordered = tuple(sorted(switches.items()))
+        key = (vertex, fragment, ordered)
+        if key not in self._programs:
+            try:
+                self._programs[key] = self._context.program(
+                    vertex_shader=shader_source(vertex, ordered),
+                    fragment_shader=shader_source(fragment, ordered),
+                )
+            except moderngl.Error as problem:
+                raise RenderError(
+                    f"the shaders {vertex} and {fragment} do not compile: {problem}"
+                ) from None
+        return self._programs[key]
+
+    def close(self) -> None:
+        """Free all programs."""
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()
+
+
+def set_uniform(program: moderngl.Program, name: str, value: Any) -> None:
+    """Set a uniform if the compiler kept it: unused ones vanish from a program."""
+    member = program.get(name, None)
+    if isinstance(member, moderngl.Uniform):
+        member.value = value

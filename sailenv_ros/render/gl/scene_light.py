@@ -1,0 +1,178 @@
+"""What lights a scene at one instant: shadow maps, baked light, reflections, brought up to date.
+
+A snapshot comes in, an `Illumination` for the lighting pass goes out. Without baked light there is
+one shadow map of everything. With it there are two: what stands still is drawn into one of them
+once, and only what moves is drawn again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.library import thread_count
+from sailenv_ros.render.gl.baked_textures import BakedTextures
+from sailenv_ros.render.gl.draw_list import DrawList
+from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
+from sailenv_ros.render.gl.lighting_pass import Illumination
+from sailenv_ros.render.gl.programs import ProgramCache
+from sailenv_ros.render.gl.reflection_texture import ReflectionTexture
+from sailenv_ros.render.gl.shadow_pass import ShadowPass
+from sailenv_ros.render.picture.kernels import blur_directions
+from sailenv_ros.render.scene.lightmap_compositing import (
+    CompositedLight,
+    composite_lightmap,
+    light_alone,
+    main_light,
+    sum_texels,
+)
+from sailenv_ros.render.scene.room_reflections import RoomReflections
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.snapshot import WorldSnapshot
+
+__all__ = ["Radiance", "SceneLight"]
+
+Radiance = Callable[[Camera, Illumination, NDArray[np.bool_]], NDArray[np.float32]]
+"""``radiance(camera, illumination, only)`` gives (H, W, 3): a picture of some instances."""
+
+
+class SceneLight:
+    """The light of the scene that is shown, in one context."""
+
+    def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
+        self._context = context
+        self._shadow = ShadowPass(context, programs)
+        self._static_shadow: ShadowPass | None = None
+        self._programs = programs
+        self._baked = BakedTextures(context)
+        self._room = RoomReflections(partial(blur_directions, threads=thread_count()), sum_texels)
+        self._reflections = ReflectionTexture(context)
+        self._reflected: CompositedLight | None = None
+
+    def at(
+        self,
+        snapshot: WorldSnapshot,
+        draws: DrawList,
+        geometry: GeometryBuffers,
+        radiance: Radiance,
+    ) -> Illumination:
+        """Bring everything up to date for a snapshot; `draws` must be placed anew afterwards."""
+        contents = snapshot.contents
+        main = main_light(contents.lights)
+        composited = self._baked.show(snapshot)
+        if composited is None or contents.baked is None:
+            if main is not None:
+                self._shadow.draw(main, snapshot, draws, geometry)
+            return Illumination(
+                main=main,
+                lamps=tuple(light for light in contents.lights if light is not main),
+                environment=contents.environment,
+                shadow=self._shadow,
+            )
+        still = draws.at_baked_pose(snapshot)
+        if self._reflected is not composited:
+            # Nothing that moves casts a shadow into what is mirrored.
+            nothing = np.zeros_like(still)
+            static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, nothing)
+            # What is mirrored is kept for each light apart, and none is the lamps' glow.
+            draws.show_lamps(False)
+            self._reflect(snapshot, main, static_shadow, radiance, still)
+            draws.show_lamps(True)
+            self._reflected = composited
+        static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, ~still)
+        self._reflections.write_table(self._room.points.table(snapshot))
+        return Illumination(
+            main=main,
+            lamps=composited.live,
+            environment=contents.environment,
+            shadow=self._shadow,
+            static_shadow=static_shadow,
+            baked=self._baked,
+            main_baked=composited.main_baked,
+            main_transmittance=composited.main_transmittance,
+            reflections=self._reflections,
+        )
+
+    def close(self) -> None:
+        """Free everything on the GPU."""
+        for resource in (self._shadow, self._static_shadow, self._baked, self._reflections):
+            if resource is not None:
+                resource.close()
+
+    def _draw_two_maps(
+        self,
+        main: Light | None,
+        snapshot: WorldSnapshot,
+        draws: DrawList,
+        geometry: GeometryBuffers,
+        still: NDArray[np.bool_],
+        moving: NDArray[np.bool_],
+    ) -> ShadowPass:
+        if self._static_shadow is None:
+            self._static_shadow = ShadowPass(self._context, self._programs)
+        if main is not None:
+            self._static_shadow.draw(main, snapshot, draws, geometry, casting=still, framed=still)
+            self._shadow.draw(main, snapshot, draws, geometry, casting=moving, framed=still)
+        return self._static_shadow
+
+    def _reflect(
+        self,
+        snapshot: WorldSnapshot,
+        main: Light | None,
+        static_shadow: ShadowPass,
+        radiance: Radiance,
+        still: NDArray[np.bool_],
+    ) -> None:
+        """Bring the reflection maps up to date."""
+        alone_textures = BakedTextures(self._context)
+        look = partial(self._look, alone_textures, snapshot, main, static_shadow, radiance, still)
+        try:
+            self._room.update(snapshot, still, main, look)
+        finally:
+            alone_textures.close()
+        points = self._room.points
+        self._reflections.write(self._room.layers, self._room.around, points.points, points.box)
+
+    def _look(
+        self,
+        textures: BakedTextures,
+        snapshot: WorldSnapshot,
+        main: Light | None,
+        static_shadow: ShadowPass,
+        radiance: Radiance,
+        still: NDArray[np.bool_],
+        alone: Light | None,
+        cameras: list[Camera],
+    ) -> list[NDArray[np.float32]]:
+        """Look at what stands still under one light alone; see `room_reflections.Look`."""
+        contents = snapshot.contents
+        assert contents.baked is not None
+        environment, is_main = contents.environment, False
+        if alone is None:
+            composited = composite_lightmap(contents.baked, (), environment)
+        else:
+            is_main = main is not None and alone.name == main.name
+            composited = light_alone(contents.baked, alone, is_main=is_main)
+            environment = replace(
+                environment, background="colour", background_colour=(0.0, 0.0, 0.0)
+            )
+        textures.show_alone(snapshot, composited)
+        illumination = Illumination(
+            main=alone if is_main else None,
+            lamps=composited.live,
+            environment=environment,
+            shadow=self._shadow,
+            static_shadow=static_shadow,
+            baked=textures,
+            main_baked=composited.main_baked,
+            main_transmittance=composited.main_transmittance,
+            glows=alone is None,
+            blended=False,
+        )
+        return [radiance(camera, illumination, still) for camera in cameras]

@@ -1,0 +1,1 @@
+"""From radiance, depth and ids to the views: annotation, smooth edges, tone."""

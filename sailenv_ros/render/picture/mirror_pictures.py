@@ -1,0 +1,121 @@
+"""What flat mirrors show is put into the picture.
+
+The mirrors of `flat_mirrors` and a way to draw what each shows come in; the picture's radiance
+goes out. Where the picture's edges are smooth, so are those of its mirrors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.render.picture.half_pixels import half_pixel_camera, pixel_shares
+from sailenv_ros.render.scene.flat_mirrors import NEAR_PLANE_M, SeenMirror, Window
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+
+__all__ = ["Look", "Samples", "closer_window", "reflect"]
+
+Samples: TypeAlias = Callable[[Window], NDArray[np.float32]]
+"""``samples(window)`` returns (2 h + 1, 2 w + 1, 2): depth [m] and instance id of samples half a
+pixel apart (see `half_pixels`) in a window of the picture."""
+
+Look: TypeAlias = Callable[[Camera, NDArray[np.bool_], Window], NDArray[np.float16]]
+"""``look(camera, only, window)`` returns (h, w, 4): exposed radiance of some instances, without
+glass, in the window of the camera's picture."""
+
+
+def reflect(
+    mirrors: list[SeenMirror],
+    camera: Camera,
+    radiance: NDArray[np.float16],
+    surface: NDArray[np.float32],
+    look: Look,
+    samples: Samples | None = None,
+) -> None:
+    """Put into a picture what its mirrors show.
+
+    Parameters
+    ----------
+    mirrors : list of SeenMirror
+        What `seen` returned for the camera.
+    camera : Camera
+        Of the picture's pixels.
+    radiance : (H, W, 4) float16
+        Exposed radiance and the share that came from around; written to.
+    surface : (H, W, 2) float32
+        Depth [m] and instance id.
+    look : callable
+        See `Look`.
+    samples : callable or None
+        See `Samples`; of a picture with smooth edges, whose mirrors have smooth edges, too.
+    """
+    for mirror in mirrors:
+        whole, slant = _pixels(mirror, camera.intrinsics, camera, surface[mirror.window])
+        if not whole.any():
+            continue
+        rows, columns = mirror.window
+        partly = np.zeros_like(whole)
+        if samples is not None:
+            closer = closer_window(mirror.window)
+            lens = half_pixel_camera(camera).intrinsics
+            mask, _ = _pixels(replace(mirror, window=closer), lens, camera, samples(mirror.window))
+            covered = pixel_shares(mask)
+            whole, partly = covered == 1.0, (covered > 0.0) & (covered < 1.0)
+        width = camera.intrinsics.width
+        flipped = rows, slice(width - columns.stop, width - columns.start)
+        shown = look(mirror.camera, mirror.only, flipped)[:, ::-1, :3]
+        # At grazing angles all light is mirrored (Schlick's approximation).
+        grazing = (1.0 - slant[..., None]) ** 5
+        shown = shown * (mirror.tint + (1.0 - mirror.tint) * grazing)
+        target = radiance[mirror.window]
+        if partly.any():
+            # What the mirror had shown there is known from the pixels beside.
+            before, there = _mean_around(target[..., :3].astype(np.float32), whole)
+            partly &= there
+            more = covered[partly, None] * (shown[partly] - before[partly])
+            target[partly, :3] = np.maximum(target[partly, :3] + more, 0.0)
+            target[partly, 3] *= 1.0 - covered[partly]
+        target[whole, :3] = shown[whole]
+        target[whole, 3] = 0.0
+
+
+def closer_window(window: Window) -> Window:
+    """Return the samples half a pixel apart that lie in a window's pixels."""
+    rows, columns = window
+    return (
+        slice(2 * rows.start, 2 * rows.stop + 1),
+        slice(2 * columns.start, 2 * columns.stop + 1),
+    )
+
+
+def _mean_around(
+    light: NDArray[np.float32], counted: NDArray[np.bool_]
+) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """Return the mean over 3 x 3 pixels of those that count, and where there are any."""
+    weights = cv2.blur(counted.astype(np.float32), (3, 3), borderType=cv2.BORDER_CONSTANT)
+    sums = cv2.blur(light * counted[..., None], (3, 3), borderType=cv2.BORDER_CONSTANT)
+    there = weights > 1e-3
+    means = sums / np.where(there, weights, 1.0)[..., None]
+    return means.astype(np.float32), there
+
+
+def _pixels(
+    mirror: SeenMirror, lens: CameraIntrinsics, camera: Camera, surface: NDArray[np.float32]
+) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+    """Return which pixels of the window show the mirror, and the cosine of the viewing angle."""
+    rows, columns = mirror.window
+    x = (np.arange(columns.start, columns.stop) - lens.cx) / lens.fx
+    y = (np.arange(rows.start, rows.stop) - lens.cy) / lens.fy
+    normal = camera.camera_from_world[:3, :3] @ mirror.normal
+    offset = float(mirror.normal @ (mirror.point - camera.world_from_camera[:3, 3]))
+    along = normal[0] * x[None, :] + normal[1] * y[:, None] + normal[2]
+    length = np.sqrt(1.0 + x[None, :] ** 2 + y[:, None] ** 2)
+    mask = surface[..., 1] == mirror.instance_id
+    depth = np.where(mask, surface[..., 0], 0.0)
+    mask &= np.abs(along * depth - offset) < NEAR_PLANE_M
+    return mask, np.clip(np.abs(along) / length, 0.0, 1.0).astype(np.float32)

@@ -1,0 +1,1 @@
+"""Scene data that both renderers draw from: meshes, materials, lamps, baked light."""

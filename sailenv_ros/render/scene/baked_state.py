@@ -1,0 +1,95 @@
+"""Baked light as it is at one instant: the light map, and the light around each instance.
+
+A snapshot comes in, arrays that shading reads go out. They are made again when lights change (light
+map) and when something moves (light around instances). Knows no graphics library.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.render.scene.lightmap_compositing import (
+    CompositedLight,
+    composite_lightmap,
+    instance_light,
+)
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
+
+__all__ = ["ROW_IDS", "BakedState"]
+
+ROW_IDS = 256
+"""The table of instances has a multiple of this number of rows."""
+
+
+class BakedState:
+    """The baked light of the scene that is shown.
+
+    Attributes
+    ----------
+    composited : CompositedLight or None
+        Replaced by another object when lights have changed.
+    instances : (R, 3, 4) float32
+        Red, green and blue of the light around each instance id: c0, cx, cy, cz. Replaced by
+        another array when something has moved.
+    """
+
+    def __init__(self) -> None:
+        self._of: tuple[object, tuple[Light, ...], Environment] | None = None
+        self._contents: SceneContents | None = None
+        self._placed: tuple[CompositedLight, SceneContents] | None = None
+        self._poses: NDArray[np.float64] | None = None
+        self._middles = np.zeros((0, 4))
+        self.composited: CompositedLight | None = None
+        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, 4), np.float32)
+
+    def update(self, snapshot: WorldSnapshot) -> CompositedLight | None:
+        """Bring everything up to date; None where the scene has no baked light."""
+        contents = snapshot.contents
+        if contents.baked is None:
+            self.composited = self._of = self._contents = None
+            return None
+        if self._contents is not contents or self.composited is None:
+            # Exposure comes after the light: a picture made brighter needs no new mixture.
+            of = (contents.baked, contents.lights, replace(contents.environment, exposure=0.0))
+            if self.composited is None or self._of != of:
+                self.composited = composite_lightmap(*of)
+                self._of = of
+            self._contents = contents
+        self._place(snapshot, self.composited)
+        return self.composited
+
+    def _place(self, snapshot: WorldSnapshot, composited: CompositedLight) -> None:
+        """Look the light around each instance up, where anything has moved or changed."""
+        contents, poses = snapshot.contents, snapshot.world_from_body
+        placed = (composited, contents)
+        if self._placed == placed and np.array_equal(self._poses, poses):  # type: ignore[arg-type]
+            return
+        if self._placed is None or self._placed[1].instances is not contents.instances:
+            self._middles = _middles(contents)
+        self._placed, self._poses = placed, poses
+        self.instances = self.around(snapshot, composited.probes)
+
+    def around(self, snapshot: WorldSnapshot, probes: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Look the light around each instance of the snapshot of `update` up; as `instances`."""
+        contents = snapshot.contents
+        assert contents.baked is not None
+        points = np.einsum("nij,nj->ni", snapshot.world_from_body, self._middles)[:, :3]
+        light = instance_light(probes, contents.baked.probes, points)
+        ids = contents.instance_ids.astype(np.intp)
+        rows = int(ids.max(initial=0)) // ROW_IDS + 1
+        table = np.zeros((rows * ROW_IDS, 3, 4), np.float32)
+        table[ids] = light.transpose(0, 2, 1)
+        return table
+
+
+def _middles(contents: SceneContents) -> NDArray[np.float64]:
+    """Return (N, 4): the homogeneous middle of each instance in its body frame."""
+    middles = np.ones((len(contents.instances), 4))
+    if contents.instances:
+        middles[:, :3] = [drawn.model.middle for drawn in contents.instances]
+        middles[:, :3] *= [drawn.scale for drawn in contents.instances]
+    return middles

@@ -1,0 +1,192 @@
+"""Meshes as they are drawn: with places in a light map, and by position alone.
+
+The parts of a scene come in, arrays of vertices and corners go out. Knows no graphics library:
+every back end draws the same meshes.
+"""
+
+from __future__ import annotations
+
+import weakref
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.types.baked_light import Unwrapping
+from sailenv_ros.types.model import Mesh, Model
+from sailenv_ros.types.snapshot import SceneContents
+
+__all__ = [
+    "VERTEX",
+    "DrawnMesh",
+    "chart_table",
+    "corners_of",
+    "drawn_meshes",
+    "meshes_of",
+    "unwrappings",
+]
+
+VERTEX = np.dtype(
+    [("position", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("light_uv", "<f4", 2)]
+)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DrawnMesh:
+    """A mesh as it is drawn: with places in a light map if its model was unwrapped.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    unwrapping : Unwrapping or None
+    part : int
+        Number of the mesh among its model's parts.
+    """
+
+    mesh: Mesh
+    unwrapping: Unwrapping | None
+    part: int
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """What tells drawn meshes apart while both objects live."""
+        return id(self.mesh), id(self.unwrapping)
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(M, 3) uint32: indices into `vertices`."""
+        return (
+            self.mesh.triangles if self.unwrapping is None else self.unwrapping.triangles[self.part]
+        )
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices are drawn."""
+        return len(
+            self.mesh.positions if self.unwrapping is None else self.unwrapping.vertices[self.part]
+        )
+
+    def interleaved(self) -> NDArray[np.void]:
+        """Return the vertices as the buffer holds them."""
+        mesh = self.mesh
+        result = np.zeros(self.vertex_count, VERTEX)
+        chosen: slice | NDArray[np.uint32] = slice(None)
+        if self.unwrapping is not None:
+            chosen = self.unwrapping.vertices[self.part]
+            result["light_uv"] = self.unwrapping.uvs[self.part]
+        result["position"] = mesh.positions[chosen]
+        result["normal"] = mesh.normals[chosen]
+        result["uv"] = mesh.uvs[chosen]
+        return result
+
+
+def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
+    """Return the meshes of each instance's parts, in their order."""
+    return [
+        meshes_of(drawn.model, flat)
+        for drawn, flat in zip(contents.instances, unwrappings(contents), strict=True)
+    ]
+
+
+def meshes_of(model: Model, unwrapping: Unwrapping | None) -> list[DrawnMesh]:
+    """Return the meshes of a model's parts, in their order."""
+    return [DrawnMesh(part.mesh, unwrapping, place) for place, part in enumerate(model.parts)]
+
+
+def unwrappings(contents: SceneContents) -> list[Unwrapping | None]:
+    """Return how each instance is unwrapped into the light map; None for those that are not."""
+    charts = contents.baked.charts if contents.baked is not None else {}
+    found = (charts.get(drawn.instance.id) for drawn in contents.instances)
+    return [
+        None if chart is None else _unwrapped(drawn.model, chart.unwrapping)
+        for drawn, chart in zip(contents.instances, found, strict=True)
+    ]
+
+
+_unwrapped_models: weakref.WeakKeyDictionary[Model, tuple[Unwrapping, Unwrapping]] = (
+    weakref.WeakKeyDictionary()
+)
+"""What each model was unwrapped by last: the unwrapping that was baked, and the model's own."""
+
+
+def _unwrapped(model: Model, baked: Unwrapping) -> Unwrapping:
+    """Return how a model lies in the light map that was baked for it.
+
+    With another material it has the same triangles in the same order, but perhaps other vertices.
+    """
+    kept = _unwrapped_models.get(model)
+    if kept is None or kept[0] is not baked:
+        kept = _unwrapped_models[model] = baked, _fitted(model, baked)
+    return kept[1]
+
+
+def _fitted(model: Model, baked: Unwrapping) -> Unwrapping:
+    vertices, triangles, uvs, changed = [], [], [], False
+    for part, copies, corners, places in zip(
+        model.parts, baked.vertices, baked.triangles, baked.uvs, strict=True
+    ):
+        mesh = part.mesh
+        same = not len(corners) or (
+            int(copies.max(initial=0)) < len(mesh.positions)
+            and np.array_equal(copies[corners], mesh.triangles)
+        )
+        if not same:
+            # A corner's place in the map, and the vertex that it has now: each pair once.
+            pairs = corners.astype(np.int64) * len(mesh.positions) + mesh.triangles
+            used, again = np.unique(pairs, return_inverse=True)
+            places = places[used // len(mesh.positions)]
+            copies = (used % len(mesh.positions)).astype(np.uint32)
+            corners, changed = again.reshape(-1, 3).astype(np.uint32), True
+        vertices.append(copies)
+        triangles.append(corners)
+        uvs.append(places)
+    if not changed:
+        return baked
+    return Unwrapping(vertices=tuple(vertices), triangles=tuple(triangles), uvs=tuple(uvs))
+
+
+def chart_table(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return each instance's offset and scale in the light map, and the pose that it is for."""
+    count = len(contents.instances)
+    charts, poses = np.zeros((count, 4)), np.full((count, 4, 4), np.nan)
+    baked = contents.baked.charts if contents.baked is not None else {}
+    for row, drawn in enumerate(contents.instances):
+        chart = baked.get(drawn.instance.id)
+        if chart is not None:
+            charts[row] = *chart.offset, *chart.scale
+            poses[row] = chart.world_from_body
+    return charts, poses
+
+
+def corners_of(
+    positions: NDArray[np.float32], triangles: NDArray[np.uint32]
+) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Return each place that triangles use a number, in the order in which they do.
+
+    Parameters
+    ----------
+    positions : (V, 3) float32
+    triangles : (M, 3) uint32
+
+    Returns
+    -------
+    corners : (K, 3) float32
+        Places, each once, bit for bit.
+    triangles : (M, 3) uint32
+        The same triangles of corners.
+    """
+    if not triangles.size:
+        return np.zeros((0, 3), np.float32), triangles
+    bits = np.ascontiguousarray(positions).view(np.uint32)
+    order = np.lexsort(bits.T)
+    differs = (np.diff(bits[order], axis=0) != 0).any(axis=1)
+    place_of = np.empty(len(positions), np.int64)
+    place_of[order] = np.concatenate([[0], np.cumsum(differs)])
+    used, first, corner_of = np.unique(
+        place_of[triangles.reshape(-1)], return_index=True, return_inverse=True
+    )
+    rank = np.empty(len(used), np.uint32)
+    by_use = np.argsort(first)
+    rank[by_use] = np.arange(len(used), dtype=np.uint32)
+    corners = positions[triangles.reshape(-1)[first[by_use]]]
+    return corners, rank[corner_of.reshape(-1)].reshape(-1, 3)

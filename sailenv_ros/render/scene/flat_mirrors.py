@@ -1,0 +1,231 @@
+"""Flat mirrors show what stands before them, seen from where the eye would be behind them.
+
+A snapshot and a camera come in; which mirrors are seen and from where each is to be drawn once
+more go out. `mirror_pictures` puts into the picture what was drawn. Every back end draws with it.
+Knows no graphics library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
+
+__all__ = ["NEAR_PLANE_M", "FlatMirrors", "SeenMirror", "Window"]
+
+Window: TypeAlias = tuple[slice, slice]
+"""Rows and columns of a picture."""
+
+MOST = 2
+"""Mirrors in one picture: the largest; others mirror the room as other surfaces do."""
+
+LEAST_PX = 64
+"""A mirror whose rectangle covers less of the picture is passed over."""
+
+FLAT = 0.05
+"""A mirror is thinner than this share of its shorter side."""
+
+LEAST_SIDE_M = 0.1
+LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.1
+CATEGORY = "mirror"
+"""In objects of this category any flat metal is a mirror, however rough its material says."""
+
+SILVERED = 0.9
+"""What such a mirror reflects at least of the colour that it reflects best, as silver behind glass
+does: models give their mirrors the grey of what they happen to reflect."""
+
+NEAR_PLANE_M = 4e-3
+"""Pixels this near to the mirror's plane belong to it; its frame stands out further."""
+
+BEHIND_M = 0.02
+"""Objects that reach less far before the plane are not mirrored: walls, and the mirror."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Face:
+    """A flat part of a model, in its frame before scaling."""
+
+    axis: int
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    tint: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class SeenMirror:
+    """A mirror in a picture.
+
+    Attributes
+    ----------
+    instance_id : int
+    normal : (3,) float64
+        Unit, world frame, towards the eye.
+    point : (3,) float64
+        Of its plane, world frame [m].
+    tint : (3,) float32
+        Linear share of the light that it mirrors.
+    window : Window
+        Around it.
+    camera : Camera
+        What it shows is this camera's picture, left and right exchanged.
+    only : (N,) bool
+        Which instances are before its plane.
+    """
+
+    instance_id: int
+    normal: NDArray[np.float64]
+    point: NDArray[np.float64]
+    tint: NDArray[np.float32]
+    window: Window
+    camera: Camera
+    only: NDArray[np.bool_]
+
+
+class FlatMirrors:
+    """The flat mirrors of the scene that is shown."""
+
+    def __init__(self) -> None:
+        self._contents: SceneContents | None = None
+        self._faces: list[tuple[int, int, _Face]] = []
+        self._corners = np.zeros((0, 8, 3))
+        self._of_model: dict[int, tuple[Model, tuple[tuple[_Face, bool], ...]]] = {}
+
+    def show(self, contents: SceneContents) -> None:
+        """Find the mirrors of a scene."""
+        if contents is self._contents:
+            return
+        before, self._contents = self._contents, contents
+        if before is not None and before.instances is contents.instances:
+            return
+        models = {}
+        self._faces = []
+        for row, drawn in enumerate(contents.instances):
+            key = id(drawn.model)
+            known = self._of_model.get(key)
+            found = models[key] = known or (drawn.model, tuple(_faces(drawn.model)))
+            named = drawn.instance.category == CATEGORY
+            scale = np.asarray(drawn.scale)
+            self._faces += [
+                (
+                    row,
+                    drawn.instance.id,
+                    replace(
+                        f,
+                        low=f.low * scale,
+                        high=f.high * scale,
+                        tint=_silvered(f.tint) if named else f.tint,
+                    ),
+                )
+                for f, polished in found[1]
+                if polished or named
+            ]
+        self._of_model = models
+        if self._faces:
+            bounds = np.array([d.model.bounds() * np.asarray(d.scale) for d in contents.instances])
+            at = np.array(list(np.ndindex(2, 2, 2)))
+            self._corners = bounds[:, at, [0, 1, 2]]
+
+    def seen(self, snapshot: WorldSnapshot, camera: Camera) -> list[SeenMirror]:
+        """Return the mirrors that a camera may see, the largest first."""
+        self.show(snapshot.contents)
+        found = []
+        for row, instance_id, face in self._faces:
+            mirror = self._seen(snapshot, camera, row, instance_id, face)
+            if mirror is not None:
+                rows, columns = mirror.window
+                found.append(((rows.stop - rows.start) * (columns.stop - columns.start), mirror))
+        found.sort(key=lambda entry: -entry[0])
+        return [mirror for _, mirror in found[:MOST]]
+
+    def _seen(
+        self, snapshot: WorldSnapshot, camera: Camera, row: int, instance_id: int, face: _Face
+    ) -> SeenMirror | None:
+        pose = snapshot.world_from_body[row]
+        eye = camera.world_from_camera[:3, 3]
+        middle = (face.low + face.high) / 2.0
+        side = 1.0 if (np.linalg.inv(pose) @ [*eye, 1.0])[face.axis] > middle[face.axis] else -1.0
+        front = face.high[face.axis] if side > 0.0 else face.low[face.axis]
+        middle[face.axis] = front
+        normal, point = side * pose[:3, face.axis], pose[:3, :3] @ middle + pose[:3, 3]
+        if float(normal @ (eye - point)) < NEAR_PLANE_M:
+            return None
+        window = _window(camera, pose, face, front)
+        if window is None:
+            return None
+        corners = np.einsum("nij,nkj->nki", snapshot.world_from_body[:, :3, :3], self._corners)
+        corners += snapshot.world_from_body[:, None, :3, 3]
+        only = ((corners - point) @ normal).max(axis=1) > BEHIND_M
+        only[row] = False
+        return SeenMirror(
+            instance_id=instance_id,
+            normal=normal,
+            point=point,
+            tint=face.tint,
+            window=window,
+            camera=_behind(camera, normal, point),
+            only=only,
+        )
+
+
+def _faces(model: Model) -> Iterator[tuple[_Face, bool]]:
+    """Find flat metal; True where it is polished."""
+    for part in model.parts:
+        look, points = part.material, part.mesh.positions
+        rough = look.metallic_roughness_texture is not None or look.normal_texture is not None
+        if look.alpha != "opaque" or look.metallic < LEAST_METALLIC or rough or not len(points):
+            continue
+        low, high = points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
+        size = high - low
+        thin, short, _ = np.argsort(size, kind="stable")
+        if size[short] < LEAST_SIDE_M or size[thin] > FLAT * size[short]:
+            continue
+        at = points[:, thin]
+        if not ((at - low[thin] < 1e-3) | (high[thin] - at < 1e-3)).all():
+            continue
+        tint = np.asarray(look.base_colour[:3], np.float32)
+        yield _Face(int(thin), low, high, tint), look.roughness <= MOST_ROUGHNESS
+
+
+def _silvered(tint: NDArray[np.float32]) -> NDArray[np.float32]:
+    brightest = float(tint.max())
+    return tint * np.float32(max(SILVERED / brightest, 1.0)) if brightest > 0.0 else tint
+
+
+def _window(camera: Camera, pose: NDArray[np.float64], face: _Face, front: float) -> Window | None:
+    """Return the part of the picture that may show a face; None if it shows too little of it."""
+    corners = np.array(list(np.ndindex(2, 2, 2)))[::1]
+    points = np.where(corners, face.high, face.low)
+    points[:, face.axis] = front
+    world = points @ pose[:3, :3].T + pose[:3, 3]
+    seen = world @ camera.camera_from_world[:3, :3].T + camera.camera_from_world[:3, 3]
+    lens = camera.intrinsics
+    ahead = seen[:, 2] > lens.near_m
+    if not ahead.any():
+        return None
+    low, high = np.zeros(2), np.array([lens.width, lens.height], float)
+    if ahead.all():
+        at = seen[:, :2] / seen[:, 2:] * lens.fx + (lens.cx, lens.cy)
+        low = np.clip(np.floor(at.min(axis=0)) - 1.0, low, high)
+        high = np.clip(np.ceil(at.max(axis=0)) + 2.0, low, high)
+    size = high - low
+    if size.prod() < LEAST_PX:
+        return None
+    return slice(int(low[1]), int(high[1])), slice(int(low[0]), int(high[0]))
+
+
+def _behind(camera: Camera, normal: NDArray[np.float64], point: NDArray[np.float64]) -> Camera:
+    """Return the camera mirrored at a plane; its x axis is turned round, so that it stays one."""
+    mirror = np.eye(4)
+    mirror[:3, :3] -= 2.0 * np.outer(normal, normal)
+    mirror[:3, 3] = 2.0 * float(normal @ point) * normal
+    world_from_camera = mirror @ camera.world_from_camera @ np.diag([-1.0, 1.0, 1.0, 1.0])
+    pose = Pose.from_matrix(world_from_camera @ np.linalg.inv(BODY_FROM_OPTICAL))
+    return replace(camera, pose=pose)

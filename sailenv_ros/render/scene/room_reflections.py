@@ -1,0 +1,147 @@
+"""What shiny surfaces mirror of a room, kept for each light apart.
+
+Radiance is linear in the power of each light. So the room is looked at once for each light alone,
+at power 1, and once for the sky and what glows; when a light is made brighter or gets another
+colour, that costs a sum. Pictures in six directions from several points come in, reflection maps
+go out. Every back end draws with it. Knows no graphics library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.render.scene import reflection_map as reflections
+from sailenv_ros.render.scene.lightmap_compositing import Term
+from sailenv_ros.render.scene.reflection_points import ReflectionPoints
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.snapshot import WorldSnapshot
+
+__all__ = ["Look", "RoomReflections", "Sum"]
+
+Look: TypeAlias = Callable[[Light | None, list[Camera]], list[NDArray[np.float32]]]
+"""``look(light, cameras)`` returns (H, W, 3) for each camera: linear radiance under one light
+alone; None: under the sky, with what glows."""
+
+Sum: TypeAlias = Callable[
+    [Sequence[Term], NDArray[np.float32], NDArray[np.uint8]], NDArray[np.float16]
+]
+"""As `lightmap_compositing.sum_texels`."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Share:
+    """One light's part of what is mirrored, at power 1.
+
+    Attributes
+    ----------
+    texels : (T, 1, 3) float16
+        All layers of `reflection_map.prefilter`, of one point after the other.
+    around : (K, 3, 4) float64
+        What `reflection_map.light_from_around` says of each point and colour.
+    """
+
+    texels: NDArray[np.float16]
+    around: NDArray[np.float64]
+
+
+class RoomReflections:
+    """The reflection maps of the room that is shown.
+
+    Parameters
+    ----------
+    blur : Blur
+        See `reflection_map.prefilter`.
+    add : Sum
+
+    Attributes
+    ----------
+    points : ReflectionPoints
+        From where the room is looked at.
+    layers : (K, L, E, E, 4) float16
+        Of each point; see `reflection_map.prefilter`.
+    around : (K, 4) float64
+        What `reflection_map.light_from_around` says of each point.
+    """
+
+    def __init__(self, blur: reflections.Blur, add: Sum) -> None:
+        self._blur = blur
+        self._sum = add
+        self._shares: dict[Hashable, _Share] = {}
+        self._of: tuple[object, bytes] | None = None
+        self._alone_of: dict[Light, Light] = {}
+        self._environment: Environment | None = None
+        self._sky: Environment | None = None
+        edge = reflections.EDGE + 2
+        self.points = ReflectionPoints()
+        self.layers = np.zeros((1, len(reflections.ROUGHNESSES), edge, edge, 4), np.float16)
+        self.around = np.zeros((1, 4))
+
+    def update(
+        self,
+        snapshot: WorldSnapshot,
+        still: NDArray[np.bool_],
+        main: Light | None,
+        look: Look,
+    ) -> None:
+        """Bring the maps up to date, when lights have changed.
+
+        Parameters
+        ----------
+        still : (N,) bool
+            Which instances have baked light where they are: only these are mirrored.
+        main : Light or None
+            The light that casts the shadow map.
+        """
+        contents = snapshot.contents
+        assert contents.baked is not None
+        of = (contents.baked, contents.instance_ids[still].tobytes())
+        if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
+            self._shares, self._of = {}, of
+            self.points.choose(snapshot)
+        if self._environment is not contents.environment:
+            self._environment = contents.environment
+            self._sky = replace(contents.environment, exposure=0.0)
+        wanted: list[tuple[Hashable, Light | None, NDArray[np.float32]]] = [
+            (("sky", self._sky), None, np.ones(3, np.float32))
+        ]
+        alone_of = {}
+        for light in contents.lights:
+            alone = self._alone_of.get(light)
+            if alone is None:
+                alone = replace(light, colour=(1.0, 1.0, 1.0), intensity=1.0)
+            alone_of[light] = alone
+            power = np.asarray(light.colour, np.float32) * np.float32(light.intensity)
+            if power.any():
+                wanted.append(((alone, light is main), alone, power))
+        self._alone_of = alone_of
+        shares = {
+            key: self._shares.get(key) or self._share(alone, look) for key, alone, _ in wanted
+        }
+        self._shares = shares
+        terms = [(shares[key].texels, power) for key, _, power in wanted]
+        shown = np.full(terms[0][0].shape[:2], 255, np.uint8)
+        texels = self._sum(terms, np.zeros(3, np.float32), shown)
+        self.layers = texels.reshape(-1, *self.layers.shape[1:])
+        self.around = sum(
+            (np.einsum("c,kci->ki", power, shares[key].around) for key, _, power in wanted),
+            np.zeros((len(self.layers), 4)),
+        )
+
+    def _share(self, alone: Light | None, look: Look) -> _Share:
+        every = [reflections.cube_cameras(point) for point in self.points.points]
+        pictures = iter(look(alone, [camera for cameras in every for camera in cameras]))
+        texels, around = [], []
+        for cameras in every:
+            seen = [next(pictures) for _ in cameras]
+            flat = reflections.flattened(cameras, seen, reflections.EDGE)
+            layers = reflections.prefilter(flat, blur=self._blur)[..., :3]
+            first = layers[0, 1:-1, 1:-1].astype(np.float64)
+            around.append([reflections.light_from_around(first * colour) for colour in np.eye(3)])
+            texels.append(layers.reshape(-1, 1, 3))
+        return _Share(np.ascontiguousarray(np.concatenate(texels)), np.array(around))

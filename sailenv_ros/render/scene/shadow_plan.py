@@ -1,0 +1,313 @@
+"""What a shadow map must show anew, and where it lies: the same for every back end.
+
+A snapshot, a light and the choice of what casts come in; out comes what is to be drawn, if
+anything, and the matrix into the map. A map is drawn again only when something that it depends on
+has changed; then what has not moved is copied from a second map, where it was drawn once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+
+__all__ = ["SIZE_PX", "ShadowPlan", "ShadowRedraw", "casts"]
+
+LARGEST_SHEET_M = 12.0
+LARGEST_CASTER_M = 40.0
+"""Bodies with a longer diagonal (sheets without thickness: grounds; and still larger solids)
+receive shadows and cast none: they would stretch the shadow map to their own size."""
+
+FARTHEST_M = 1e5
+
+SIZE_PX = 1024
+
+STEADY_TEXELS = 0.125
+"""A caster that has moved by less since the map was drawn is taken to stand where it stood: what
+comes to rest creeps for seconds, by less than can be seen, and needs no new map."""
+
+
+def casts(drawn: DrawnInstance) -> bool:
+    """Return whether a body casts a shadow: walls and ceilings of halls do, grounds do not."""
+    boxes = _boxes([drawn])
+    return bool(_casting(boxes[:, 1] - boxes[:, 0])[0])
+
+
+def _boxes(instances: Sequence[DrawnInstance]) -> NDArray[np.float64]:
+    """Return (N, 2, 3): lowest and highest corner of each, in its own frame [m]."""
+    bounds = np.array([drawn.model.bounds() for drawn in instances]).reshape(-1, 2, 3)
+    scales = np.array([drawn.scale for drawn in instances], np.float64).reshape(-1, 1, 3)
+    boxes: NDArray[np.float64] = bounds * scales
+    return boxes
+
+
+def _casting(extents: NDArray[np.float64]) -> NDArray[np.bool_]:
+    largest = np.where(extents.min(axis=1) < 1e-3, LARGEST_SHEET_M, LARGEST_CASTER_M)
+    casting: NDArray[np.bool_] = np.linalg.norm(extents, axis=1) <= largest
+    return casting
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ShadowRedraw:
+    """What is to be drawn of a map.
+
+    Attributes
+    ----------
+    poses : (N, 4, 4) float64
+        Poses of the instances [m], as they count for the map.
+    keep : bool
+        True if the map as it is becomes the second one first.
+    resting : (N,) bool or None
+        What is to be drawn into the second map first, which is cleared; None if nothing is.
+    from_resting : bool
+        True if the map begins as a copy of the second one, False if it begins empty.
+    casters : (N,) bool
+        What is drawn into the map then.
+    """
+
+    poses: NDArray[np.float64]
+    casters: NDArray[np.bool_]
+    keep: bool = False
+    resting: NDArray[np.bool_] | None = None
+    from_resting: bool = False
+
+
+class ShadowPlan:
+    """The plan of one shadow map.
+
+    Attributes
+    ----------
+    clip_from_light, light_from_world : (4, 4) float64
+        Orthographic projection (OpenGL's clip axes), and the light's own axes.
+    map_from_world : (4, 4) float64
+        Place in the map, 0 to 1, and depth, 0 to 1.
+    texel_m : float
+        Size of a texel [m].
+    """
+
+    def __init__(self) -> None:
+        self._spheres = _Spheres()
+        self._keys: list[tuple[object, ...]] = []
+        self._contents: SceneContents | None = None
+        self._direction: tuple[float, ...] = ()
+        self._poses = np.zeros((0, 4, 4))
+        self._casting = self._framed = self._at_rest = np.zeros(0, bool)
+        self._rest_poses = np.zeros((0, 4, 4))
+        self._rest_drawn = self._shows_rest = False
+        self._frame: tuple[object, ...] = ()
+        self.clip_from_light: NDArray[np.float64] = np.eye(4)
+        self.light_from_world: NDArray[np.float64] = np.eye(4)
+        self.map_from_world: NDArray[np.float64] = np.eye(4)
+        self.texel_m = 0.0
+
+    def update(
+        self,
+        light: Light,
+        snapshot: WorldSnapshot,
+        *,
+        casting: NDArray[np.bool_] | None = None,
+        framed: NDArray[np.bool_] | None = None,
+    ) -> ShadowRedraw | None:
+        """Return what is to be drawn now; None if the map is as it should be.
+
+        Parameters
+        ----------
+        casting : (N,) bool or None
+            Which instances cast; None for all.
+        framed : (N,) bool or None
+            Which instances the map encloses; None for all. Things that move are better left out:
+            a map that follows them changes its texels' places, and so every shadow's edge.
+        """
+        self._follow(snapshot.contents)
+        poses = self._steady(snapshot)
+        everything = np.ones(len(poses), bool)
+        casting = everything if casting is None else casting
+        framed = everything if framed is None else framed
+        same = (
+            self._direction == light.direction
+            and np.array_equal(self._casting, casting)
+            and np.array_equal(self._framed, framed)
+        )
+        concerned = casting | framed
+        if same and np.array_equal(self._poses[concerned], poses[concerned]):
+            return None
+        moved = (poses != self._poses).any(axis=(1, 2)) if same else np.zeros(len(poses), bool)
+        self._direction, self._poses = light.direction, poses
+        self._casting, self._framed = casting, framed
+        self._fit(light, snapshot, poses, framed)
+        if self._is_stale(casting):
+            # Drawn apart only when it is needed a second time: what goes on moving never is.
+            self._at_rest, self._rest_poses, self._rest_drawn = casting & ~moved, poses, False
+            self._shows_rest = not (casting & moved).any()
+            return ShadowRedraw(poses, casting)
+        keep = not self._rest_drawn and self._shows_rest
+        resting = None if self._rest_drawn or keep else self._at_rest
+        self._rest_drawn, self._shows_rest = True, False
+        return ShadowRedraw(poses, casting & ~self._at_rest, keep, resting, from_resting=True)
+
+    def _follow(self, contents: SceneContents) -> None:
+        """Find the instances of before among the rows of other contents."""
+        if self._contents is contents:
+            return
+        same = self._contents is not None and self._contents.instances is contents.instances
+        keys = self._keys if same else [_key(drawn) for drawn in contents.instances]
+        if keys != self._keys:
+            row_of = {key: row for row, key in enumerate(self._keys)}
+            rows = np.array([row_of.get(key, -1) for key in keys], np.intp)
+            gone = np.ones(len(self._keys), bool)
+            gone[rows[rows >= 0]] = False
+            if (gone & (self._casting | self._framed)).any():
+                self._direction, self._frame = (), ()
+            known = rows >= 0
+
+            def brought(before: NDArray[np.bool_]) -> NDArray[np.bool_]:
+                result = np.zeros(len(keys), bool)
+                result[known] = before[rows[known]]
+                return result
+
+            def placed(before: NDArray[np.float64]) -> NDArray[np.float64]:
+                result = np.full((len(keys), 4, 4), np.nan)
+                result[known] = before[rows[known]]
+                return result
+
+            if (gone & _sized(self._at_rest, len(gone))).any():
+                self._rest_drawn, self._at_rest = False, np.zeros(0, bool)
+            self._casting, self._framed = brought(self._casting), brought(self._framed)
+            self._poses = placed(self._poses)
+            if len(self._at_rest) == len(gone):
+                self._at_rest = brought(self._at_rest)
+                self._rest_poses = placed(self._rest_poses)
+        # The number of a model is unique only while it lives: the contents keep it.
+        self._contents, self._keys = contents, keys
+
+    def _steady(self, snapshot: WorldSnapshot) -> NDArray[np.float64]:
+        """Return the poses of casters, as they were drawn last where that is near enough."""
+        poses = snapshot.world_from_body
+        if not self._direction:
+            return poses
+        off = np.abs(poses - self._poses)
+        # No point of it has moved by more.
+        reach = self._spheres.reaches(snapshot.contents)
+        most = off[:, :3, 3].sum(axis=1) + reach * off[:, :3, :3].sum(axis=(1, 2))
+        near = most <= STEADY_TEXELS * self.texel_m
+        return np.where(near[:, None, None], self._poses, poses)
+
+    def _fit(
+        self,
+        light: Light,
+        snapshot: WorldSnapshot,
+        poses: NDArray[np.float64],
+        framed: NDArray[np.bool_],
+    ) -> None:
+        """Enclose the framed instances, if that is not done yet."""
+        keys = tuple(key for key, is_framed in zip(self._keys, framed, strict=True) if is_framed)
+        frame = (light.direction, keys, poses[framed].tobytes())
+        if self._frame == frame:
+            return
+        self._frame = frame
+        self._at_rest = np.zeros(0, bool)
+        self.clip_from_light, self.light_from_world, width_m = _frustum(
+            light, self._spheres.of(snapshot.contents, poses), framed
+        )
+        self.texel_m = width_m / SIZE_PX
+        # From clip space, -1 to 1, to texture space, 0 to 1.
+        half = np.diag([0.5, 0.5, 0.5, 1.0])
+        half[:3, 3] = 0.5
+        self.map_from_world = half @ self.clip_from_light @ self.light_from_world
+
+    def _is_stale(self, casting: NDArray[np.bool_]) -> bool:
+        """Return whether something that was drawn as resting has moved since, or casts no more."""
+        rest = self._at_rest
+        if len(rest) != len(casting) or (rest & ~casting).any():
+            return True
+        return not np.array_equal(self._poses[rest], self._rest_poses[rest])
+
+
+def _key(drawn: DrawnInstance) -> tuple[object, ...]:
+    """Return a key that tells casters apart while their models live."""
+    return drawn.instance.id, id(drawn.model), drawn.scale
+
+
+def _sized(mask: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
+    return mask if len(mask) == count else np.zeros(count, bool)
+
+
+def _frustum(
+    light: Light,
+    spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
+    framed: NDArray[np.bool_],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Fit an orthographic box along the light around those instances that can cast."""
+    forward = np.asarray(light.direction)
+    helper = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
+    right = np.cross(forward, helper)
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    light_from_world = np.eye(4)
+    light_from_world[:3, :3] = np.stack([right, up, forward])
+    low, high = _caster_bounds(light_from_world, spheres, framed)
+    width = float(max(high[0] - low[0], high[1] - low[1], 0.5)) * 1.05
+    centre = 0.5 * (low + high)
+    near, far = float(low[2]) - 0.5, float(high[2]) + 0.5
+    clip = np.diag([2.0 / width, 2.0 / width, 2.0 / (far - near), 1.0])
+    clip[:3, 3] = [
+        -2.0 * centre[0] / width,
+        -2.0 * centre[1] / width,
+        -(far + near) / (far - near),
+    ]
+    return clip, light_from_world, width
+
+
+class _Spheres:
+    """Spheres around the instances of the contents seen last, in their own frames."""
+
+    def __init__(self) -> None:
+        self._instances: tuple[DrawnInstance, ...] | None = None
+        self._middles = np.zeros((0, 3))
+        self._radii = np.zeros(0)
+
+    def of(
+        self, contents: SceneContents, poses: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return centres in the world (N, 3) and radii (N,) [m]; 0 for what casts no shadow."""
+        self._know(contents)
+        centres = (poses[:, :3, :3] @ self._middles[:, :, None])[:, :, 0] + poses[:, :3, 3]
+        return centres, self._radii
+
+    def reaches(self, contents: SceneContents) -> NDArray[np.float64]:
+        """Return (N,): how far spheres reach from their bodies' origins [m]."""
+        self._know(contents)
+        reaches: NDArray[np.float64] = np.linalg.norm(self._middles, axis=1) + self._radii
+        return reaches
+
+    def _know(self, contents: SceneContents) -> None:
+        if self._instances is contents.instances:
+            return
+        self._instances = contents.instances
+        boxes = _boxes(contents.instances)
+        extents = boxes[:, 1] - boxes[:, 0]
+        self._middles = boxes.mean(axis=1)
+        self._radii = np.where(_casting(extents), 0.5 * np.linalg.norm(extents, axis=1), 0.0)
+
+
+def _caster_bounds(
+    light_from_world: NDArray[np.float64],
+    spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
+    framed: NDArray[np.bool_],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    centres, radii = spheres
+    # What has been flung out of the world must not take the map along.
+    near = (np.abs(centres) <= FARTHEST_M).all(axis=1)
+    counts = framed & (radii > 0.0) & near
+    if not counts.any():
+        return np.full(3, -5.0), np.full(3, 5.0)
+    seen, around = centres[counts] @ light_from_world[:3, :3].T, radii[counts, None]
+    low, high = (seen - around).min(axis=0), (seen + around).max(axis=0)
+    # What receives the shadow may lie behind the last caster.
+    high[2] += 6.0
+    return low, high

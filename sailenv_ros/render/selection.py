@@ -1,0 +1,78 @@
+"""Which renderer draws: graphics hardware, the native library, or a fallback."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+from sailenv_ros.errors import ContextError, NativeLibraryError, UnknownName
+from sailenv_ros.render.contract import BACKEND_NAMES, BackendName, RenderBackend
+
+__all__ = ["graphics_hardware", "make_backend"]
+
+_log = logging.getLogger(__name__)
+
+_DEVICE_FILES = ("dri/renderD*", "nvidia*", "dxg", "mali*", "kgsl*")
+"""What drivers of graphics hardware put into /dev; without any there is none to be found."""
+
+
+def make_backend(backend: BackendName, device: int | None) -> RenderBackend:
+    """Make a renderer in the calling thread, which alone may use it.
+
+    Parameters
+    ----------
+    backend : {'auto', 'native', 'gl', 'tiny'}
+        ``auto`` takes OpenGL on graphics hardware, or on the device that is asked for; else the
+        native library; where that is missing OpenGL in software, and last ``tiny``. Each step down
+        is told in a warning that says why.
+    device : int or None
+        Number of the EGL device.
+
+    Raises
+    ------
+    ContextError
+        If OpenGL was asked for and there is no context.
+    NativeLibraryError
+        If the native library was asked for and there is none.
+    UnknownName
+        If there is no back end of that name.
+    """
+    if backend not in BACKEND_NAMES:
+        raise UnknownName("renderer", backend, BACKEND_NAMES)
+    if backend == "auto" and device is None:
+        device = graphics_hardware()
+    if backend == "native" or (backend == "auto" and device is None):
+        try:
+            from sailenv_ros.render.cpu.renderer import NativeRenderer
+
+            return NativeRenderer()
+        except NativeLibraryError as problem:
+            if backend == "native":
+                raise
+            _log.warning("drawing with OpenGL in software, which is slower: %s", problem)
+    if backend != "tiny":
+        try:
+            # Imported here: the others work where moderngl cannot even be imported.
+            from sailenv_ros.render.gl.renderer import Renderer
+
+            return Renderer(device=device)
+        except (ContextError, ImportError) as problem:
+            if backend == "gl":
+                raise
+            _log.warning("falling back to the slow software renderer: %s", problem)
+    from sailenv_ros.backends.tiny_renderer import TinyRenderer
+
+    return TinyRenderer()
+
+
+def graphics_hardware() -> int | None:
+    """Return EGL's number of the first device with graphics hardware; None if there is none."""
+    if not any(found for pattern in _DEVICE_FILES for found in Path("/dev").glob(pattern)):
+        # Asking EGL takes a tenth of a second, and longer where its drivers are not well.
+        return None
+    try:
+        from sailenv_ros.render.gl.context import probe_devices
+    except ImportError:
+        return None
+    reports = probe_devices()
+    return next((r.index for r in reports if not r.refused and not r.software), None)

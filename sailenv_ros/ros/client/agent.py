@@ -1,0 +1,402 @@
+"""The facade: a camera in the simulator as one Python object, for people who know no ROS.
+
+Has the method names of the SAILenv client, and the operations of `Simulation`. Raises typed errors
+and never prints; every wait has a deadline. World coordinates are those of ROS (x forward, y left,
+z up) [m], angles [deg].
+"""
+
+from __future__ import annotations
+
+import atexit
+import inspect
+import threading
+import uuid
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from sailenv_msgs_py.services import SERVICES
+from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
+from sailenv_ros.frame.html import scene_html
+from sailenv_ros.ros.client.frame_client import FrameClient
+from sailenv_ros.ros.client.recorded import RecordedAgent
+from sailenv_ros.ros.client.remote import RemoteSimulator
+from sailenv_ros.simulation.operations import Operation, Operations
+from sailenv_ros.types.agents import AgentSpec, check_frame_rate
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import checked_views
+
+__all__ = ["Agent"]
+
+ORDINARY_S = 30.0
+"""An operation whose own deadline is longer takes long by nature [s]."""
+
+END_S = 2.0
+"""How long the simulator may take to take note of an Agent's end [s]."""
+
+
+class Agent(Operations):
+    """A camera of its own in the simulator; a context manager.
+
+    Parameters
+    ----------
+    main_frame_active, object_frame_active, category_frame_active, flow_frame_active, \
+depth_frame_active : bool
+        Which views `get_frame` gives.
+    width, height : int
+        Size of the frames [px], 8 to 4096.
+    views : sequence of str
+        More views, by their names in `sailenv_ros.frame.frame.VIEWS`.
+    vertical_fov_deg : float
+        Full vertical angle of view [deg].
+    near_m, far_m : float
+        Nearest and farthest depth that is seen [m].
+    depth_range_m : float
+        Depth that the 8-bit depth picture shows as black [m].
+    following : bool
+        True if the camera starts on the scene's mover.
+    picture : PictureSettings or None
+        What is done to its picture; None means the defaults.
+    name : str
+        Name of the agent; empty makes a unique one.
+    namespace : str
+        The simulator's ROS namespace.
+    domain_id : int or None
+        ROS domain; None means that of the environment.
+    simulator : mapping or None
+        Parameters of the simulator node if one has to be started, e.g. ``{"scene": "optical"}``.
+    timeout_s : float
+        Deadline of each operation [s], but of those that take long by nature (another scene, steps,
+        uploads): they keep their own. Starting a simulator may take up to `start_timeout_s`.
+
+    Raises
+    ------
+    InvalidRequest
+        If an argument cannot be accepted.
+    SimulationClosed, DeadlineExceeded
+        If there is no simulator and none could be started.
+    """
+
+    def __init__(
+        self,
+        main_frame_active: bool = True,
+        object_frame_active: bool = True,
+        category_frame_active: bool = True,
+        flow_frame_active: bool = True,
+        depth_frame_active: bool = True,
+        width: int = 640,
+        height: int = 480,
+        *,
+        views: Sequence[str] = (),
+        vertical_fov_deg: float = 60.0,
+        near_m: float = 0.05,
+        far_m: float = 100.0,
+        depth_range_m: float = 10.0,
+        following: bool = True,
+        picture: PictureSettings | None = None,
+        name: str = "",
+        namespace: str = "/sailenv",
+        domain_id: int | None = None,
+        simulator: Mapping[str, object] | None = None,
+        timeout_s: float = 10.0,
+        start_timeout_s: float = 60.0,
+    ) -> None:
+        active = {
+            "rgb": main_frame_active,
+            "depth": depth_frame_active,
+            "category": category_frame_active,
+            "instance": object_frame_active,
+            "flow": flow_frame_active,
+        }
+        wanted = [view for view, is_active in active.items() if is_active]
+        self._spec = AgentSpec(
+            name=name or f"agent_{uuid.uuid4().hex[:10]}",
+            intrinsics=CameraIntrinsics(
+                width=width,
+                height=height,
+                vertical_fov_deg=vertical_fov_deg,
+                near_m=near_m,
+                far_m=far_m,
+            ),
+            depth_range_m=depth_range_m,
+            rate_hz=0.0,
+            views=checked_views([*wanted, *views]),
+            following=following,
+            picture=PictureSettings() if picture is None else picture,
+        )
+        self._timeout_s = timeout_s
+        self._lock = threading.RLock()
+        self._frames: FrameClient | None = None
+        self._worker: ThreadPoolExecutor | None = None
+        self._closed = False
+        self._recaptured = 0
+        self._remote = RemoteSimulator(
+            namespace=namespace,
+            domain_id=domain_id,
+            simulator=simulator,
+            start_timeout_s=start_timeout_s,
+        )
+        atexit.register(self.close)
+        try:
+            self.register()
+        except BaseException:
+            self.close()
+            raise
+
+    # -- life ------------------------------------------------------------------------------
+
+    @property
+    def id(self) -> str:
+        """Name of this agent in the simulator, and of its topics."""
+        return self._spec.name
+
+    @property
+    def own_agent(self) -> str:
+        """Name of this agent: the one that operations mean if none is named."""
+        return self._spec.name
+
+    @property
+    def simulator_pid(self) -> int | None:
+        """Process id of the simulator if it was started here, else None."""
+        return self._remote.process_id
+
+    def register(self) -> None:
+        """Make the agent known to the simulator; done on construction, needed after `delete`."""
+        with self._lock:
+            if self._frames is not None:
+                return
+            frames = FrameClient(self._remote, self._spec)
+            try:
+                self._spec = self.register_agent(self._spec)
+                frames.begin(self._spec, self._timeout_s)
+            except BaseException:
+                frames.close()
+                raise
+            self._frames = frames
+
+    def delete(self) -> None:
+        """Remove the agent from the simulator; a second call does nothing."""
+        with self._lock:
+            if self._frames is None:
+                return
+            frames, self._frames = self._frames, None
+            self._recaptured += frames.recaptured
+            try:
+                # Before its subscriptions: an agent whose client is gone is removed as it is.
+                self.delete_agent(self.id)
+            finally:
+                frames.close()
+                self._remote.connection.forget_services(self.id)
+
+    def rejoin(self) -> None:
+        """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.
+
+        The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
+        """
+        self._remote.connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            # Where the old simulator lives after all, it shall not keep the name.
+            with suppress(SailenvError):
+                self.delete()
+            self._remote.reconnect()
+            self.register()
+
+    def close(self) -> None:
+        """Remove the agent and disconnect; a second call does nothing.
+
+        A simulator that was started for this agent ends with the last one that uses it.
+        """
+        if self._remote.connection.is_inherited:
+            return  # it is the parent's, who goes on with it
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            atexit.unregister(self.close)
+            self._timeout_s = min(self._timeout_s, END_S)
+            if self._worker is not None:
+                self._worker.shutdown(wait=False, cancel_futures=True)
+            try:
+                self.delete()
+            except SailenvError:
+                pass  # the simulator is gone, and with it the agent
+            finally:
+                self._remote.close()
+
+    def _repr_html_(self) -> str:
+        """Return a table of what is simulated, for notebooks."""
+        return scene_html(f"Agent {self.id}", self.info)
+
+    def __enter__(self) -> Agent:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    # -- operations ------------------------------------------------------------------------
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as the simulator announced it last; never blocks."""
+        return self._remote.info
+
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Begin an operation in a thread of its own; one is done after the other."""
+        self._remote.connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            if self._worker is None:
+                self._worker = ThreadPoolExecutor(1, thread_name_prefix=f"{self.id}-operations")
+            return self._worker.submit(self.call_operation, operation, arguments, None)
+
+    def call_operation(
+        self,
+        operation: Operation[..., Any],
+        arguments: inspect.BoundArguments,
+        timeout_s: float | None,
+    ) -> Any:
+        """Carry an operation out in the simulator and return its result."""
+        self._remote.connection.check_process()
+        limit_s = self._deadline_s(operation) if timeout_s is None else timeout_s
+        service = SERVICES[operation.name]
+        if service.of_agent and arguments.arguments["agent"] == self.id:
+            frames = self._own_frames
+            if operation is Operations.capture:
+                with self._lock:
+                    return frames.capture(arguments.arguments.get("views"), limit_s)
+        elif operation is Operations.capture:
+            accepted = f"{self.id!r}: an Agent receives its own frames alone"
+            raise InvalidRequest("agent", arguments.arguments["agent"], accepted)
+        return self._remote.call(service, arguments, limit_s)
+
+    @property
+    def picture(self) -> PictureSettings:
+        """How the pictures are made now; the simulator is asked."""
+        return self.get_picture()
+
+    # -- frames ----------------------------------------------------------------------------
+
+    @property
+    def recaptured(self) -> int:
+        """How often a frame was asked for anew because images did not arrive."""
+        return self._recaptured + (0 if self._frames is None else self._frames.recaptured)
+
+    def get_frame(
+        self,
+        views: Sequence[str] = (),
+        *,
+        agent: str | None = None,
+        timeout_s: float | None = None,
+    ) -> dict[str, Any]:
+        """Render one frame now and return it as the dict of the SAILenv client.
+
+        It shows the world after everything that this agent asked for before.
+
+        Parameters
+        ----------
+        views : sequence of str
+            More views than the agent's own, by their names in `sailenv_ros.frame.frame.VIEWS`; rendered
+            for this frame alone.
+        agent : str or None
+            This one.
+        timeout_s : float or None
+            Deadline [s]; None means the agent's own.
+
+        Returns
+        -------
+        frame : dict
+            See `sailenv_ros.frame.frame.Frame.to_dict`; every array is the caller's own.
+
+        Raises
+        ------
+        SimulatorLost
+            If the simulator has ended.
+        DeadlineExceeded
+            If no complete frame arrived in time; `recaptured` counts the attempts that were
+            repeated because images did not arrive.
+        """
+        wanted = (*self._spec.views, *views) if views else None
+        capture = self.capture if timeout_s is None else self.capture.within(timeout_s)
+        # What was received is nobody else's: it is handed over as it is.
+        return capture(wanted, agent=agent).to_dict(copy=False)
+
+    def frames(
+        self, rate_hz: float = 30.0, *, agent: str | None = None, timeout_s: float | None = None
+    ) -> Iterator[dict[str, Any]]:
+        """Yield frame after frame at a rate of simulated time, the newest each time.
+
+        Whoever is slower than the rate misses frames, which shows in their `sequence`. The rate
+        ends with the iteration; a view asked of `get_frame` before is in these frames too.
+
+        Parameters
+        ----------
+        rate_hz : float
+            Frames per simulated second, above 0 and up to 240.
+        agent : str or None
+            This one.
+        timeout_s : float or None
+            Deadline of each frame [s]; None means the agent's own.
+
+        Yields
+        ------
+        frame : dict
+            As of `get_frame`.
+
+        Raises
+        ------
+        SimulatorLost, DeadlineExceeded
+            If no frame came in time.
+        """
+        check_frame_rate(rate_hz)
+        if agent not in (None, self.id):
+            raise InvalidRequest("agent", agent, f"{self.id!r}: an Agent receives its own frames")
+        limit_s = self._timeout_s if timeout_s is None else timeout_s
+        self.set_rate(rate_hz)
+        try:
+            sequence = 0
+            while True:
+                frame = self._own_frames.newer(sequence, limit_s)
+                sequence = frame.sequence
+                yield frame.to_dict(copy=False)
+        finally:
+            if self._frames is not None and self._remote.connection.simulator_lives():
+                self.set_rate(0.0)
+
+    @staticmethod
+    def from_recording(path: str | Path, agent: str = "") -> RecordedAgent:
+        """Open a recording as an agent whose `get_frame` returns what was seen then.
+
+        Parameters
+        ----------
+        path : str or Path
+            A bag folder, or one MCAP file.
+        agent : str
+            Name of the agent; empty if there is only one.
+
+        Raises
+        ------
+        RecordingError, UnknownName
+            If it cannot be read, or has no such agent.
+        """
+        return RecordedAgent(path, agent)
+
+    # -- inside ----------------------------------------------------------------------------
+
+    @property
+    def _own_frames(self) -> FrameClient:
+        if self._frames is None:
+            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
+        return self._frames
+
+    def _deadline_s(self, operation: Operation[..., Any]) -> float:
+        takes_long = operation.deadline_s > ORDINARY_S
+        return max(self._timeout_s, operation.deadline_s) if takes_long else self._timeout_s

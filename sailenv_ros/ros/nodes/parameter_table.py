@@ -1,0 +1,234 @@
+"""The parameters of sim_node as a table: description, range or choices; and as a dataclass.
+
+They say how to run, never what a scene is. Those in `LIVE` may be changed while the node runs (see
+`live_parameters`); a change of another is refused by ROS, and its description says what to use.
+Knows no ROS, so that a simulator that starts before ROS is installed reads the same table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
+from sailenv_ros.gateway.protocol_commands import Protocol
+from sailenv_ros.render.contract import BACKEND_NAMES, BackendName
+from sailenv_ros.types.agents import MAX_RATE_HZ, AgentSpec
+from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.scene_info import TimeMode
+from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
+from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
+from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
+
+__all__ = ["LIVE", "PARAMETERS", "Parameter", "SimParameters", "sim_parameters"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimParameters:
+    """How to run the simulator.
+
+    Attributes
+    ----------
+    scene : str
+    mode : {'realtime', 'lockstep'}
+    real_time_factor : float
+    seed : int
+    paused : bool
+    backend : {'auto', 'native', 'gl', 'tiny'}
+    render_device : int or None
+    scene_paths : tuple of Path
+    allow_modules : bool
+    build_missing : {'nothing', 'scene', 'all'}
+    publish_clock : bool
+    publish_instance_tf : bool
+    gateway_host : str
+    gateway_port : int
+        0 for none.
+    gateway_protocol : {'0.5', '0.6'}
+    viewer_host : str
+    viewer_port : int
+        0 for none.
+    viewer_control : bool
+    agent : AgentSpec or None
+        The agent that is there from the start.
+    """
+
+    scene: str | None
+    mode: TimeMode
+    real_time_factor: float
+    seed: int
+    paused: bool
+    backend: BackendName
+    render_device: int | None
+    scene_paths: tuple[Path, ...]
+    allow_modules: bool
+    build_missing: str
+    publish_clock: bool
+    publish_instance_tf: bool
+    gateway_host: str
+    gateway_port: int
+    gateway_protocol: str
+    viewer_host: str
+    viewer_port: int
+    viewer_control: bool
+    agent: AgentSpec | None
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One parameter of a node: default, description, range or choices."""
+
+    default: Any
+    description: str
+    low: float | None = None
+    high: float | None = None
+    choices: tuple[str, ...] = ()
+
+    def of_wrong_type(self, name: str, given: object) -> InvalidRequest:
+        """Return the error that names the type which is wanted."""
+        return InvalidRequest(f"parameter {name}", given, f"of the type of {self.default!r}")
+
+    def out_of_range(self, name: str, given: object) -> InvalidRequest:
+        """Return the error that names the range."""
+        unit = self.description.rstrip(".")
+        wanted = f"from {self.low:g} to {self.high:g} ({unit})"
+        return InvalidRequest(f"parameter {name}", given, wanted)
+
+    def check_choice(self, name: str, value: object) -> None:
+        """Refuse a text that is none of the choices."""
+        if self.choices and isinstance(value, str) and value not in self.choices:
+            raise UnknownName(f"parameter {name}", value, self.choices)
+
+
+LIVE = ("real_time_factor", "agent.rate_hz")
+"""Parameters that take effect while the node runs."""
+
+PARAMETERS: dict[str, Parameter] = {
+    "scene": Parameter(
+        "",
+        "Name of the first scene, or the path of a scene file; later: the service change_scene. "
+        "Empty: room_01, or optical where the furniture has not been built.",
+    ),
+    "scene_paths": Parameter([""], "More folders with scenes; an empty path counts for nothing."),
+    "allow_modules": Parameter(
+        False,
+        "True: scene files may have behaviours of Python modules, whose code runs in this process.",
+    ),
+    "mode": Parameter(
+        "realtime",
+        "realtime: simulated time follows the wall clock; lockstep: it moves by the step service.",
+        choices=("realtime", "lockstep"),
+    ),
+    "real_time_factor": Parameter(
+        1.0, "Simulated seconds per wall second, in realtime mode.", 0.1, 10.0
+    ),
+    "seed": Parameter(
+        0, "Seed of every random number of the scene; later: the service reset.", 0, 2**63 - 1
+    ),
+    "paused": Parameter(
+        False,
+        "True: start with simulated time standing still; later: the services pause and resume.",
+    ),
+    "backend": Parameter(
+        "auto",
+        "Renderer: gl = OpenGL, native = made for processors, tiny = slow fallback, auto = gl on "
+        "graphics hardware, else native.",
+        choices=BACKEND_NAMES,
+    ),
+    "render_device": Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
+    "build_missing": Parameter(
+        "nothing",
+        "What is built in the background: furniture and light that the first scene lacks, or all.",
+        choices=("nothing", "scene", "all"),
+    ),
+    "publish_clock": Parameter(
+        True, "True: publish simulated time on /clock, unless another simulator there does."
+    ),
+    "publish_instance_tf": Parameter(
+        False, "True: every published frame tells the poses of all objects on /tf (object/<name>)."
+    ),
+    "gateway.port": Parameter(
+        DEFAULT_PORT, "TCP port for SAILenv clients; 0: none.", 0, 65535
+    ),
+    "gateway.host": Parameter(
+        DEFAULT_HOST, "Address that port listens on; 0.0.0.0: all, without any password."
+    ),
+    "gateway.protocol": Parameter(
+        "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
+    ),
+    "viewer.port": Parameter(
+        VIEWER_PORT, "TCP port of the web viewer; 0: none.", 0, 65535
+    ),
+    "viewer.host": Parameter(
+        VIEWER_HOST, "Address that port listens on; 0.0.0.0: all, with a token in the URL."
+    ),
+    "viewer.control": Parameter(
+        False, "True: those from other machines may change things there, not only watch."
+    ),
+    "agent.name": Parameter("agent", "Name of the first agent; empty: start without one."),
+    "agent.width": Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
+    "agent.height": Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
+    "agent.vertical_fov_deg": Parameter(60.0, "Full vertical angle of view [deg].", 1.0, 170.0),
+    "agent.near_m": Parameter(0.05, "Nearest depth that is seen [m].", 1e-3, 1e4),
+    "agent.far_m": Parameter(100.0, "Farthest depth that is seen [m].", 1e-3, 1e4),
+    "agent.depth_range_m": Parameter(
+        10.0, "Depth that the 8-bit depth picture shows as black [m].", 1e-3, 1e4
+    ),
+    "agent.rate_hz": Parameter(
+        30.0, "Frames per simulated second; 0: on request only [Hz].", 0.0, MAX_RATE_HZ
+    ),
+    "agent.views": Parameter(
+        list(FIVE_VIEWS), "Views of a captured frame unless the request names others.",
+        choices=RENDERED_VIEWS,
+    ),
+    "agent.following": Parameter(True, "True: it takes over the pose of its mover."),
+    "agent.mover": Parameter("", "Name of the mover; empty: the scene's first."),
+}  # fmt: skip
+
+
+def sim_parameters(values: Mapping[str, Any]) -> SimParameters:
+    """Return the parameters with values that have been checked, by their names in the table."""
+    return SimParameters(
+        scene=values["scene"] or None,
+        mode=cast(TimeMode, values["mode"]),
+        real_time_factor=values["real_time_factor"],
+        seed=values["seed"],
+        paused=values["paused"],
+        backend=cast(BackendName, values["backend"]),
+        render_device=None if values["render_device"] < 0 else values["render_device"],
+        scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
+        allow_modules=values["allow_modules"],
+        build_missing=values["build_missing"],
+        publish_clock=values["publish_clock"],
+        publish_instance_tf=values["publish_instance_tf"],
+        gateway_host=values["gateway.host"],
+        gateway_port=values["gateway.port"],
+        gateway_protocol=values["gateway.protocol"],
+        viewer_host=values["viewer.host"],
+        viewer_port=values["viewer.port"],
+        viewer_control=values["viewer.control"],
+        agent=_agent(values),
+    )
+
+
+def _agent(values: Mapping[str, Any]) -> AgentSpec | None:
+    if not values["agent.name"]:
+        return None
+    return AgentSpec(
+        name=values["agent.name"],
+        intrinsics=CameraIntrinsics(
+            width=values["agent.width"],
+            height=values["agent.height"],
+            vertical_fov_deg=values["agent.vertical_fov_deg"],
+            near_m=values["agent.near_m"],
+            far_m=values["agent.far_m"],
+        ),
+        depth_range_m=values["agent.depth_range_m"],
+        rate_hz=values["agent.rate_hz"],
+        views=tuple(values["agent.views"]),
+        following=values["agent.following"],
+        mover=values["agent.mover"],
+    )

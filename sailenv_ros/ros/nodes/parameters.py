@@ -1,0 +1,86 @@
+"""The parameters of a node: declared in ROS from a table and read.
+
+A parameter that is misspelt, of the wrong type or out of range is refused with a sentence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.ros.nodes.parameter_table import (
+    LIVE,
+    PARAMETERS,
+    Parameter,
+    SimParameters,
+    sim_parameters,
+)
+
+__all__ = ["declare_parameters", "declare_table"]
+
+
+def declare_parameters(node: Node) -> SimParameters:
+    """Declare every parameter of the simulator node and read it.
+
+    Raises
+    ------
+    InvalidRequest
+        If a value that was given has the wrong type or is out of range, or a name is unknown.
+    """
+    return sim_parameters(declare_table(node, PARAMETERS))
+
+
+def declare_table(node: Node, table: Mapping[str, Parameter]) -> dict[str, Any]:
+    """Declare the parameters of any node of this package; return their values by name.
+
+    Raises
+    ------
+    InvalidRequest
+        If a value that was given has the wrong type or is out of range, or a name is unknown.
+    """
+    _refuse_unknown(node, table)
+    return {name: _declare(node, name, entry) for name, entry in table.items()}
+
+
+def _declare(node: Node, name: str, entry: Parameter) -> Any:
+    try:
+        descriptor = _descriptor(entry, live=name in LIVE)
+        value = node.declare_parameter(name, entry.default, descriptor).value
+    except InvalidParameterTypeException:
+        raise entry.of_wrong_type(name, _given(node, name)) from None
+    except InvalidParameterValueException:
+        raise entry.out_of_range(name, _given(node, name)) from None
+    entry.check_choice(name, value)
+    return value
+
+
+def _given(node: Node, name: str) -> Any:
+    return node._parameter_overrides[name].value  # rclpy tells it nowhere else
+
+
+def _refuse_unknown(node: Node, table: Mapping[str, Parameter]) -> None:
+    """Refuse a misspelt parameter, which ROS would pass over in silence."""
+    for name in node._parameter_overrides:  # rclpy tells it nowhere else
+        ours = name in table
+        of_ros = name.startswith("qos_overrides.") or node.has_parameter(name)
+        if not ours and not of_ros:
+            raise UnknownName("parameter", name, table)
+
+
+def _descriptor(entry: Parameter, *, live: bool) -> ParameterDescriptor:
+    result = ParameterDescriptor(description=entry.description, read_only=not live)
+    if entry.choices:
+        result.additional_constraints = "one of: " + ", ".join(entry.choices)
+    if entry.low is not None and entry.high is not None:
+        if isinstance(entry.default, int):
+            span = IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)
+            result.integer_range = [span]
+        else:
+            bounds = FloatingPointRange(from_value=float(entry.low), to_value=float(entry.high))
+            result.floating_point_range = [bounds]
+    return result

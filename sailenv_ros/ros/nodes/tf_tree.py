@@ -1,0 +1,129 @@
+"""`/tf` and `/tf_static`: world → agent → camera → optical frame, where tf2_msgs is installed.
+
+On request also world → object, for every instance.
+
+Frames and agents' names in, transforms out. package.xml declares tf2_msgs, so a ROS 2 installation
+has it; the ROS 2 packages on PyPI lack it. Without it every call does nothing, and the topic
+`<agent>/pose` holds the same poses.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import threading
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped, Vector3
+from rclpy.node import Node
+from std_msgs.msg import Header
+
+from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, optical_frame_id
+from sailenv_msgs_py.transforms import pose_to_msg
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.ros.nodes.qos import frame_qos, latched_qos, no_events
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+
+__all__ = ["TfTree", "camera_frame_id", "fixed_transforms", "object_frame_id", "transform_of"]
+
+
+def camera_frame_id(agent: str) -> str:
+    """Return the name of the frame of an agent's camera (x forward, y left, z up)."""
+    return f"{agent}_camera"
+
+
+def object_frame_id(name: str) -> str:
+    """Return the name of the frame of an object; agents' names have no slash."""
+    return f"object/{name}"
+
+
+def transform_of(pose: Pose, header: Header, child_frame_id: str) -> TransformStamped:
+    """Make a transform of a pose in the header's frame."""
+    msg = pose_to_msg(pose)
+    place = msg.position
+    stamped = TransformStamped(header=header, child_frame_id=child_frame_id)
+    stamped.transform.translation = Vector3(x=place.x, y=place.y, z=place.z)
+    stamped.transform.rotation = msg.orientation
+    return stamped
+
+
+def fixed_transforms(agent: str) -> list[TransformStamped]:
+    """Return what never changes: agent → camera (they coincide) → optical frame (REP 103)."""
+    camera = Camera(intrinsics=CameraIntrinsics(), pose=Pose())
+    optical = Pose.from_matrix(camera.world_from_camera)
+    return [
+        transform_of(Pose(), Header(frame_id=agent), camera_frame_id(agent)),
+        transform_of(optical, Header(frame_id=camera_frame_id(agent)), optical_frame_id(agent)),
+    ]
+
+
+class TfTree:
+    """Publishes the tree of all agents; thread-safe as rclpy's publishers are.
+
+    Parameters
+    ----------
+    node : Node
+    instances : bool
+        True: frames tell the pose of every instance, too, as ``world`` → ``object/<name>``.
+    """
+
+    def __init__(self, node: Node, *, instances: bool = False) -> None:
+        self._instances = instances
+        self._told_ns = -1
+        self._telling = threading.Lock()
+        self._message: Any = None
+        self._static: dict[str, list[TransformStamped]] = {}
+        if importlib.util.find_spec("tf2_msgs") is None:
+            return
+        self._message = importlib.import_module("tf2_msgs.msg").TFMessage
+        # tf2's own names and qualities of service: global topics, latched for the static ones.
+        self._moving = node.create_publisher(
+            self._message, "/tf", frame_qos(), event_callbacks=no_events()
+        )
+        self._fixed = node.create_publisher(
+            self._message, "/tf_static", latched_qos(), event_callbacks=no_events()
+        )
+
+    @property
+    def wanted(self) -> bool:
+        """True if somebody subscribes to /tf."""
+        return self._message is not None and bool(self._moving.get_subscription_count())
+
+    def set_agents(self, names: tuple[str, ...]) -> None:
+        """Take note of the agents that there are."""
+        if self._message is None or set(names) == set(self._static):
+            return
+        self._static = {name: fixed_transforms(name) for name in names}
+        every = [transform for listed in self._static.values() for transform in listed]
+        # One latched message holds them all: a reader that comes late gets the last one alone.
+        self._fixed.publish(self._message(transforms=every))
+
+    def publish(self, agent: str, pose: Pose, stamp: Any) -> None:
+        """Send where an agent is at an instant."""
+        if not self.wanted:
+            return
+        header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
+        self._moving.publish(self._message(transforms=[transform_of(pose, header, agent)]))
+
+    def publish_instances(self, frame: Frame, stamp: Any) -> None:
+        """Send where every instance of a frame is, if that is asked for.
+
+        Several agents may see one instant: it is told once, as tf2 warns of repeated ones.
+        """
+        if not self._instances or frame.states is None or not self.wanted:
+            return
+        with self._telling:
+            # Simulated time goes back with a reset.
+            if frame.stamp_ns == self._told_ns:
+                return
+            self._told_ns = frame.stamp_ns
+            header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
+            names, states = frame.instances, frame.states
+            transforms = []
+            for row, number in enumerate(states.ids.tolist()):
+                if number in names:
+                    pose = Pose(tuple(states.positions[row]), tuple(states.orientations[row]))
+                    frame_id = object_frame_id(names[number].name)
+                    transforms.append(transform_of(pose, header, frame_id))
+            self._moving.publish(self._message(transforms=transforms))

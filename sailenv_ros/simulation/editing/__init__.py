@@ -1,0 +1,1 @@
+"""Edits of the running scene: journal, undo, saving."""

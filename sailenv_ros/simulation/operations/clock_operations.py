@@ -1,0 +1,93 @@
+"""Operations on the scene and its time: another scene, a new start, pause, steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.simulation.operations import argument_checks as check
+from sailenv_ros.simulation.operations.operation import Caller, operation
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+
+__all__ = ["MAX_STEPS", "ClockOperations"]
+
+MAX_STEPS = 1_000_000
+"""Most steps that one call of `step` may ask for (over an hour of simulated time)."""
+
+
+class ClockOperations(Caller):
+    """Scene and time, for all agents."""
+
+    @operation(deadline_s=120.0, scene=check.text)
+    @staticmethod
+    def change_scene(core: SimulationCore, scene: str) -> None:
+        """Leave the present world for another scene of `scenes`, at simulated time 0."""
+        core.begin(scene, core.seed, as_registered=False)
+
+    @operation(deadline_s=120.0)
+    @staticmethod
+    def reset(core: SimulationCore, seed: int | None = None) -> int:
+        """Begin the present scene anew, as it was at its start; return the new epoch.
+
+        Parameters
+        ----------
+        seed : int or None
+            0 to 2^63 - 1; None keeps the present one, and every byte comes back, also of what
+            was drawn at random. With a seed that is drawn anew.
+        """
+        chosen = core.seed if seed is None else seed
+        if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
+            raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
+        core.begin(
+            core.world.scene,
+            chosen,
+            as_registered=True,
+            more=core.additions,
+            chance=core.randomiser.chance_of_reset(seeded=seed is not None),
+        )
+        return core.epoch
+
+    @operation()
+    @staticmethod
+    def pause(core: SimulationCore) -> None:
+        """Stop simulated time; a second call does nothing."""
+        if core.clock.set_paused(True):
+            core.announce()
+
+    @operation()
+    @staticmethod
+    def resume(core: SimulationCore) -> None:
+        """Let simulated time run again; a second call does nothing."""
+        if core.clock.set_paused(False):
+            core.announce()
+
+    @operation()
+    @staticmethod
+    def set_real_time_factor(core: SimulationCore, factor: float) -> None:
+        """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
+        core.clock.set_real_time_factor(factor)
+        core.announce()
+
+    @operation(deadline_s=600.0)
+    @staticmethod
+    def step(core: SimulationCore, count: int = 1) -> int:
+        """Advance a paused or lockstep simulation, with every streamed frame that falls due.
+
+        Parameters
+        ----------
+        count : int
+            Physics steps of 1/240 s, 1 to 1,000,000.
+
+        Returns
+        -------
+        sim_time_ns : int
+            Simulated time afterwards [ns].
+        """
+        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_STEPS:
+            raise InvalidRequest("steps", count, f"an integer from 1 to {MAX_STEPS}")
+        if core.clock.runs_by_itself:
+            raise InvalidState("the simulation is running; pause it first, then step")
+        core.advance_to(core.world.step_count + count, every_frame=True)
+        return core.world.sim_time_ns

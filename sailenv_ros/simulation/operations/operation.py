@@ -1,0 +1,214 @@
+"""One operation: its name, signature, documentation, deadline and argument checks, said once.
+
+`operation` declares one in a class of operations. On an object of such a class, which is a
+`Caller`, it is a method that blocks; its `submit` returns a future instead. How an operation
+reaches the simulation is the caller's part.
+"""
+
+from __future__ import annotations
+
+import inspect
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar, overload
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.system.futures import wait_for
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+    from sailenv_ros.simulation.model_workers import ModelWorkers
+    from sailenv_ros.types.scene_info import SceneInfo
+
+__all__ = ["BoundOperation", "Caller", "Check", "Operation", "background_operation", "operation"]
+
+P = ParamSpec("P")
+R = TypeVar("R", covariant=True)
+
+Check = Callable[[str, Any], Any]
+"""Takes the name of an argument and its value, returns the value to use or raises."""
+
+
+class Caller(ABC):
+    """Carries out operations: in the same thread, in another one, or in another process."""
+
+    @property
+    @abstractmethod
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last; never blocks."""
+
+    @property
+    def own_agent(self) -> str | None:
+        """The agent that operations on agents mean if none is named; None is the scene's first."""
+        return None
+
+    @abstractmethod
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Begin an operation; operations of one caller are carried out in the order they came."""
+
+    def call_operation(
+        self,
+        operation: Operation[..., Any],
+        arguments: inspect.BoundArguments,
+        timeout_s: float | None,
+    ) -> Any:
+        """Carry out an operation and return its result; None means the operation's own deadline."""
+        limit_s = operation.deadline_s if timeout_s is None else timeout_s
+        future = self.submit_operation(operation, arguments)
+        return wait_for(future, f"the operation {operation.name!r}", limit_s)
+
+
+class Operation(Generic[P, R]):
+    """A declared operation; see `operation`.
+
+    Parameters
+    ----------
+    run : callable
+        ``run(core, ...)`` does it, or ``run(workers, ...)`` if it runs in the background.
+    deadline_s : float
+        How long a caller waits unless told otherwise [s].
+    checks : mapping of str to Check
+        Of arguments by their names, made before anything is sent.
+    background : bool
+        True if it is done beside the simulation's loop; `run` returns a future then.
+
+    Attributes
+    ----------
+    name : str
+    signature : inspect.Signature
+        As a caller sees it.
+    """
+
+    def __init__(
+        self,
+        run: Callable[..., Any],
+        deadline_s: float,
+        checks: Mapping[str, Check],
+        *,
+        background: bool = False,
+    ) -> None:
+        function = getattr(run, "__func__", run)
+        self.run: Callable[..., Any] = function
+        self.name: str = function.__name__
+        self.deadline_s = deadline_s
+        self.background = background
+        whole = inspect.signature(function)
+        self.signature = whole.replace(parameters=list(whole.parameters.values())[1:])
+        self.checks = MappingProxyType(dict(checks))
+        self.__doc__ = function.__doc__
+        self.__name__ = self.name
+        self.__signature__ = self.signature
+        self._positional = frozenset(
+            parameter.name
+            for parameter in self.signature.parameters.values()
+            if parameter.kind is inspect.Parameter.POSITIONAL_ONLY
+        )
+        unknown = set(checks) - set(self.signature.parameters)
+        if unknown:
+            raise TypeError(f"operation {self.name} has no argument {sorted(unknown)}")
+
+    @overload
+    def __get__(self, caller: None, owner: type) -> Operation[P, R]: ...
+    @overload
+    def __get__(self, caller: Caller, owner: type) -> BoundOperation[P, R]: ...
+    def __get__(self, caller: Caller | None, owner: type) -> Any:
+        return self if caller is None else BoundOperation(self, caller)
+
+    def __call__(self, caller: Caller, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Call it as an unbound method."""
+        return BoundOperation(self, caller)(*args, **kwargs)
+
+    def submit_to(self, caller: Caller, /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        """Begin it for a caller; the future has its result, or the error that it raised."""
+        return caller.submit_operation(self, self.bind(caller, args, kwargs))
+
+    def bind(
+        self, caller: Caller, args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> inspect.BoundArguments:
+        """Match arguments to parameters and check those that are given.
+
+        An `agent` that is not named is the caller's own.
+
+        Raises
+        ------
+        TypeError
+            If they do not fit the signature, as Python's own functions do.
+        InvalidRequest
+            If a value cannot be accepted.
+        """
+        for name in self._positional & kwargs.keys():
+            raise InvalidRequest(f"argument {name!r}", kwargs[name], "given by its position")
+        arguments = self.signature.bind(*args, **kwargs)
+        for name, check in self.checks.items():
+            if name in arguments.arguments:
+                arguments.arguments[name] = check(name, arguments.arguments[name])
+        if "agent" in self.signature.parameters and arguments.arguments.get("agent") is None:
+            arguments.arguments["agent"] = caller.own_agent
+        return arguments
+
+
+class BoundOperation(Generic[P, R]):
+    """An operation of one caller: call it, or `submit` it."""
+
+    def __init__(
+        self, operation: Operation[P, R], caller: Caller, timeout_s: float | None = None
+    ) -> None:
+        self._operation = operation
+        self._caller = caller
+        self._timeout_s = timeout_s
+        self.__doc__ = operation.__doc__
+        self.__name__ = operation.name
+        self.__signature__ = operation.signature
+
+    def __call__(self, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Do it and return its result, within its deadline."""
+        arguments = self._operation.bind(self._caller, args, kwargs)
+        result: R = self._caller.call_operation(self._operation, arguments, self._timeout_s)
+        return result
+
+    def submit(self, /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        """Begin it; the future has its result, or the error that it raised."""
+        return self._operation.submit_to(self._caller, *args, **kwargs)
+
+    def within(self, timeout_s: float) -> BoundOperation[P, R]:
+        """Return the same operation with another deadline [s]."""
+        return BoundOperation(self._operation, self._caller, timeout_s)
+
+    def __repr__(self) -> str:
+        return f"<operation {self._operation.name}{self._operation.signature}>"
+
+
+def operation(
+    deadline_s: float = 30.0, **checks: Check
+) -> Callable[[Callable[Concatenate[SimulationCore, P], R]], Operation[P, R]]:
+    """Declare an operation: decorate a static method whose first argument is the core.
+
+    The method either does all of it or raises and leaves everything as it was.
+
+    Parameters
+    ----------
+    deadline_s : float
+        How long a caller waits unless told otherwise [s].
+    **checks : Check
+        Of arguments, by their names.
+    """
+
+    def declare(run: Callable[Concatenate[SimulationCore, P], R]) -> Operation[P, R]:
+        return Operation(run, deadline_s, checks)
+
+    return declare
+
+
+def background_operation(
+    deadline_s: float, **checks: Check
+) -> Callable[[Callable[Concatenate[ModelWorkers, P], Future[R]]], Operation[P, R]]:
+    """Declare an operation that runs beside the simulation's loop and needs no world."""
+
+    def declare(run: Callable[Concatenate[ModelWorkers, P], Future[R]]) -> Operation[P, R]:
+        return Operation(run, deadline_s, checks, background=True)
+
+    return declare

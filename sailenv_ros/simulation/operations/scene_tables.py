@@ -1,0 +1,41 @@
+"""The scene as it was announced last, by the names of the SAILenv client."""
+
+from __future__ import annotations
+
+from sailenv_ros.simulation.operations.operation import Caller
+from sailenv_ros.types.scene_info import SceneObject
+
+__all__ = ["SceneTables"]
+
+
+class SceneTables(Caller):
+    """What is in the scene now; nothing here blocks."""
+
+    @property
+    def scene(self) -> str:
+        """Name of the present scene."""
+        return self.info.scene
+
+    @property
+    def scenes(self) -> list[str]:
+        """Names that `change_scene` takes."""
+        return list(self.info.scenes)
+
+    @property
+    def categories(self) -> dict[int, str]:
+        """Names of the categories by their ids, the values of the category view."""
+        return {category.id: category.name for category in self.info.categories.values()}
+
+    @property
+    def category_colours(self) -> dict[int, tuple[int, int, int]]:
+        """Red, green, blue of the categories' pictures by their ids."""
+        return {category.id: category.colour for category in self.info.categories.values()}
+
+    @property
+    def instances(self) -> dict[int, SceneObject]:
+        """The objects of the scene by their ids, the values of the instance view."""
+        return dict(self.info.objects)
+
+    def get_categories(self) -> dict[int, str]:
+        """Return `categories`, by the name that the SAILenv client has for it."""
+        return self.categories

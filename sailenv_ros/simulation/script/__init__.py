@@ -1,0 +1,1 @@
+"""Scheduled changes of the running scene: lessons, randomisation, scenarios."""

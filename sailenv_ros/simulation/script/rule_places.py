@@ -1,0 +1,70 @@
+"""Cameras that a scene has placed by rules: what was drawn in, places in the same words out.
+
+A record holds the place, so a frame is made again without the rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from sailenv_ros.authoring.viewpoints import sample_cameras
+from sailenv_ros.scene.randomise.thing import Values
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
+
+if TYPE_CHECKING:
+    from sailenv_ros.simulation.core import SimulationCore
+
+__all__ = ["agent_specs", "placed_by_rules"]
+
+LOOK_PX = 160
+"""Longer side of the pictures that rules look at."""
+
+
+def agent_specs(core: SimulationCore) -> dict[str, AgentSpec]:
+    """Return the agents by name, those too that the scene brings and that come right after."""
+    specs = (*core.library.agents_of(core.world.scene), *core.agents.specs)
+    return {spec.name: spec for spec in specs}
+
+
+def placed_by_rules(values: Values, core: SimulationCore) -> Values:
+    """Return drawn values with a position and a rotation instead of each rule.
+
+    A camera for which its rule finds no place keeps the one that it has.
+
+    Raises
+    ------
+    UnknownName, InvalidEntry, InvalidRequest
+        If a rule is asked for what the scene does not have.
+    """
+    agents: Mapping[str, Mapping[str, Any]] = values.get("agents", {})
+    if not any("rule" in keys for keys in agents.values()):
+        return values
+    specs = agent_specs(core)
+    placed: dict[str, Any] = {}
+    for name, given in agents.items():
+        keys = dict(given)
+        rule = keys.pop("rule", None)
+        if rule is not None and name in specs:
+            lens = _small(specs[name].intrinsics, keys.get("vertical_fov"))
+            views = sample_cameras(
+                core.view_scene(lens), rule["name"], seed=rule["seed"], settings=rule["settings"]
+            )
+            for view in views:
+                keys["position"] = list(view.pose.position_m)
+                keys["rotation"] = list(view.pose.rpy_deg)
+        placed[name] = keys
+    return {**values, "agents": placed}
+
+
+def _small(lens: CameraIntrinsics, fov_deg: float | None) -> CameraIntrinsics:
+    """Return a lens of the same angles with few pixels."""
+    share = min(1.0, LOOK_PX / max(lens.width, lens.height))
+    return replace(
+        lens,
+        width=max(16, round(share * lens.width)),
+        height=max(16, round(share * lens.height)),
+        vertical_fov_deg=lens.vertical_fov_deg if fov_deg is None else fov_deg,
+    )

@@ -1,0 +1,214 @@
+"""The pin-hole camera: sizes, field of view, matrices, projection.
+
+Integer pixel coordinates are pixel centres: (0, 0) is the centre of the top-left pixel, so
+cx = (W - 1) / 2 and cy = (H - 1) / 2. Points are in the camera optical frame (x right, y down,
+z forward) [m]. OpenGL's clip axes appear in `clip_from_optical` alone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.validation import checked_integer, checked_number
+
+__all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics", "require_drawable"]
+
+MIN_SIZE_PX = 8
+MAX_SIZE_PX = 4096
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraIntrinsics:
+    """What a camera sees, apart from where it stands.
+
+    Attributes
+    ----------
+    width, height : int
+        Size of the picture [px], 8 to 4096.
+    vertical_fov_deg : float
+        Full vertical angle of view [deg], 1 to 170.
+    near_m, far_m : float
+        Clip distances along the optical axis [m], 0.001 ≤ near < far ≤ 10000.
+
+    Raises
+    ------
+    InvalidRequest
+        If one of them is out of its range.
+    """
+
+    width: int = 640
+    height: int = 480
+    vertical_fov_deg: float = 60.0
+    near_m: float = 0.05
+    far_m: float = 100.0
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height"):
+            size = checked_integer(name, getattr(self, name), MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
+            object.__setattr__(self, name, size)
+        checked_number("vertical_fov_deg", self.vertical_fov_deg, 1.0, 170.0, unit="deg")
+        checked_number("near_m", self.near_m, 1e-3, 1e4, unit="m")
+        checked_number("far_m", self.far_m, 1e-3, 1e4, unit="m")
+        if self.near_m >= self.far_m:
+            raise InvalidRequest("near_m", self.near_m, f"less than far_m = {self.far_m:g} [m]")
+
+    @property
+    def fx(self) -> float:
+        """Focal length [px]; pixels are square, so fx = fy."""
+        return self.fy
+
+    @property
+    def fy(self) -> float:
+        """Focal length [px]: (H / 2) / tan(vertical field of view / 2)."""
+        return 0.5 * self.height / math.tan(0.5 * math.radians(self.vertical_fov_deg))
+
+    @property
+    def cx(self) -> float:
+        """Column of the optical axis [px]: (W - 1) / 2."""
+        return 0.5 * (self.width - 1)
+
+    @property
+    def cy(self) -> float:
+        """Row of the optical axis [px]: (H - 1) / 2."""
+        return 0.5 * (self.height - 1)
+
+    @property
+    def K(self) -> NDArray[np.float64]:
+        """(3, 3) intrinsic matrix; a new array."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    def clip_from_optical(self) -> NDArray[np.float64]:
+        """Return the (4, 4) OpenGL projection of points in the optical frame.
+
+        Clip w is the depth z; window row 0 of OpenGL is the picture's bottom row.
+        """
+        near, far = self.near_m, self.far_m
+        result = np.zeros((4, 4))
+        result[0, 0] = 2.0 * self.fx / self.width
+        result[1, 1] = -2.0 * self.fy / self.height
+        result[2, 2] = (far + near) / (far - near)
+        result[2, 3] = -2.0 * far * near / (far - near)
+        result[3, 2] = 1.0
+        return result
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Project points of the optical frame into the picture.
+
+        Parameters
+        ----------
+        points : (..., 3) array-like
+            Points in the optical frame [m].
+
+        Returns
+        -------
+        pixels : (..., 2) float64
+            Columns and rows (u, v) [px]; ``nan`` for points that are not in front of the camera.
+        """
+        p = np.asarray(points, dtype=np.float64)
+        z = np.where(p[..., 2] > 0.0, p[..., 2], np.nan)
+        u = self.fx * p[..., 0] / z + self.cx
+        v = self.fy * p[..., 1] / z + self.cy
+        return np.stack([u, v], axis=-1)
+
+    def rays(self) -> NDArray[np.float64]:
+        """Return (H, W, 3) the point at depth 1 m that each pixel's centre sees (optical frame)."""
+        x = (np.arange(self.width) - self.cx) / self.fx
+        y = (np.arange(self.height) - self.cy) / self.fy
+        result = np.ones((self.height, self.width, 3))
+        result[..., 0] = x[None, :]
+        result[..., 1] = y[:, None]
+        return result
+
+    def unproject(self, depth: NDArray[np.float32]) -> NDArray[np.float64]:
+        """Turn a depth picture into points.
+
+        Parameters
+        ----------
+        depth : (H, W) float32
+            Depth along the optical axis [m]; ``inf`` where nothing was hit, ``nan`` where the
+            surface was nearer than the near plane.
+
+        Returns
+        -------
+        points : (H, W, 3) float64
+            Points in the optical frame [m]; ``nan`` where the depth is not finite. A new array.
+        """
+        finite = np.where(np.isfinite(depth), depth, np.nan).astype(np.float64)
+        return self.rays() * finite[..., None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """A camera that stands somewhere.
+
+    Attributes
+    ----------
+    intrinsics : CameraIntrinsics
+    pose : Pose
+        Pose of the camera's body (x forward, y left, z up) in the world frame.
+    picture : PictureSettings
+        Concerns the ``rgb`` view alone.
+    name : str
+        Whose camera it is: two cameras have different noise.
+
+    Raises
+    ------
+    InvalidRequest
+        If the picture would have to be drawn larger than `MAX_SIZE_PX`.
+    """
+
+    intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
+    pose: Pose = field(default_factory=Pose)
+    picture: PictureSettings = field(default_factory=PictureSettings)
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        require_drawable(self.intrinsics, self.picture)
+
+    def of_samples(self) -> Camera:
+        """Return the camera whose pixels are the samples of this one's picture."""
+        times, lens = self.picture.supersampling, self.intrinsics
+        return replace(
+            self,
+            intrinsics=replace(lens, width=times * lens.width, height=times * lens.height),
+            picture=replace(self.picture, supersampling=1, smooth_edges=False),
+        )
+
+    @cached_property
+    def world_from_camera(self) -> NDArray[np.float64]:
+        """(4, 4) float64 read-only: world coordinates of points of the optical frame."""
+        matrix: NDArray[np.float64] = self.pose.matrix() @ BODY_FROM_OPTICAL
+        matrix.flags.writeable = False
+        return matrix
+
+    @cached_property
+    def camera_from_world(self) -> NDArray[np.float64]:
+        """(4, 4) float64 read-only: the inverse of `world_from_camera`."""
+        matrix = invert(self.world_from_camera)
+        matrix.flags.writeable = False
+        return matrix
+
+
+def require_drawable(intrinsics: CameraIntrinsics, picture: PictureSettings) -> None:
+    """Refuse a picture whose samples would be more than `MAX_SIZE_PX` a side.
+
+    Raises
+    ------
+    InvalidRequest
+        Naming what would be accepted for a picture of that size.
+    """
+    width, height, times = intrinsics.width, intrinsics.height, picture.supersampling
+    most = max(MAX_SIZE_PX // max(width, height), 1)
+    if times > most:
+        accepted = (
+            f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
+        )
+        raise InvalidRequest("supersampling", times, accepted)

@@ -1,0 +1,204 @@
+"""Lights and surroundings of a scene, as the renderer takes them.
+
+Colours are linear RGB. Positions and directions are in the world frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.types.validation import checked_number, vector
+
+__all__ = [
+    "LIGHT_ATTRIBUTES",
+    "LIGHT_LIMITS",
+    "Environment",
+    "Light",
+    "LightType",
+    "SkyMap",
+    "light_named",
+]
+
+LightType = Literal["directional", "point", "spot", "area"]
+
+LIGHT_LIMITS: dict[str, tuple[float, float, str]] = {
+    "intensity": (0.0, 1e6, ""),
+    "indirect_multiplier": (0.0, 1e6, ""),
+    "range_m": (0.0, 1e3, "m"),
+    "inner_cone_deg": (0.0, 89.0, "deg"),
+    "outer_cone_deg": (0.0, 89.0, "deg"),
+    "width_m": (0.0, 1e3, "m"),
+    "height_m": (0.0, 1e3, "m"),
+}
+"""Least and greatest value of each number of a light, and its unit."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Light:
+    """One light.
+
+    Attributes
+    ----------
+    name : str
+        Unique in its scene.
+    type : {'directional', 'point', 'spot', 'area'}
+    colour : (3,) tuple of float
+        Linear red, green, blue, each 0 or more.
+    intensity : float
+        Irradiance at normal incidence [W/m²] of a directional light; radiant intensity [W/sr] of
+        a point, spot light; radiance [W/(m² sr)] of an area light. 0 or more, unitless scale:
+        exposure maps it to the picture.
+    indirect_multiplier : float
+        Scales the light's bounced part only.
+    position_m : (3,) tuple of float
+        Of point, spot and area lights [m].
+    direction : (3,) tuple of float
+        Where the light travels to; of directional, spot and area lights. Unit length.
+    range_m : float
+        Beyond it a point or spot light has no effect [m].
+    inner_cone_deg, outer_cone_deg : float
+        Half angles of a spot light's full and vanishing brightness [deg].
+    width_m, height_m : float
+        Size of an area light [m].
+    """
+
+    name: str
+    type: LightType
+    colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    intensity: float = 1.0
+    indirect_multiplier: float = 1.0
+    position_m: tuple[float, float, float] = (0.0, 0.0, 3.0)
+    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)
+    range_m: float = 20.0
+    inner_cone_deg: float = 20.0
+    outer_cone_deg: float = 35.0
+    width_m: float = 1.0
+    height_m: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.type not in get_args(LightType):
+            raise UnknownName(f"type of light {self.name!r}", str(self.type), get_args(LightType))
+        colour = _radiance(f"colour of light {self.name!r}", self.colour)
+        for name, (low, high, unit) in LIGHT_LIMITS.items():
+            what = f"{name} of light {self.name!r}"
+            value = checked_number(what, getattr(self, name), low, high, unit=unit)
+            object.__setattr__(self, name, value)
+        if self.inner_cone_deg > self.outer_cone_deg:
+            accepted = f"at most outer_cone_deg = {self.outer_cone_deg:g} [deg]"
+            what = f"inner_cone_deg of light {self.name!r}"
+            raise InvalidRequest(what, self.inner_cone_deg, accepted)
+        x, y, z = vector(f"direction of light {self.name!r}", self.direction, limit=1e6)
+        length = (x * x + y * y + z * z) ** 0.5
+        if length < 1e-9:
+            raise InvalidRequest(f"direction of light {self.name!r}", (x, y, z), "not all zero")
+        position = vector(f"position of light {self.name!r}", self.position_m, limit=1e4)
+        object.__setattr__(self, "colour", colour)
+        if abs(length - 1.0) > UNIT_TOLERANCE:
+            x, y, z = x / length, y / length, z / length
+        object.__setattr__(self, "direction", (x, y, z))
+        object.__setattr__(self, "position_m", position)
+
+
+UNIT_TOLERANCE = 1e-12
+"""A direction whose length differs from 1 by no more stays as it is: dividing a unit vector by its
+length again changes last bits, and a light that only became brighter must not seem to have turned.
+"""
+
+LIGHT_ATTRIBUTES: tuple[str, ...] = tuple(f.name for f in fields(Light) if f.name != "name")
+"""Names of everything that can be changed of a light, in their order."""
+
+
+def light_named(name: str, lights: Iterable[Light]) -> Light:
+    """Find a light by its name.
+
+    Raises
+    ------
+    UnknownName
+        If there is none of that name.
+    """
+    by_name = {light.name: light for light in lights}
+    if not isinstance(name, str) or name not in by_name:
+        raise UnknownName("light", str(name), by_name)
+    return by_name[name]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class SkyMap:
+    """A picture of the whole sky; compared by identity: the same object is uploaded once.
+
+    Attributes
+    ----------
+    radiance : (H, 2 H, 3) float16
+        Linear radiance in equirectangular projection: row 0 is the zenith, the middle column lies
+        towards +x, columns run clockwise as seen from above.
+    zenith, horizon, ground : (3,) tuple of float
+        Mean radiance of its parts, for light that comes from everywhere.
+    """
+
+    radiance: NDArray[np.float16]
+    zenith: tuple[float, float, float]
+    horizon: tuple[float, float, float]
+    ground: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Environment:
+    """What surrounds the objects.
+
+    Attributes
+    ----------
+    ambient : (3,) tuple of float
+        Linear radiance that arrives from everywhere, besides the sky's.
+    background : {'sky', 'colour'}
+        What pixels show where nothing was hit.
+    background_colour : (3,) tuple of float
+        Linear colour for ``background = 'colour'``.
+    sky_zenith, sky_horizon, sky_ground : (3,) tuple of float
+        Linear radiance of the analytic sky, used while no picture of a sky is named.
+    sky_share : float
+        Share of the sky's light that reaches the objects: 1 outdoors, less in a room.
+    sky : SkyMap or None
+        What is seen of the sky instead of the three colours, which still light the objects.
+    sky_map : str
+        Name of a sky picture, empty for the analytic sky.
+    sky_rotation : float
+        By what the picture is turned about the vertical, counter-clockwise as seen from above
+        [deg]; `sky` is turned already.
+    sky_blend : bool
+        Whether the picture of a sky is shown as bright as a photographer would blend it with the
+        room; False shows its radiance as it is. It lights the objects alike.
+    exposure : float
+        Stops that the picture is brightened by (factor 2**exposure).
+    """
+
+    ambient: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    background: Literal["sky", "colour"] = "sky"
+    background_colour: tuple[float, float, float] = (0.2, 0.2, 0.2)
+    sky_zenith: tuple[float, float, float] = (0.22, 0.38, 0.72)
+    sky_horizon: tuple[float, float, float] = (0.75, 0.82, 0.90)
+    sky_ground: tuple[float, float, float] = (0.30, 0.28, 0.26)
+    sky_share: float = 1.0
+    sky: SkyMap | None = None
+    sky_map: str = ""
+    sky_rotation: float = 0.0
+    sky_blend: bool = True
+    exposure: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.background not in ("sky", "colour"):
+            raise UnknownName("background", str(self.background), ("sky", "colour"))
+        for name in ("ambient", "background_colour", "sky_zenith", "sky_horizon", "sky_ground"):
+            object.__setattr__(self, name, _radiance(name, getattr(self, name)))
+
+
+def _radiance(what: str, colour: ArrayLike) -> tuple[float, float, float]:
+    checked = vector(what, colour, limit=1e6)
+    if min(checked) < 0.0:
+        raise InvalidRequest(what, checked, "three numbers from 0 to 1e+06")
+    return checked

@@ -1,0 +1,112 @@
+"""How an agent's camera turns radiance into its picture: exposure, tone curve, effects.
+
+Travels in `Camera` to the renderer. Concerns the picture alone: no ground truth depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, get_args
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.types.validation import checked_flag, checked_integer, checked_number
+
+__all__ = ["LIMITS", "NAMES", "PictureSettings", "ToneCurve"]
+
+ToneCurve = Literal["filmic", "linear"]
+
+LIMITS: dict[str, tuple[float, float, str]] = {
+    "exposure": (-16.0, 16.0, "stops"),
+    "occlusion_strength": (0.0, 1.0, ""),
+    "occlusion_radius_m": (0.01, 5.0, "m"),
+    "supersampling": (1, 4, ""),
+    "bloom": (0.0, 1.0, ""),
+    "full_well": (0.0, 1e7, "electrons"),
+    "read_noise": (0.0, 1e4, "electrons"),
+}
+"""Least and greatest value of each number, and its unit."""
+
+_WHOLE = frozenset({"supersampling"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PictureSettings:
+    """What is done to the picture, and to nothing else.
+
+    Attributes
+    ----------
+    exposure : float
+        Stops that the picture is brightened by, on top of the scene's, -16 to 16.
+    tone_curve : {'filmic', 'linear'}
+        ``filmic`` rolls highlights off as film does; ``linear`` is plain sRGB, cut off at white.
+    occlusion_strength : float
+        How much corners and contacts darken the light from around, 0 (off) to 1. Surfaces whose
+        light was baked have that darkness already; among each other they are left alone.
+    occlusion_radius_m : float
+        From how far away surfaces darken each other [m], 0.01 to 5.
+    smooth_edges : bool
+        True if a pixel's light is that of all surfaces that it covers, not of what its centre
+        sees alone; a picture of several samples a pixel needs it not.
+    supersampling : int
+        The picture is drawn this many times as wide and as high, 1 to 4, and each pixel is the
+        mean of the light of its samples.
+    bloom : float
+        Share of the light that is spread around bright places, 0 (off) to 1.
+    full_well : float
+        Electrons that a pixel of radiance 1 (after exposure) collects: the fewer, the more noise.
+        0 turns noise off.
+    read_noise : float
+        Standard deviation that reading a pixel adds [electrons]; counts where `full_well` is not 0.
+
+    Raises
+    ------
+    InvalidRequest, UnknownName
+        If one of them is out of its range.
+    """
+
+    exposure: float = 0.0
+    tone_curve: ToneCurve = "filmic"
+    occlusion_strength: float = 0.6
+    occlusion_radius_m: float = 0.25
+    smooth_edges: bool = True
+    supersampling: int = 1
+    bloom: float = 0.0
+    full_well: float = 0.0
+    read_noise: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.tone_curve not in get_args(ToneCurve):
+            raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
+        checked_flag("smooth_edges", self.smooth_edges)
+        for name, (low, high, unit) in LIMITS.items():
+            value = getattr(self, name)
+            if name in _WHOLE:
+                value = checked_integer(name, value, int(low), int(high), unit=unit)
+            else:
+                value = checked_number(name, value, low, high, unit=unit)
+            object.__setattr__(self, name, value)
+
+    @staticmethod
+    def checked(what: str, settings: object) -> PictureSettings:
+        """Refuse what is no object of this class; `what` is the name that the error tells."""
+        if not isinstance(settings, PictureSettings):
+            raise InvalidRequest(what, settings, "an object of PictureSettings")
+        return settings
+
+    def changed(self, changes: Mapping[str, Any]) -> PictureSettings:
+        """Return these settings with some of them changed, by their names.
+
+        Raises
+        ------
+        InvalidRequest, UnknownName
+            If there is no such setting, or a value is out of its range.
+        """
+        for name in changes:
+            if name not in NAMES:
+                raise UnknownName("setting of a picture", str(name), NAMES)
+        return replace(self, **changes)
+
+
+NAMES: tuple[str, ...] = tuple(setting.name for setting in fields(PictureSettings))
+"""Names of all settings, in their order."""

@@ -1,0 +1,164 @@
+"""A frozen copy of the world at one instant of simulated time.
+
+Comes from `world/`, goes to `render/`. `SceneContents` is what changes seldom (what exists, what
+it looks like, lights); `WorldSnapshot` adds the poses. Both are immutable, so optical flow is a
+pure function of two snapshots and the cameras that go with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.labels import CategoryTable, Instance
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Model
+
+__all__ = ["DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class DrawnInstance:
+    """One object to draw: its labels, its looks and its scale.
+
+    Attributes
+    ----------
+    instance : Instance
+    model : Model
+        Shared between instances; compared by identity.
+    scale : (3,) tuple of float
+        Applied to the model in its body frame, before the pose.
+    lit_by : tuple of str
+        Names of the lights whose lamp it is: by these its shade and bulb glow (`Material.glow`).
+    stands : bool or None
+        True if its light is baked: it never moves, or stands until its joint is moved. None takes
+        what the instance says of physics.
+    """
+
+    instance: Instance
+    model: Model
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    lit_by: tuple[str, ...] = ()
+    stands: bool | None = None
+
+    def lamp_power(self, lights: Iterable[Light]) -> tuple[float, float, float]:
+        """Return (3,): radiant intensity of the lights whose lamp it is, summed [W/sr]."""
+        if not self.lit_by:
+            return (0.0, 0.0, 0.0)
+        own = [light for light in lights if light.name in self.lit_by]
+        red, green, blue = (
+            float(sum(light.colour[channel] * light.intensity for light in own))
+            for channel in range(3)
+        )
+        return red, green, blue
+
+    @property
+    def is_baked(self) -> bool:
+        """True if its light is baked with that of what stands still."""
+        return self.instance.static if self.stands is None else self.stands
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SceneContents:
+    """What a scene holds, apart from poses; compared by identity.
+
+    Attributes
+    ----------
+    scene : str
+        Name of the scene.
+    epoch : int
+        Grows at each change of scene and each reset: frames of two epochs have no common past.
+    revision : int
+        Grows at each change of anything here.
+    instances : tuple of DrawnInstance
+        In the order of the snapshot's rows.
+    categories : CategoryTable
+    lights : tuple of Light
+    environment : Environment
+    baked : BakedLight or None
+        Light worked out beforehand for what stands still; None where there is none.
+    """
+
+    scene: str
+    epoch: int
+    revision: int
+    instances: tuple[DrawnInstance, ...]
+    categories: CategoryTable
+    lights: tuple[Light, ...] = ()
+    environment: Environment = field(default_factory=Environment)
+    baked: BakedLight | None = None
+
+    @cached_property
+    def instance_ids(self) -> NDArray[np.uint16]:
+        """(N,) uint16 read-only: instance id of each row."""
+        ids = np.array([drawn.instance.id for drawn in self.instances], dtype=np.uint16)
+        ids.flags.writeable = False
+        return ids
+
+    @cached_property
+    def category_of_instance(self) -> NDArray[Any]:
+        """(65536,) read-only, of `CategoryTable.dtype`: category id of each instance id, else 0."""
+        table = np.zeros(65536, dtype=self.categories.dtype)
+        for drawn in self.instances:
+            table[drawn.instance.id] = drawn.instance.category_id
+        table.flags.writeable = False
+        return table
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WorldSnapshot:
+    """Poses of everything at one instant.
+
+    Attributes
+    ----------
+    sim_time_ns : int
+        Simulated time since the last reset [ns].
+    step : int
+        Physics steps since the last reset.
+    contents : SceneContents
+    world_from_body : (N, 4, 4) float64
+        Read-only; rows in the order of ``contents.instances``. Rigid; scale is in the contents.
+    histories : (N,) int64
+        Read-only; a number that changes when an object's past is cut off (it was spawned or
+        asked to teleport). Flow exists between two snapshots only for equal numbers.
+    """
+
+    sim_time_ns: int
+    step: int
+    contents: SceneContents
+    world_from_body: NDArray[np.float64]
+    histories: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        count = len(self.contents.instances)
+        if self.world_from_body.shape != (count, 4, 4) or self.histories.shape != (count,):
+            raise ValueError(
+                f"a snapshot of {count} instances needs poses ({count}, 4, 4) and histories "
+                f"({count},), got {self.world_from_body.shape} and {self.histories.shape}"
+            )
+        self.world_from_body.flags.writeable = False
+        self.histories.flags.writeable = False
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Observation:
+    """What one camera saw at an earlier instant: the past that flow and occlusion refer to.
+
+    Attributes
+    ----------
+    snapshot : WorldSnapshot
+    camera : Camera
+    depth : (H, W) float32 or None
+        The depth view of then; needed for the occlusion view alone.
+    """
+
+    snapshot: WorldSnapshot
+    camera: Camera
+    depth: NDArray[np.float32] | None = None

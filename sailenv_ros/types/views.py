@@ -1,0 +1,341 @@
+"""What each view of a frame is: its array, its unit, how it is made, shown, sent and stored.
+
+`VIEWS` says it once: whoever makes, shows, sends, stores or documents views reads it there and
+names none of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+
+__all__ = [
+    "ALWAYS_MADE",
+    "FIVE_VIEWS",
+    "RENDERED_VIEWS",
+    "VIEWS",
+    "ImageCodec",
+    "ViewDisplay",
+    "ViewSource",
+    "ViewSpec",
+    "checked_views",
+    "view_spec",
+    "views_of",
+]
+
+
+ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry", "motion"]
+"""What makes a view: the lit picture; arithmetic on depth and instance id, which all back ends
+share; an attribute of the surface, which the geometry pass writes as it is; or arithmetic on a
+frame and the one that follows it, which no renderer makes (`sailenv_ros.frame.motion`)."""
+
+ViewDisplay: TypeAlias = Literal[
+    "colour", "depth", "category", "instance", "flow", "direction", "mask", "place", "displacement"
+]
+"""How a view is shown as a picture; `pictures.colours` has a function for each."""
+
+ImageCodec: TypeAlias = Literal["jpeg", "png"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ViewSpec:
+    """What one view is, how it is made, shown and sent.
+
+    Attributes
+    ----------
+    name : str
+    dtype : numpy dtype
+    channels : int
+        1 means an array (H, W), otherwise (H, W, channels).
+    encoding : str
+        Encoding on a ROS topic (`sensor_msgs/image_encodings`).
+    meaning : str
+        One line: what a value is, in which unit and frame.
+    unit : str
+        Of the values, as it is shown to people; empty for none.
+    invalid : str
+        Values that stand for something else than a measurement; empty if there are none.
+    source : {'lighting', 'annotation', 'geometry', 'motion'}
+        What makes it. A view of 'geometry' is an output of the geometry pass of the same name.
+    needs_past : bool
+        True if the view refers to an earlier frame of the same camera.
+    needs_past_depth : bool
+        True if the depth of that earlier frame is needed too.
+    needs_next : bool
+        True if the view refers to the next frame of the same camera: it is known one frame late.
+    by_default : bool
+        True if an agent gets it without asking.
+    wide_dtype : numpy dtype or None
+        Type of its values where they are too large for `dtype`; None if they never are.
+    wide_encoding : str
+        Encoding on a ROS topic of these.
+    display : str
+        How it is shown as a picture.
+    color_topic : bool
+        True if it has a topic `<view>/color` with that picture.
+    compressed_topic : {'jpeg', 'png'} or None
+        Codec of the topic `<view>/compressed`; None if there is no such topic. A picture may lose
+        something, labels may not.
+    png_per_unit : float or None
+        Steps per unit of its 16-bit PNG files; None if files hold the values themselves, or the
+        picture of values that are no integers.
+    validity_of : str
+        The view whose values it says to exist; empty for others.
+    """
+
+    name: str
+    dtype: np.dtype[Any]
+    channels: int = 1
+    encoding: str
+    meaning: str
+    display: ViewDisplay
+    source: ViewSource
+    unit: str = ""
+    invalid: str = ""
+    needs_past: bool = False
+    needs_past_depth: bool = False
+    needs_next: bool = False
+    by_default: bool = False
+    color_topic: bool = False
+    compressed_topic: ImageCodec | None = None
+    png_per_unit: float | None = None
+    validity_of: str = ""
+    wide_dtype: np.dtype[Any] | None = None
+    wide_encoding: str = ""
+
+    @property
+    def dtypes(self) -> tuple[np.dtype[Any], ...]:
+        """Types that its array may have."""
+        return (self.dtype,) if self.wide_dtype is None else (self.dtype, self.wide_dtype)
+
+    def encoding_of(self, dtype: np.dtype[Any]) -> str:
+        """Return the encoding on a ROS topic of an array of one of `dtypes`."""
+        return self.wide_encoding if dtype == self.wide_dtype else self.encoding
+
+    @property
+    def is_label(self) -> bool:
+        """True if values are ids or truth values: between two of them there is nothing."""
+        return self.display in ("category", "instance", "mask")
+
+    def shape(self, height: int, width: int) -> tuple[int, ...]:
+        """Return the shape of this view's array for a picture of that size."""
+        return (height, width) if self.channels == 1 else (height, width, self.channels)
+
+
+_SPECS = (
+    ViewSpec(
+        name="rgb",
+        dtype=np.dtype(np.uint8),
+        channels=3,
+        encoding="rgb8",
+        meaning="the picture: red, green, blue (sRGB)",
+        display="colour",
+        source="lighting",
+        by_default=True,
+        compressed_topic="jpeg",
+    ),
+    ViewSpec(
+        name="depth",
+        dtype=np.dtype(np.float32),
+        encoding="32FC1",
+        meaning="depth along the optical axis",
+        unit="m",
+        invalid="+inf nothing hit, NaN nearer than the near plane",
+        display="depth",
+        source="annotation",
+        by_default=True,
+        color_topic=True,
+        png_per_unit=1000.0,
+    ),
+    ViewSpec(
+        name="category",
+        dtype=np.dtype(np.uint8),
+        encoding="8UC1",
+        wide_dtype=np.dtype(np.uint16),
+        wide_encoding="16UC1",
+        meaning="category id",
+        invalid="0 background, 255 unlabelled",
+        display="category",
+        source="annotation",
+        by_default=True,
+        color_topic=True,
+        compressed_topic="png",
+    ),
+    ViewSpec(
+        name="instance",
+        dtype=np.dtype(np.uint16),
+        encoding="16UC1",
+        meaning="instance id",
+        invalid="0 background",
+        display="instance",
+        source="annotation",
+        by_default=True,
+        color_topic=True,
+        compressed_topic="png",
+    ),
+    ViewSpec(
+        name="flow",
+        dtype=np.dtype(np.float32),
+        channels=2,
+        encoding="32FC2",
+        meaning="velocity in the image, u right, v down",
+        unit="px/s",
+        invalid="NaN where it does not exist",
+        display="flow",
+        source="annotation",
+        needs_past=True,
+        by_default=True,
+        color_topic=True,
+    ),
+    ViewSpec(
+        name="flow_valid",
+        dtype=np.dtype(np.bool_),
+        encoding="8UC1",
+        meaning="True where the surface point had a place in the previous frame's image plane",
+        display="mask",
+        source="annotation",
+        needs_past=True,
+        validity_of="flow",
+    ),
+    ViewSpec(
+        name="occlusion",
+        dtype=np.dtype(np.bool_),
+        encoding="8UC1",
+        meaning="True where the surface point was not visible in the previous frame",
+        display="mask",
+        source="annotation",
+        needs_past=True,
+        needs_past_depth=True,
+    ),
+    ViewSpec(
+        name="normals",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="unit surface normal in the optical frame",
+        invalid="0 nothing hit",
+        display="direction",
+        source="geometry",
+    ),
+    ViewSpec(
+        name="albedo",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="base colour of the surface, whatever its light: red, green, blue (linear)",
+        invalid="0 nothing hit",
+        display="colour",
+        source="geometry",
+    ),
+    ViewSpec(
+        name="object_coords",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="surface point in its instance's own frame",
+        unit="m",
+        invalid="NaN nothing hit or nearer than the near plane",
+        display="place",
+        source="annotation",
+    ),
+    ViewSpec(
+        name="flow_forward",
+        dtype=np.dtype(np.float32),
+        channels=2,
+        encoding="32FC2",
+        meaning="displacement in the image to the next frame, u right, v down",
+        unit="px",
+        invalid="NaN where it does not exist",
+        display="flow",
+        source="motion",
+        needs_next=True,
+    ),
+    ViewSpec(
+        name="scene_flow",
+        dtype=np.dtype(np.float32),
+        channels=3,
+        encoding="32FC3",
+        meaning="displacement of the surface point in the world to the next frame, optical axes",
+        unit="m",
+        invalid="NaN where it does not exist",
+        display="displacement",
+        source="motion",
+        needs_next=True,
+    ),
+)
+
+VIEWS: Mapping[str, ViewSpec] = MappingProxyType({spec.name: spec for spec in _SPECS})
+"""Every view by name."""
+
+FIVE_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if spec.by_default)
+"""What an agent gets unless it asks otherwise."""
+
+
+ALWAYS_MADE: tuple[str, ...] = ("depth",)
+"""What costs nothing beside any other view: for a frame of which only the camera is wanted."""
+
+RENDERED_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if not spec.needs_next)
+"""What a frame can have when it is made."""
+
+
+def view_spec(name: str) -> ViewSpec:
+    """Return the entry of one view.
+
+    Raises
+    ------
+    UnknownName
+        If there is no view of that name.
+    """
+    if name not in VIEWS:
+        raise UnknownName("view", name, VIEWS)
+    return VIEWS[name]
+
+
+def views_of(*sources: ViewSource) -> tuple[str, ...]:
+    """Return the views that one of these sources makes, in the order of `VIEWS`."""
+    return tuple(name for name, spec in VIEWS.items() if spec.source in sources)
+
+
+def checked_views(
+    names: Iterable[str], *, supported: Collection[str] | None = None
+) -> tuple[str, ...]:
+    """Check names of views: known, at least one, each once; in the order of `VIEWS`.
+
+    Parameters
+    ----------
+    names : iterable of str
+    supported : collection of str or None
+        What the renderer can make; None if that is not known here.
+
+    Raises
+    ------
+    UnknownName
+        If a name is not in `VIEWS`.
+    InvalidRequest
+        If there is none, or one that the renderer cannot make.
+    """
+    wanted = set(names)
+    for name in sorted(wanted):
+        view_spec(name)
+    if not wanted:
+        raise InvalidRequest("views", (), f"at least one of: {', '.join(VIEWS)}")
+    ordered = tuple(name for name in VIEWS if name in wanted)
+    missing = [] if supported is None else [name for name in ordered if name not in supported]
+    late = [name for name in missing if VIEWS[name].needs_next]
+    if late:
+        raise InvalidRequest(
+            "views",
+            late,
+            "views that are known with the frame itself; these are known with the next one: take "
+            "motion(frame, next_frame), a recording or their topics",
+        )
+    if supported is not None and missing:
+        offered = ", ".join(name for name in VIEWS if name in supported)
+        raise InvalidRequest("views", missing, f"among those that this renderer makes: {offered}")
+    return ordered

@@ -1,0 +1,65 @@
+"""Small things that shine in a closed black box, against the form factors of their sides."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sailenv_ros.light.bake.area_light import form_factors
+from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from tests.support.bake_scenes import COARSE, hollow, read, still
+from tests.support.tiny_scenes import Thing, box_mesh, model_of
+
+SIDE_M = 0.06
+RADIANCE = 50.0
+
+
+def cube_light(points: np.ndarray, normals: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """Irradiance / pi from a cube of which each side sends out the same radiance."""
+    total = np.zeros(len(points))
+    for axis in range(3):
+        for sign in (-1.0, 1.0):
+            out = sign * np.eye(3)[axis]
+            side = Light(
+                name="side", type="area", position_m=tuple(middle + SIDE_M / 2 * out),
+                direction=tuple(out), width_m=SIDE_M, height_m=SIDE_M,
+            )  # fmt: skip
+            total += form_factors(side, points.astype(np.float32), normals.astype(np.float32))
+    return RADIANCE * total
+
+
+@pytest.mark.parametrize("middle", [(0.1, -0.2, 0.3), (0.9, 0.4, -1.1)])
+def test_a_small_emitter_lights_by_its_form_factor(middle: tuple[float, float, float]) -> None:
+    """A cube of 6 cm, which a thousandth of all rays meets, lights walls with little noise."""
+    black = {"base_colour": (0.0, 0.0, 0.0, 1.0), "metallic": 1.0}
+    cube = model_of(box_mesh(SIDE_M), **black, emission=(RADIANCE,) * 3)
+    things = [Thing(hollow(3.0, **black)), Thing(cube, Pose(middle))]
+    snapshot = still(things, lights=())
+    baked = bake(snapshot, settings=replace(COARSE, texel_m=0.05))
+    points, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=12)
+    axis = np.argmax(np.abs(points), axis=1)
+    normals = -np.sign(points) * np.eye(3)[axis]
+    expected = cube_light(points, normals, np.array(middle))
+    # In the walls' edges, and near the cube, light changes within a texel.
+    chosen = np.sort(np.abs(points), axis=1)[:, 1] < 1.3
+    chosen &= np.linalg.norm(points - np.array(middle), axis=1) > 0.8
+    error = bounced[chosen][:, 0] / expected[chosen] - 1.0
+    assert error.mean() == pytest.approx(0.0, abs=0.02)
+    assert error.std() < 0.06
+
+
+def test_looking_at_emitters_neither_adds_nor_takes_light() -> None:
+    """In a furnace, a lamp within that shines as the walls do is not seen."""
+    look = {"base_colour": (0.5, 0.5, 0.5, 1.0), "metallic": 1.0, "emission": (1.0, 1.0, 1.0)}
+    lamp = model_of(box_mesh(0.2), **look)
+    things = [Thing(hollow(3.0, **look)), Thing(lamp, Pose((0.1, -0.2, 0.3)))]
+    snapshot = still(things, lights=())
+    baked = bake(snapshot, settings=COARSE)
+    for instance in (1, 2):
+        _, bounced = read(baked, instance, snapshot, baked.layers[0].bounced)
+        np.testing.assert_allclose(bounced, 2.0, rtol=0.04)
+        np.testing.assert_allclose(bounced.mean(), 2.0, rtol=0.01)

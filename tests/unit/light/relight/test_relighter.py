@@ -1,0 +1,174 @@
+"""When light is brought up to date, and which light a snapshot gets."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.light.relight import relighter as module
+from sailenv_ros.light.relight.quality import FINE, QUICK
+from sailenv_ros.light.relight.relighter import READY_FRAMES, Relighter
+from sailenv_ros.light.relight.relighting import relit
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.bake_scenes import COARSE, ground, still
+from tests.support.tiny_scenes import Thing, box_mesh, model_of
+
+FLOOR = Thing(ground(4.0))
+BOX = model_of(box_mesh(0.5))
+LAMP = Light(name="lamp", type="point", position_m=(0.0, 0.0, 2.0))
+HOME = Pose((0.5, 0.0, 0.251))
+SECOND_NS = 1_000_000_000
+
+
+@pytest.fixture(scope="module")
+def baked() -> WorldSnapshot:
+    """A box on a floor, with its light."""
+    snapshot = still([FLOOR, Thing(BOX, HOME)], lights=(LAMP,))
+    light = bake(snapshot, settings=COARSE)
+    return replace(snapshot, contents=replace(snapshot.contents, baked=light))
+
+
+@pytest.fixture
+def worked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The qualities of what was worked out, in order."""
+    done: list[str] = []
+
+    def counted(scene: object, changes: object, quality: object, **kwargs: int) -> BakedLight:
+        done.append({QUICK: "quick", FINE: "fine"}[quality])  # type: ignore[index]
+        return relit(scene, changes, quality, **kwargs)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(module, "relit", counted)
+    return done
+
+
+def at(snapshot: WorldSnapshot, x: float, time_ns: int = 0) -> WorldSnapshot:
+    """The box at another place."""
+    poses = snapshot.world_from_body.copy()
+    poses[1, 0, 3] = x
+    return replace(snapshot, world_from_body=poses, sim_time_ns=time_ns)
+
+
+def light_of(snapshot: WorldSnapshot) -> BakedLight:
+    """Its baked light."""
+    assert snapshot.contents.baked is not None
+    return snapshot.contents.baked
+
+
+def test_where_nothing_moves_nothing_is_done(baked: WorldSnapshot, worked: list[str]) -> None:
+    """The very snapshot comes back."""
+    assert Relighter().lit(baked, wanted=True, lockstep=True) is baked
+    assert worked == []
+
+
+def test_a_move_changes_the_light_of_its_own_frame(baked: WorldSnapshot, worked: list[str]) -> None:
+    """What was baked for the box counts at its new place; frames without a picture do no work."""
+    relighter = Relighter()
+    relighter.lit(baked, wanted=True, lockstep=True)
+    moved = at(baked, -0.5)
+    assert relighter.lit(moved, wanted=False, lockstep=True) is moved
+    got = relighter.lit(moved, wanted=True, lockstep=True)
+    assert worked == ["quick"]
+    assert np.array_equal(light_of(got).charts[2].world_from_body, moved.world_from_body[1])
+    again = relighter.lit(moved, wanted=True, lockstep=True)
+    assert again.contents is got.contents
+    assert worked == ["quick"]
+
+
+def test_in_lockstep_light_is_refined_after_simulated_time(
+    baked: WorldSnapshot, worked: list[str]
+) -> None:
+    """Half a second after the last move, in one frame, whatever the wall clock says."""
+    relighter = Relighter()
+    for time_ns in (0, SECOND_NS // 4, SECOND_NS, 2 * SECOND_NS):
+        relighter.lit(at(baked, -0.5, time_ns), wanted=True, lockstep=True)
+    assert worked == ["quick", "fine"]
+
+
+def test_in_real_time_light_is_refined_beside(baked: WorldSnapshot, worked: list[str]) -> None:
+    """On another thread; the frame after its end shows it."""
+    relighter = Relighter()
+    first = relighter.lit(at(baked, -0.5), wanted=True, lockstep=False)
+    relighter.lit(at(baked, -0.5), wanted=True, lockstep=False)
+    assert relighter._refining is not None
+    relighter._refining[1].result(timeout=60.0)
+    last = relighter.lit(at(baked, -0.5), wanted=True, lockstep=False)
+    assert worked == ["quick", "fine"]
+    assert light_of(last) is not light_of(first)
+    relighter.close()
+
+
+def test_what_moves_on_casts_no_stale_shadow(baked: WorldSnapshot, worked: list[str]) -> None:
+    """In real time it is lit from its second step on as what can move is; at rest, baked in."""
+    relighter = Relighter()
+    relighter.lit(baked, wanted=True, lockstep=False)
+    lit = [
+        relighter.lit(at(baked, 0.5 - 0.1 * step, step), wanted=True, lockstep=False)
+        for step in range(1, 6)
+    ]
+    assert [2 in light_of(snapshot).charts for snapshot in lit] == [True] + 4 * [False]
+    assert worked.count("quick") == 2
+    for step in range(6, 12):
+        rest = relighter.lit(at(baked, 0.0, step), wanted=True, lockstep=False)
+    assert worked.count("quick") == 3
+    assert 2 in light_of(rest).charts
+    relighter.close()
+
+
+def test_in_lockstep_every_frame_is_right(baked: WorldSnapshot, worked: list[str]) -> None:
+    """Of furniture that is moved before each capture, every picture has its light."""
+    relighter = Relighter()
+    for x in (0.2, -0.2, -0.5):
+        got = relighter.lit(at(baked, x), wanted=True, lockstep=True)
+        assert 2 in light_of(got).charts
+    assert worked == ["quick", "quick", "quick"]
+
+
+def test_back_home_it_is_what_was_baked(baked: WorldSnapshot) -> None:
+    """Light that was worked out is a function of what stands where, and of nothing else."""
+    relighter = Relighter()
+    relighter.lit(at(baked, -0.5), wanted=True, lockstep=True)
+    back = replace(baked, sim_time_ns=5)
+    assert relighter.lit(back, wanted=True, lockstep=True) is back
+
+
+def test_what_goes_leaves_no_shadow(baked: WorldSnapshot) -> None:
+    """The floor under it is lit; another bake begins anew."""
+    relighter = Relighter()
+    relighter.watch(baked)
+    contents = baked.contents
+    left = WorldSnapshot(
+        sim_time_ns=0,
+        step=0,
+        contents=replace(contents, instances=contents.instances[:1]),
+        world_from_body=baked.world_from_body[:1].copy(),
+        histories=baked.histories[:1].copy(),
+    )
+    got = light_of(relighter.lit(left, wanted=True, lockstep=True))
+    lamp = got.layers[1].direct
+    assert (lamp > 0).sum() > (light_of(baked).layers[1].direct > 0).sum()
+    unbaked = replace(baked, contents=replace(contents, baked=None))
+    assert relighter.lit(unbaked, wanted=True, lockstep=True) is unbaked
+
+
+@pytest.mark.parametrize(("lockstep", "frames"), [(False, 1), (True, READY_FRAMES + 1)])
+def test_the_first_move_finds_all_ready(baked: WorldSnapshot, lockstep: bool, frames: int) -> None:
+    """What relighting needs is made beside frames that move nothing, and is what a frame makes."""
+    relighter, other = Relighter(), Relighter()
+    for _ in range(frames):
+        assert relighter._preparing is None
+        relighter.lit(baked, wanted=True, lockstep=lockstep)
+    assert relighter._preparing is not None
+    relighter._preparing.result(timeout=60.0)
+    first = light_of(relighter.lit(at(baked, -0.5), wanted=True, lockstep=lockstep))
+    other.watch(baked)
+    second = light_of(other.lit(at(baked, -0.5), wanted=True, lockstep=True))
+    for one, two in zip(first.layers, second.layers, strict=True):
+        assert np.array_equal(one.direct, two.direct)
+        assert np.array_equal(one.bounced, two.bounced)
+    relighter.close()
