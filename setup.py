@@ -204,9 +204,7 @@ setup(
     license="Apache-2.0",
     maintainer="sailenv_ros maintainers",
     maintainer_email="maintainers@users.noreply.github.com",
-    packages=find_packages(
-        include=[name for each in PACKAGES for name in (each, f"{each}.*")]
-    ),
+    packages=find_packages(include=[name for each in PACKAGES for name in (each, f"{each}.*")]),
     package_data={
         "sailenv_ros.dataset": ["preview/*"],
         "sailenv_ros.render.gl": ["shaders/*"],

@@ -1,6 +1,6 @@
 """Views of a frame to and from `sensor_msgs/Image`.
 
-An array of the dtype and shape that `sailenv_ros.frame.frame.VIEWS` gives becomes a message of that
+An array of the dtype and shape that `sailenv_ros.types.views.VIEWS` gives becomes a message of that
 view's encoding, and the inverse is exact, bit for bit. Truth values travel as 0 and 255.
 Receiving copies nothing: the array lies on the message's own bytes.
 """
@@ -30,7 +30,7 @@ def image_from_view(view: str, values: NDArray[Any], header: Header, *, copy: bo
     Parameters
     ----------
     view : str
-        A name in `sailenv_ros.frame.frame.VIEWS`.
+        A name in `sailenv_ros.types.views.VIEWS`.
     values : (H, W) or (H, W, C) array
         Of the view's own dtype and channels.
     header : Header
@@ -76,7 +76,7 @@ def view_from_image(view: str, image: Image) -> NDArray[Any]:
     Returns
     -------
     values : (H, W) or (H, W, C) array
-        As `sailenv_ros.frame.frame.VIEWS` says. It shares the message's bytes (truth values are a
+        As `sailenv_ros.types.views.VIEWS` says. It shares the message's bytes (truth values are a
         copy); write to it only if nobody else has the message.
 
     Raises

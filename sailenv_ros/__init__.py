@@ -11,20 +11,42 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sailenv_ros.frame.html import show
+    from sailenv_ros.frame.frame import Frame
+    from sailenv_ros.frame.show import show
     from sailenv_ros.ros.client.agent import Agent
     from sailenv_ros.scene.loader import load_scene
     from sailenv_ros.simulation import Simulation
+    from sailenv_ros.types.agents import AgentSpec
+    from sailenv_ros.types.camera import Camera, CameraIntrinsics
+    from sailenv_ros.types.geometry import Pose, look_at
 
-__all__ = ["Agent", "Simulation", "__version__", "load_scene", "show"]
+__all__ = [
+    "Agent",
+    "AgentSpec",
+    "Camera",
+    "CameraIntrinsics",
+    "Frame",
+    "Pose",
+    "Simulation",
+    "__version__",
+    "load_scene",
+    "look_at",
+    "show",
+]
 
 __version__ = "0.2.0"
 
 _HOMES = {
     "Agent": "sailenv_ros.ros.client.agent",
+    "AgentSpec": "sailenv_ros.types.agents",
+    "Camera": "sailenv_ros.types.camera",
+    "CameraIntrinsics": "sailenv_ros.types.camera",
+    "Frame": "sailenv_ros.frame.frame",
+    "Pose": "sailenv_ros.types.geometry",
     "Simulation": "sailenv_ros.simulation",
     "load_scene": "sailenv_ros.scene.loader",
-    "show": "sailenv_ros.frame.html",
+    "look_at": "sailenv_ros.types.geometry",
+    "show": "sailenv_ros.frame.show",
 }
 
 

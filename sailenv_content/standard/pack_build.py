@@ -21,6 +21,7 @@ from pathlib import Path
 from sailenv_content.standard.catalogues import LICENCES, Catalogues
 from sailenv_content.standard.fetch import fetched
 from sailenv_content.standard.prepare import prepare
+from sailenv_ros.assets import meshes as asset_meshes
 from sailenv_ros.assets.checksums import file_checksum
 from sailenv_ros.assets.folders import cache_folder, standard_pack_folder
 from sailenv_ros.assets.pack import (
@@ -331,8 +332,8 @@ def _fingerprint() -> str:
     digest = hashlib.sha256()
     for recipe in recipe_files():
         digest.update(recipe.read_bytes())
-    own = sorted(Path(sailenv_content.__file__).parent.rglob("*.py"))
-    assets = Path(sailenv_ros.assets.__file__).parent
+    own = sorted(Path(__file__).parents[1].rglob("*.py"))
+    assets = Path(asset_meshes.__file__).parent
     for source in (*own, *(assets / f"{name}.py" for name in _TOOLS)):
         digest.update(source.read_bytes())
     for library in _LIBRARIES:

@@ -27,7 +27,8 @@ from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame.frame import DrawAlone, Frame
+from sailenv_ros.frame.data import DrawAlone
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.channels import (
     FRAME_INFO,

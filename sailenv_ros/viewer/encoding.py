@@ -139,7 +139,7 @@ def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:
     Parameters
     ----------
     views : iterable of str
-        Names in `sailenv_ros.frame.frame.VIEWS`, in the order in which the page lays them out.
+        Names in `sailenv_ros.types.views.VIEWS`, in the order in which the page lays them out.
     """
     return [
         {

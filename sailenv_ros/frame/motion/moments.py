@@ -1,4 +1,4 @@
-"""What motion needs to know of a frame, whether it is a `Frame` or the dict of an agent."""
+"""What motion needs to know of a frame, whether it is a `FrameData` or the dict of an agent."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.data import FrameData
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
 
 __all__ = ["AnyFrame", "Moment", "moment_of", "require_common_past"]
 
-AnyFrame: TypeAlias = Frame | Mapping[str, Any]
-"""A `Frame`, or a frame as `Agent.get_frame` gives it."""
+AnyFrame: TypeAlias = FrameData | Mapping[str, Any]
+"""A `FrameData`, or a frame as `Agent.get_frame` gives it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ def moment_of(frame: AnyFrame, what: str = "frame") -> Moment:
 
     Parameters
     ----------
-    frame : Frame or mapping
+    frame : FrameData or mapping
     what : str
         Which frame it is, for errors.
 
@@ -82,7 +82,7 @@ def moment_of(frame: AnyFrame, what: str = "frame") -> Moment:
     InvalidRequest
         If it is no frame, or the states of its instances were not recorded.
     """
-    if isinstance(frame, Frame):
+    if isinstance(frame, FrameData):
         fields: Mapping[str, Any] = {
             "scene": frame.scene,
             "epoch": frame.epoch,
@@ -97,7 +97,7 @@ def moment_of(frame: AnyFrame, what: str = "frame") -> Moment:
         fields = {name: frame[name] for name in names}
         fields |= {"depth": frame.get("depth_m"), "instance": frame.get("instance")}
     else:
-        raise InvalidRequest(what, type(frame).__name__, "a Frame, or a frame of an Agent")
+        raise InvalidRequest(what, type(frame).__name__, "a FrameData, or a frame of an Agent")
     if fields["states"] is None:
         accepted = "a frame with the states of its instances, which version 0.2.0 did not record"
         raise InvalidRequest(what, "without states", accepted)

@@ -1,6 +1,6 @@
 """A view of numbers as colours: flow by direction and speed, depth by a ramp, ids by tables.
 
-Each function takes one view as `sailenv_ros.frame.frame.VIEWS` describes it and gives a new array.
+Each function takes one view as `sailenv_ros.types.views.VIEWS` describes it and gives a new array.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def view_picture(
     Parameters
     ----------
     view : str
-        Its name in `sailenv_ros.frame.frame.VIEWS`.
+        Its name in `sailenv_ros.types.views.VIEWS`.
     values : (H, W) or (H, W, C) array
         As described there.
     table : CategoryTable

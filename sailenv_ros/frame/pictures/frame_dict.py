@@ -1,6 +1,6 @@
 """One frame as the SAILenv client's dict: `main`, `category`, `object`, `flow`, `depth` and more.
 
-A `Frame` in, a plain dict of the caller's own arrays out. Knows no ROS.
+A frame in, a plain dict of the caller's own arrays out. Knows no ROS.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.data import FrameData
 from sailenv_ros.frame.pictures.colours import grey_depth
 from sailenv_ros.native.client_views import convert_views
 from sailenv_ros.native.library import native_is_usable, thread_count
@@ -29,12 +29,12 @@ _INSTANCE_BGRX: NDArray[np.uint32] = np.ascontiguousarray(
 ).view(np.uint32)[:, 0]
 
 
-def frame_dict(frame: Frame, *, copy: bool) -> dict[str, Any]:
+def frame_dict(frame: FrameData, *, copy: bool) -> dict[str, Any]:
     """Return a frame as a dict; see `Frame.to_dict`.
 
     Parameters
     ----------
-    frame : Frame
+    frame : FrameData
     copy : bool
         False writes into the frame's arrays and passes them on.
 

@@ -1,4 +1,4 @@
-"""`Frame` → `ObjectTable`, and its objects' keypoints."""
+"""`FrameData` → `ObjectTable`, and its objects' keypoints."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.data import FrameData
 from sailenv_ros.frame.truth.object_table import (
     CORNER_SIGNS,
     Keypoints,
@@ -23,7 +23,7 @@ HIDDEN_BEHIND = 0.01
 """Share of its depth by which a point lies behind what is seen at its pixel if that hides it."""
 
 
-def objects_of(frame: Frame) -> ObjectTable:
+def objects_of(frame: FrameData) -> ObjectTable:
     """Make the table of a frame's objects.
 
     Raises
@@ -85,8 +85,15 @@ def objects_of(frame: Frame) -> ObjectTable:
     )
 
 
-def keypoints_of(frame: Frame, instance_id: int) -> Keypoints:
+def keypoints_of(frame: FrameData, table: ObjectTable, instance_id: int) -> Keypoints:
     """Return the named points of an object; the corners of its box if its asset names none.
+
+    Parameters
+    ----------
+    frame : FrameData
+    table : ObjectTable
+        The table of that frame, by `objects_of`.
+    instance_id : int
 
     Raises
     ------
@@ -95,7 +102,6 @@ def keypoints_of(frame: Frame, instance_id: int) -> Keypoints:
     InvalidState
         If the scene of the frame's instant is not known.
     """
-    table = frame.objects
     row = table.row(instance_id)
     info = _info(frame)
     instance = next(one for one in info.instances if one.id == instance_id)
@@ -111,19 +117,19 @@ def keypoints_of(frame: Frame, instance_id: int) -> Keypoints:
     )
 
 
-def _info(frame: Frame) -> SceneInfo:
+def _info(frame: FrameData) -> SceneInfo:
     assert frame.info is not None
     return frame.info
 
 
-def _seen(frame: Frame) -> VisibleParts:
+def _seen(frame: FrameData) -> VisibleParts:
     if "instance" not in frame.views:
         return visible_parts(np.zeros((1, 1), np.uint16))
     return visible_parts(frame["instance"], frame.views.get("flow"))
 
 
 def _motion(
-    frame: Frame, ids: NDArray[np.uint16]
+    frame: FrameData, ids: NDArray[np.uint16]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return world_from_object, linear and angular velocity of each; NaN where not known."""
     count, states = len(ids), frame.states
@@ -149,7 +155,7 @@ def _moved(transforms: NDArray[np.float64], points: NDArray[np.float64]) -> NDAr
 
 
 def _is_visible(
-    frame: Frame, depths: NDArray[np.float64], pixels: NDArray[np.float64]
+    frame: FrameData, depths: NDArray[np.float64], pixels: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
     """Return which points lie in the picture with nothing before them."""
     lens: CameraIntrinsics = frame.camera.intrinsics

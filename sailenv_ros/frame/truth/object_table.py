@@ -5,6 +5,7 @@ Made of a `Frame` by `frame_objects`; all frames' tables have the same columns.
 
 from __future__ import annotations
 
+import html
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -198,10 +199,47 @@ class ObjectTable(RowsById):
             yield {name: values[row] for name, values in columns.items()}
 
     def _repr_html_(self) -> str:
-        """Return the table as HTML, for notebooks."""
-        from sailenv_ros.frame.html import objects_html
+        """Return the table as HTML for notebooks: visible objects first, the largest first."""
+        order = np.argsort(-self.visible_pixels, kind="stable").tolist()
+        shares, truncated = self.visible_share, self.truncated_share
+        heads = [
+            "id",
+            "name",
+            "category",
+            "pixels",
+            "box",
+            "visible",
+            "truncated",
+            "distance",
+            "size",
+        ]
+        rows = [
+            (
+                str(self.ids[row]),
+                self.names[row],
+                self.categories[row],
+                str(self.visible_pixels[row]) if self.visible_pixels[row] else "",
+                ", ".join(map(str, self.visible_boxes[row])) if self.visible_pixels[row] else "",
+                _percent(shares[row]),
+                _percent(truncated[row]),
+                "" if np.isnan(self.distances[row]) else f"{self.distances[row]:.2f} m",
+                " × ".join(f"{side:.2f}" for side in self.box_sizes[row]) + " m",
+            )
+            for row in order
+        ]
+        head = "".join(f'<th style="text-align:left">{name}</th>' for name in heads)
+        body = "".join(
+            "<tr>"
+            + "".join(f'<td style="text-align:left">{html.escape(value)}</td>' for value in row)
+            + "</tr>"
+            for row in rows
+        )
+        about = f"{len(self)} objects, {int(self.visible.sum())} of them visible"
+        return f"<div><p><b>{about}</b></p><table><tr>{head}</tr>{body}</table></div>"
 
-        return objects_html(self)
+
+def _percent(share: float) -> str:
+    return "" if np.isnan(share) else f"{100.0 * share:.0f} %"
 
 
 def corner_keypoints(low: ArrayLike, high: ArrayLike) -> tuple[Keypoint, ...]:

@@ -14,7 +14,7 @@ from sailenv_ros.frame.truth.ply import ply_bytes
 from sailenv_ros.system.files import storage_errors, write_file
 
 if TYPE_CHECKING:
-    from sailenv_ros.frame.frame import Frame
+    from sailenv_ros.frame.data import FrameData
 
 __all__ = ["PointCloud", "points_of"]
 
@@ -68,12 +68,12 @@ class PointCloud:
         return file
 
 
-def points_of(frame: Frame, *, in_world: bool = True) -> PointCloud:
+def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
     """Return the points that a frame's pixels see; those without a finite depth are left out.
 
     Parameters
     ----------
-    frame : Frame
+    frame : FrameData
         With the view ``depth``.
     in_world : bool
         False gives points in the camera's optical frame.

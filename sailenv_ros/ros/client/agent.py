@@ -50,7 +50,7 @@ depth_frame_active : bool
     width, height : int
         Size of the frames [px], 8 to 4096.
     views : sequence of str
-        More views, by their names in `sailenv_ros.frame.frame.VIEWS`.
+        More views, by their names in `sailenv_ros.types.views.VIEWS`.
     vertical_fov_deg : float
         Full vertical angle of view [deg].
     near_m, far_m : float
@@ -304,8 +304,8 @@ depth_frame_active : bool
         Parameters
         ----------
         views : sequence of str
-            More views than the agent's own, by their names in `sailenv_ros.frame.frame.VIEWS`; rendered
-            for this frame alone.
+            More views than the agent's own, by their names in `sailenv_ros.types.views.VIEWS`;
+            rendered for this frame alone.
         agent : str or None
             This one.
         timeout_s : float or None

@@ -16,7 +16,8 @@ from sailenv_msgs_py.frame_info import (
 )
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
-from sailenv_ros.frame.frame import DrawAlone, Frame
+from sailenv_ros.frame.data import DrawAlone
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.ros.client.frame_sync import Bundle
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.camera import CameraIntrinsics

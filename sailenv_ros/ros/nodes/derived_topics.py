@@ -100,7 +100,7 @@ def compressed_view(view: str, values: NDArray[Any], header: Header) -> Compress
     view : str
         One that has a `compressed_topic` in `VIEWS`.
     values : (H, W) or (H, W, 3) array
-        As `sailenv_ros.frame.frame.VIEWS` says.
+        As `sailenv_ros.types.views.VIEWS` says.
     header : Header
         Kept, not copied.
 

@@ -232,7 +232,7 @@ class AgentOperations(Caller):
         Parameters
         ----------
         views : iterable of str or None
-            Names in `sailenv_ros.frame.frame.VIEWS`; None means the agent's own.
+            Names in `sailenv_ros.types.views.VIEWS`; None means the agent's own.
         agent : str or None
 
         Returns

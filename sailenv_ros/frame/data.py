@@ -1,0 +1,140 @@
+"""The data of a frame: the views that one camera sees at one instant, and what is known with them.
+
+Comes from `render/` by way of `simulation/`, goes to messages, sockets, files and windows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Protocol
+
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import UnknownName
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.scene_info import SceneInfo, SceneObject
+from sailenv_ros.types.views import VIEWS, view_spec
+
+if TYPE_CHECKING:
+    from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
+
+__all__ = ["DrawAlone", "FrameData"]
+
+
+class DrawAlone(Protocol):
+    """Draws the objects of a frame, each alone."""
+
+    def __call__(self, only: int = 0) -> AmodalMasks:
+        """Draw the object of that id, perhaps others too; 0 draws all."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FrameData(Mapping[str, NDArray[Any]]):
+    """All views of one camera at one instant: a mapping of their names to arrays.
+
+    Attributes
+    ----------
+    agent : str
+        Whose camera.
+    scene : str
+    epoch, revision : int
+        Of the scene_info that was true when it was made.
+    sequence : int
+        Counts this agent's frames from 1.
+    stamp_ns : int
+        Simulated time [ns].
+    dt_ns : int
+        Simulated time since the frame that flow refers to [ns]; 0 if there is none.
+    camera : Camera
+    depth_range_m : float
+        Depth that the 8-bit depth picture shows as black [m].
+    views : mapping of str to array
+        Arrays as `VIEWS` says, read-only, never written again.
+    timings_s : mapping of str to float
+        Wall time of each stage of making it [s]; ``render`` is the whole.
+    info : SceneInfo or None
+        The scene at the frame's own instant; None if that is not known (it was not recorded).
+    states : InstanceStates or None
+        Poses and velocities of all instances at the frame's own instant; None if they were not
+        recorded.
+    randomised : mapping or None
+        Record of what was drawn at random for it, which `randomise` takes; None if nothing was.
+    lesson : LessonState or None
+        Which lesson it is of; None if the scene has none.
+    draw_alone : callable or None
+        Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
+    """
+
+    agent: str
+    scene: str
+    epoch: int
+    revision: int
+    sequence: int
+    stamp_ns: int
+    dt_ns: int
+    camera: Camera
+    depth_range_m: float = 10.0
+    views: Mapping[str, NDArray[Any]]
+    timings_s: Mapping[str, float] = field(default_factory=dict)
+    info: SceneInfo | None = None
+    states: InstanceStates | None = None
+    randomised: Mapping[str, Any] | None = None
+    lesson: LessonState | None = None
+    draw_alone: DrawAlone | None = None
+
+    def __post_init__(self) -> None:
+        height, width = self.camera.intrinsics.height, self.camera.intrinsics.width
+        for name, array in self.views.items():
+            spec = view_spec(name)
+            shape = spec.shape(height, width)
+            if array.shape != shape or array.dtype not in spec.dtypes:
+                types = " or ".join(map(str, spec.dtypes))
+                raise ValueError(
+                    f"view {name} must be {shape} {types}, got {array.shape} {array.dtype}"
+                )
+            array.flags.writeable = False
+        # In one order, whoever made them: what is written of a frame is the same bytes each time.
+        ordered = {name: self.views[name] for name in VIEWS if name in self.views}
+        object.__setattr__(self, "views", MappingProxyType(ordered))
+
+    def __getitem__(self, view: str) -> NDArray[Any]:
+        if view not in self.views:
+            raise UnknownName("view", view, self.views)
+        return self.views[view]
+
+    def __contains__(self, view: object) -> bool:
+        return view in self.views
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.views)
+
+    def __len__(self) -> int:
+        return len(self.views)
+
+    # A frame is equal to itself alone, as any object is: comparing pictures is up to the caller.
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    def __bool__(self) -> bool:
+        return True  # also without views: a frame without views is a frame
+
+    def get(self, view: str, default: Any = None) -> Any:
+        """Return a view; the default if the frame does not have it."""
+        return self.views.get(view, default)
+
+    @property
+    def dt_s(self) -> float:
+        """Simulated time since the frame that flow refers to [s]; 0 if there is none."""
+        return self.dt_ns * 1e-9
+
+    @property
+    def instances(self) -> dict[int, SceneObject]:
+        """The objects that there were at the frame's instant, by their ids in its instance view.
+
+        Empty if the scene of that instant is not known.
+        """
+        return {} if self.info is None else dict(self.info.objects)
