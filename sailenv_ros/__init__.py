@@ -10,6 +10,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from sailenv_ros.version import __version__
+
 if TYPE_CHECKING:
     from sailenv_ros.frame.frame import Frame
     from sailenv_ros.frame.show import show
@@ -33,8 +35,6 @@ __all__ = [
     "look_at",
     "show",
 ]
-
-__version__ = "0.2.0"
 
 _HOMES = {
     "Agent": "sailenv_ros.ros.client.agent",

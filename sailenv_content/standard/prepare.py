@@ -21,8 +21,9 @@ from sailenv_content.procedural.devices import SCREEN_BLACK, desktop_picture
 from sailenv_content.procedural.paintings import landscape_picture
 from sailenv_content.standard.catalogues import CatalogueEntry, Catalogues
 from sailenv_content.standard.dividing import LabelledMesh, divided
+from sailenv_content.standard.finishing import finished
 from sailenv_content.standard.patterns import PATTERNS
-from sailenv_ros.assets.finishes import FINISHES, finish_of, finished
+from sailenv_ros.assets.finishes import FINISHES, finish_of
 from sailenv_ros.assets.hulls import convex_hull, convex_parts, hulls_of_pieces, merged
 from sailenv_ros.assets.meshes import (
     RawMesh,

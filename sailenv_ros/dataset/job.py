@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros import __version__
 from sailenv_ros.assets.pack import PACK_FILE
 from sailenv_ros.assets.sources import installed_packs
 from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
@@ -20,6 +19,7 @@ from sailenv_ros.scene.documents import load_document
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.version import __version__
 
 __all__ = ["Job", "RecipeError", "load_job", "load_recipe"]
 
