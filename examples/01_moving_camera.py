@@ -9,8 +9,7 @@ import sys
 
 import numpy as np
 
-from sailenv_ros import Agent
-from sailenv_ros.types.geometry import look_at
+from sailenv_ros import Agent, look_at
 
 LOCKSTEP = {"scene": "optical", "mode": "lockstep"}
 STEPS = 8  # 1/30 s of simulated time between two frames

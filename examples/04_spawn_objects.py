@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from sailenv_ros import Agent
-from sailenv_ros.types.geometry import look_at
+from sailenv_ros import Agent, look_at
 
 LOCKSTEP = {"scene": "optical", "mode": "lockstep"}
 

@@ -8,8 +8,7 @@ from contextlib import ExitStack
 
 import numpy as np
 
-from sailenv_ros import Agent
-from sailenv_ros.types.geometry import look_at
+from sailenv_ros import Agent, look_at
 
 LOCKSTEP = {"scene": "optical", "mode": "lockstep"}
 SIZES = [(320, 240), (160, 120), (200, 200), (64, 48)]

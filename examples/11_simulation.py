@@ -9,10 +9,7 @@ import time
 
 import numpy as np
 
-from sailenv_ros import Simulation, show
-from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import CameraIntrinsics
-from sailenv_ros.types.geometry import Pose, look_at
+from sailenv_ros import AgentSpec, CameraIntrinsics, Pose, Simulation, look_at, show
 
 FRAMES, STEPS = 6, 8  # 8 steps of 1/240 s between two frames
 

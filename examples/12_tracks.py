@@ -11,11 +11,8 @@ import time
 import cv2
 import numpy as np
 
-from sailenv_ros import Simulation
+from sailenv_ros import AgentSpec, CameraIntrinsics, Pose, Simulation, look_at
 from sailenv_ros.frame.motion import SceneGeometry, Tracks, motion, track
-from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import CameraIntrinsics
-from sailenv_ros.types.geometry import Pose, look_at
 
 FRAMES, STEPS = 40, 6  # 6 steps of 1/240 s between two frames
 WIDTH, HEIGHT = 640, 480

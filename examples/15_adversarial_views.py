@@ -19,11 +19,8 @@ import cv2
 import numpy as np
 from PIL import Image
 
-from sailenv_ros import Simulation
+from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation, look_at
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
-from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import CameraIntrinsics
-from sailenv_ros.types.geometry import look_at
 
 AZIMUTHS, ELEVATIONS_DEG = 12, (10.0, 40.0)
 HEIGHT_M = 0.4

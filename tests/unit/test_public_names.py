@@ -20,7 +20,20 @@ def run(code: str) -> str:
 
 def test_the_public_names_are_these() -> None:
     """A name that users may rely on comes and goes on purpose only."""
-    assert sailenv_ros.__all__ == ["Agent", "Simulation", "__version__", "load_scene", "show"]
+    assert sailenv_ros.__all__ == [
+        "Agent",
+        "AgentSpec",
+        "Camera",
+        "CameraIntrinsics",
+        "Frame",
+        "Pose",
+        "Simulation",
+        "__version__",
+        "load_scene",
+        "look_at",
+        "show",
+    ]
+    assert all(getattr(sailenv_ros, name) is not None for name in sailenv_ros.__all__)
     assert set(sailenv_ros.__all__) <= set(dir(sailenv_ros))
 
 
