@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.spec_objects import ObjectSpec
@@ -184,6 +183,8 @@ def _moved(points: Floats, centre_m: tuple[float, float, float]) -> Floats:
 
 def _height(shape: CollisionShape, scale: tuple[float, float, float], under: Floats) -> float:
     """Return the greatest height of a shape over points of the floor; -inf where there is none."""
+    from scipy.spatial import ConvexHull
+
     points = _corners(shape) * np.asarray(scale)
     if isinstance(shape, TriangleShape):
         triangles = shape.triangles

@@ -9,10 +9,9 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -20,6 +19,9 @@ from sailenv_ros.assets.gltf_emission import write_strength
 from sailenv_ros.assets.meshes import smooth_mesh
 from sailenv_ros.assets.model_files import read_parts
 from sailenv_ros.types.model import ConvexShape, Material, Mesh, ModelPart, Texture
+
+if TYPE_CHECKING:
+    import trimesh
 
 __all__ = ["DRAWN", "glb_bytes", "read_glb"]
 
@@ -60,6 +62,8 @@ def read_glb(path: Path) -> tuple[tuple[ModelPart, ...], tuple[ConvexShape, ...]
 
 def glb_bytes(parts: Sequence[ModelPart], hulls: Sequence[ConvexShape]) -> bytes:
     """Return the bytes of a binary glTF file; the same model gives the same bytes."""
+    import trimesh
+
     scene = trimesh.Scene()
     for number, part in enumerate(parts):
         _add(scene, f"{DRAWN}{number}", _drawn(part))
@@ -83,6 +87,8 @@ def _add(scene: trimesh.Scene, name: str, mesh: trimesh.Trimesh) -> None:
 
 
 def _drawn(part: ModelPart) -> trimesh.Trimesh:
+    import trimesh
+
     mesh: Mesh = part.mesh
     return trimesh.Trimesh(
         vertices=mesh.positions @ _FILE_FROM_BODY.T,
@@ -94,6 +100,8 @@ def _drawn(part: ModelPart) -> trimesh.Trimesh:
 
 
 def _pbr(material: Material) -> Any:
+    import trimesh
+
     lossless = material.alpha != "opaque"
     return trimesh.visual.material.PBRMaterial(
         name=material.name,

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from sailenv_ros.assets.meshes import RawMesh, components, simplified, welded
 from sailenv_ros.extras import need
@@ -146,6 +145,8 @@ def _surface_heights(mesh: RawMesh, lines: Floats) -> Floats:
 
 def _top_heights(cloud: Floats, lines: Floats) -> Floats:
     """Return (N,) where vertical lines through (N, 2) points leave a hull, NaN where they miss."""
+    from scipy.spatial import ConvexHull, QhullError
+
     try:
         planes = ConvexHull(cloud).equations
     except QhullError:
@@ -177,6 +178,8 @@ def _thickened(points: Floats) -> Floats:
 
 
 def _corners(points: Floats) -> Floats:
+    from scipy.spatial import ConvexHull, QhullError
+
     try:
         return np.asarray(points[ConvexHull(points).vertices])
     except QhullError:  # flat along no axis: its box is as good
@@ -227,6 +230,8 @@ def _dense(clouds: list[Floats], kept: list[int], volumes: Floats) -> NDArray[np
 
 
 def _hull_volume(cloud: Floats) -> float:
+    from scipy.spatial import ConvexHull, QhullError
+
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

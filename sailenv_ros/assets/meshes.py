@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from sailenv_ros.assets.simplification import fewer_triangles
 from sailenv_ros.types.model import Mesh
@@ -154,6 +152,9 @@ def _as_large(raw: RawMesh, whole: RawMesh) -> RawMesh:
 
 def components(raw: RawMesh) -> Indices:
     """Return (M,) int64: for each triangle the number of the connected piece that it belongs to."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     _, points = np.unique(raw.positions.round(6), axis=0, return_inverse=True)
     corners = points.reshape(-1)[raw.triangles]
     rows = np.concatenate([corners[:, 0], corners[:, 1]])

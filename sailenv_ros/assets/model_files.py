@@ -12,10 +12,9 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -25,6 +24,9 @@ from sailenv_ros.assets.obj_polygons import with_triangles
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.model import Material, Texture
+
+if TYPE_CHECKING:
+    import trimesh
 
 __all__ = ["MAX_TRIANGLES", "MODEL_SUFFIXES", "RawPart", "read_parts", "texture_of"]
 
@@ -83,6 +85,8 @@ def read_parts(path: Path) -> tuple[RawPart, ...]:
 
 
 def _parts(scene: trimesh.Scene) -> Iterator[RawPart]:
+    import trimesh
+
     for node in scene.graph.nodes_geometry:
         file_from_part, geometry = scene.graph[node]
         mesh = scene.geometry[geometry]
@@ -121,6 +125,8 @@ def texture_of(picture: Image.Image | None) -> Texture | None:
 
 
 def _loaded(path: Path) -> trimesh.Scene:
+    import trimesh
+
     if path.suffix.lower() not in MODEL_SUFFIXES:
         raise AssetError(path.name, f"a model file must end in one of {', '.join(MODEL_SUFFIXES)}")
     try:
@@ -133,6 +139,8 @@ def _loaded(path: Path) -> trimesh.Scene:
 
 
 def _gltf(path: Path) -> Any:
+    import trimesh
+
     data = description_with_strength(path)
     if data is None:
         return trimesh.load(path, process=False)
@@ -145,6 +153,8 @@ def _gltf(path: Path) -> Any:
 
 
 def _obj(path: Path) -> Any:
+    import trimesh
+
     text = with_triangles(path.read_text(encoding="utf-8", errors="replace"))
     resolver = trimesh.resolvers.FilePathResolver(str(path))
     return trimesh.load(
@@ -192,6 +202,8 @@ def _normals(mesh: trimesh.Trimesh, axes: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _material(given: Any, name: str) -> Material:
+    import trimesh
+
     if isinstance(given, trimesh.visual.material.PBRMaterial):
         return _from_gltf(given, name)
     if isinstance(given, trimesh.visual.material.SimpleMaterial):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Sequence
 
-import mapbox_earcut
 import numpy as np
 from numpy.typing import NDArray
 
@@ -78,6 +77,8 @@ def _cross(a: Point, b: Point) -> Point:
 
 
 def _clipped(polygon: Floats) -> Iterator[tuple[int, int, int]]:
+    import mapbox_earcut
+
     normal = _normal(polygon - polygon[0])
     length = float(np.linalg.norm(normal))
     if length == 0.0:

@@ -8,14 +8,17 @@ from __future__ import annotations
 from functools import cached_property
 from hashlib import blake2b
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.folders import cache_folder, standard_pack_folder
 from sailenv_ros.assets.pack import PACK_FILE
-from sailenv_ros.authoring.generation import Generator, parsed_name
-from sailenv_ros.authoring.generation import __file__ as generation_file
+from sailenv_ros.authoring.generation import names
 from sailenv_ros.system.files import make_folder, storage_errors, write_file
 from sailenv_ros.system.resources import resource_path
+
+if TYPE_CHECKING:
+    from sailenv_ros.authoring.generation.generator import Generator
 
 __all__ = ["GeneratedScenes", "generation_state"]
 
@@ -48,7 +51,7 @@ class GeneratedScenes:
         StorageError
             If it cannot be written.
         """
-        kind, seed = parsed_name(name, self._generator.rules)
+        kind, seed = names.parsed_name(name, self._generator.rules)
         folder = cache_folder() / FOLDER / generation_state()
         path = folder / f"generated_{kind}_{seed}.yaml"
         if not path.is_file():
@@ -61,6 +64,9 @@ class GeneratedScenes:
 
     @cached_property
     def _generator(self) -> Generator:
+        # Most scenes are files, and the generator needs much.
+        from sailenv_ros.authoring.generation.generator import Generator
+
         return Generator(assets=self._assets)
 
 
@@ -77,7 +83,7 @@ def generation_state() -> str:
     digest = blake2b(digest_size=8)
     rules = resource_path("config", "rooms")
     files = [*sorted(rules.rglob("*.yaml")), standard_pack_folder() / PACK_FILE]
-    files += sorted(Path(generation_file).parent.glob("*.py"))
+    files += sorted(Path(names.__file__).parent.glob("*.py"))
     for file in files:
         if file.is_file():
             digest.update(file.read_bytes())

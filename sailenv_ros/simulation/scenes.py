@@ -21,7 +21,7 @@ from sailenv_ros.assets.pictures import Pictures
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.authoring.generation import PREFIX as GENERATED
+from sailenv_ros.authoring.generation.names import PREFIX as GENERATED
 from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
 from sailenv_ros.behaviours import (
     behaviour_errors,

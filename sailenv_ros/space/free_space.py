@@ -12,7 +12,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import ndimage
 
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.space.paths import GridGraph, straightened
@@ -128,6 +127,8 @@ class FreeSpace:
 
         From each cell of a region each other one can be reached. 1 is the largest.
         """
+        from scipy import ndimage
+
         labels, count = ndimage.label(self.free)
         sizes = np.bincount(labels.reshape(-1), minlength=count + 1)[1:]
         order = np.zeros(count + 1, np.int32)

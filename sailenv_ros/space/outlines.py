@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
@@ -136,6 +135,8 @@ def _above(points: Doubles, low_m: float) -> Doubles:
 
 def _hull(points: Doubles) -> Doubles:
     """Return the corners of the convex hull of (N, 2) points, counter-clockwise."""
+    from scipy.spatial import ConvexHull, QhullError
+
     if len(points) > 2:
         try:
             hull = ConvexHull(points)

@@ -7,8 +7,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 __all__ = ["GridGraph", "in_sight", "straightened"]
 
@@ -27,6 +25,8 @@ class GridGraph:
     """
 
     def __init__(self, free: Flags) -> None:
+        from scipy.sparse import csr_matrix
+
         self._shape = free.shape
         height, width = free.shape
         numbers = np.arange(free.size).reshape(free.shape)
@@ -63,6 +63,8 @@ class GridGraph:
 
     def _from_cell(self, start: Cell) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """Return (H, W) distances in cells, and (H·W,) the cell before each on the path to it."""
+        from scipy.sparse.csgraph import dijkstra
+
         number = start[0] * self._shape[1] + start[1]
         distances, before = dijkstra(
             self._graph, directed=False, indices=number, return_predecessors=True

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.validation import vector
@@ -95,6 +94,8 @@ class Pose:
     @classmethod
     def from_matrix(cls, world_from_body: ArrayLike) -> Pose:
         """Make a pose from a (4, 4) rigid transform."""
+        from scipy.spatial.transform import Rotation  # takes long to import, and few need it
+
         matrix = np.asarray(world_from_body, dtype=np.float64)
         x, y, z = (float(v) for v in matrix[:3, 3])
         qx, qy, qz, qw = (float(v) for v in Rotation.from_matrix(matrix[:3, :3]).as_quat())
@@ -128,8 +129,10 @@ class Pose:
 def quat_xyzw_from_rpy_deg(rpy_deg: ArrayLike) -> tuple[float, float, float, float]:
     """Turn roll, pitch, yaw [deg] about the fixed axes x, y, z (REP 103) into a quaternion."""
     angles = vector("rotation (roll, pitch, yaw)", rpy_deg, limit=1e6)
-    x, y, z, w = (float(v) for v in Rotation.from_euler("xyz", angles, degrees=True).as_quat())
-    return x, y, z, w
+    roll, pitch, yaw = (0.5 * math.radians(angle) for angle in angles)
+    turn = (math.sin(roll), 0.0, 0.0, math.cos(roll))
+    turn = _product((0.0, math.sin(pitch), 0.0, math.cos(pitch)), turn)
+    return _product((0.0, 0.0, math.sin(yaw), math.cos(yaw)), turn)
 
 
 def rpy_deg_from_quat_xyzw(quat_xyzw: Iterable[float]) -> tuple[float, float, float]:
@@ -210,6 +213,8 @@ def interpolate(start: Pose, end: Pose, fraction: float) -> Pose:
     fraction : float
         0 gives `start`, 1 gives `end`.
     """
+    from scipy.spatial.transform import Rotation  # takes long to import, and few need it
+
     first, second = np.asarray(start.position_m), np.asarray(end.position_m)
     position = first + (second - first) * fraction
     turn = Rotation.from_quat(start.orientation_xyzw)
@@ -233,6 +238,20 @@ def _unit_quat_xyzw(values: ArrayLike) -> tuple[float, float, float, float]:
     if abs(norm - 1.0) > 1e-15:
         array = array / norm
     return float(array[0]), float(array[1]), float(array[2]), float(array[3])
+
+
+def _product(
+    p: tuple[float, float, float, float], q: tuple[float, float, float, float]
+) -> tuple[float, float, float, float]:
+    """Hamilton product of two quaternions x, y, z, w: first the turn q, then p."""
+    px, py, pz, pw = p
+    qx, qy, qz, qw = q
+    return (
+        pw * qx + qw * px + (py * qz - pz * qy),
+        pw * qy + qw * py + (pz * qx - px * qz),
+        pw * qz + qw * pz + (px * qy - py * qx),
+        pw * qw - px * qx - py * qy - pz * qz,
+    )
 
 
 def _rotation_matrix(quat_xyzw: tuple[float, float, float, float]) -> Matrix:

@@ -43,6 +43,13 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
     assert run(code.format(("rclpy", "moderngl", "pybullet", "numpy"))) == "[]"
 
 
+def test_importing_the_simulation_leaves_out_what_few_need() -> None:
+    """Libraries of geometry, of models and of notebooks are imported where they are used."""
+    few = ("scipy", "trimesh", "numba", "moderngl", "xatlas", "embreex", "IPython", "aiohttp")
+    code = "import sys, sailenv_ros; sailenv_ros.Simulation; "
+    assert run(code + f"print([m for m in {few!r} if m in sys.modules])") == "[]"
+
+
 def test_the_simulation_needs_no_ros() -> None:
     """Simulator and scene loader can be had where there is no ROS."""
     code = "import sys, sailenv_ros; sailenv_ros.Simulation; sailenv_ros.load_scene; "

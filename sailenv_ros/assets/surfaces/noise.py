@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
 
 from sailenv_ros.assets.surfaces.maps import Floats
 
@@ -77,6 +76,8 @@ def shifted(field: Floats, piece: NDArray[np.intp], rng: np.random.Generator) ->
 
 def _frequencies() -> tuple[Floats, Floats]:
     """Cycles per pixel of the spectrum's columns (1, W / 2 + 1) and rows (H, 1)."""
+    from scipy import fft
+
     across = fft.rfftfreq(SIZE_PX).astype(np.float32)[np.newaxis, :]
     down = fft.fftfreq(SIZE_PX).astype(np.float32)[:, np.newaxis]
     return across, down
@@ -94,6 +95,8 @@ def _low_pass(across_px: float, down_px: float) -> Floats:
 
 def _noise(rng: np.random.Generator, gain: Floats) -> Floats:
     """Shape white noise by a gain of its frequencies; periodic, as every Fourier series is."""
+    from scipy import fft
+
     parts = rng.standard_normal((2, SIZE_PX, SIZE_PX // 2 + 1), dtype=np.float32)
     spectrum = (parts[0] + np.complex64(1j) * parts[1]) * gain
     spectrum[0, 0] = 0.0

@@ -135,3 +135,10 @@ def test_what_is_no_pose_is_refused_in_words(arguments: dict[str, object], sente
     with pytest.raises(InvalidRequest) as caught:
         Pose(**arguments)  # type: ignore[arg-type]  # wrong on purpose
     assert str(caught.value).startswith(sentence)
+
+
+@given(st.tuples(*[st.floats(-1e5, 1e5)] * 3))
+def test_angles_become_the_quaternion_that_scipy_makes(angles: tuple[float, float, float]) -> None:
+    """Bit for bit."""
+    scipys = Rotation.from_euler("xyz", angles, degrees=True).as_quat()
+    assert np.array_equal(quat_xyzw_from_rpy_deg(angles), scipys)
