@@ -1,4 +1,4 @@
-"""How far the bounced light of a bake is from one with many more rays.
+"""Error of the bounced light of a bake, against one with many more rays.
 
     python benchmarks/bake_error.py [--scene NAME ...] [--rays N]
 

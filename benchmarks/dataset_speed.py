@@ -1,4 +1,4 @@
-"""How fast data sets are made: frames a minute with all views, by 1 and 2 workers, and by Ray.
+"""Speed of making data sets: frames a minute with all views, by 1 and 2 workers, and by Ray.
 
 Run ``python -m benchmarks.dataset_speed [--frames 400] [--folder DIR] [--ray]``. The recipe is
 single pictures of room_01 to room_03 at 640 x 480 with every view that is rendered, written as

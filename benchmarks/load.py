@@ -1,4 +1,4 @@
-"""How much stalled, idle and working clients cost those who work: frames per second beside them.
+"""Cost of stalled, idle and working clients for others: frames per second beside them.
 
     python benchmarks/load.py [--seconds S] [--rounds N] [--agents N] [--peers N] [--pages N]
                               [--realtime HZ]

@@ -27,7 +27,7 @@ LEAST_PIXELS = 200
 """Frames in which fewer pixels move are not asked."""
 
 LEAST_MOTION = 0.15
-"""What moves by less is not looked at: interpolation blurs more than it moves [px]."""
+"""Least motion that is judged [px]: interpolation blurs more than less motion shows."""
 
 
 def main() -> None:

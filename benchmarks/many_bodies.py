@@ -1,4 +1,4 @@
-"""How fast physics is where many bodies move: simulated seconds per second, in turn.
+"""Speed of physics with many moving bodies: simulated seconds per second, in turn.
 
     python benchmarks/many_bodies.py [--bodies N] [--seconds S] [--rounds N] [--against FOLDER]
 

@@ -1,4 +1,4 @@
-"""How long motion between frames and tracks take: python benchmarks/motion.py [--pairs N].
+"""Time of motion between frames, and of tracks: python benchmarks/motion.py [--pairs N].
 
 Frames of a furnished room, or of `optical` where the furniture has not been built, from a moving
 camera; medians on as many threads as there are processors.

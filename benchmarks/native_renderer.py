@@ -54,7 +54,7 @@ OTHERS_EACH = 4
 """They draw at each so many instants: some take a second."""
 
 ANSWER_S = 60.0
-"""How long another process may take to draw, or to begin [s]."""
+"""Time that another process may take to draw, or to begin [s]."""
 
 AGENTS = (1, 4, 16)
 WARM_UP = 3

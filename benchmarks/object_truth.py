@@ -1,4 +1,4 @@
-"""How long the truth about objects takes: the table, and drawing each object alone.
+"""Time of the ground truth of objects: the table, and drawing each object alone.
 
     python benchmarks/object_truth.py [--scene room_01] [--size 640x480] [--repeat 30]
 

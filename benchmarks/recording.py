@@ -1,4 +1,4 @@
-"""How fast recordings are written and read: five views at 640 x 480, frames of a real scene.
+"""Speed of writing and reading recordings: five views at 640 x 480, frames of a real scene.
 
 Run `python benchmarks/recording.py [--frames N] [--folder DIR]`. Measures, for each compression,
 the writer in process; the recorder node behind DDS at 30 frames a second with a publisher that

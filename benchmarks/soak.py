@@ -37,7 +37,7 @@ KINDS = ("memory [MiB]", "descriptors", "threads", "segments")
 
 
 Round = Callable[[str, int], None]
-"""What is done in a scene, in the round of that number."""
+"""Action in a scene, in the round of that number."""
 
 
 def main() -> int:

@@ -43,7 +43,7 @@ POLL_S = 0.2
 
 @dataclass
 class Usage:
-    """What a process has used so far."""
+    """Resources that a process has used so far."""
 
     rss_mb: float
     cpu_s: float

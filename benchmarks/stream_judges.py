@@ -37,7 +37,7 @@ UNUSED = (
     *("seaborn", "smurf", "tdw", "tensorboard", "tensorflow", "timm", "torch.utils.tensorboard"),
     *("torchinfo", "torchsummary", "torchvision", "wandb"),
 )
-"""What their modules import and these runs do not need."""
+"""Modules that theirs import and these runs do not need."""
 
 DATA = {"empty_space": "emptyspace", "solid": "solid", "living_room": "livingroom"}
 """Their names of the streams."""
@@ -49,7 +49,7 @@ HORN_SCHUNCK = {"a": "0.5", "b": "0.5", "c": "1"}
 
 
 M_MMAP_THRESHOLD = -3
-"""What glibc's `mallopt` calls the size from which a block is given back when it is freed."""
+"""Parameter of glibc's `mallopt`: the size from which a freed block is given back."""
 
 
 class _StandIns(importlib.abc.MetaPathFinder, importlib.abc.Loader):

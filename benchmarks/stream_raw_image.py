@@ -1,4 +1,4 @@
-"""How well raw pixels tell the objects of a stream, and by how much that depends on the labels.
+"""Scores of raw pixels at telling the objects of a stream, and their dependence on the labels.
 
     python benchmarks/stream_raw_image.py FOLDER --stream solid --drawings 50
 

@@ -1,4 +1,4 @@
-"""What belongs to a frame beside its images, to `sailenv_msgs/FrameInfo`; and a frame's headers."""
+"""Converts a frame, apart from its images, to `sailenv_msgs/FrameInfo`, and makes its headers."""
 
 from __future__ import annotations
 

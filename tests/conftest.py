@@ -31,6 +31,21 @@ _isolate_ros()
 # What its user has saved on this machine is no part of the tests.
 os.environ["SAILENV_SCENES"] = str(ROOT / "build" / "no_scenes")
 
+NOT_QUICK = (
+    "gateway",
+    "packaging",
+    "render",
+    "ros",
+    "viewer",
+    "unit/bake",
+    "unit/reliability",
+)
+"""Folders and files whose tests are left out of the quick tier, which `scripts/check` runs.
+
+All else is quick but for tests marked as slow: data, scenes, operations, validation, and kernels
+beside their oracles. `scripts/test` runs everything.
+"""
+
 INSTALLED_PREFIX = os.environ.get("SAILENV_INSTALLED_PREFIX", "")
 """Set by scripts/test: where the package under test was installed to; else it is the sources'."""
 
@@ -48,16 +63,27 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark by folder what needs OpenGL or ROS, so that no test can forget it; longest files first.
+    """Mark by folder what needs OpenGL or ROS and what is quick; longest files first.
 
-    Two workers take a file after the other: a long one at the end would leave one of them idle.
+    So no test can forget its mark. Two workers take a file after the other: a long one at the end
+    would leave one of them idle.
     """
+    tests = ROOT / "tests"
+    missing = [name for name in NOT_QUICK if not (tests / name).exists()]
+    if missing:
+        raise pytest.UsageError(
+            f"NOT_QUICK of tests/conftest.py names what is not there: {missing}"
+        )
     for item in items:
-        folders = item.path.relative_to(ROOT / "tests").parts
-        if folders[0] == "ros":
+        path = item.path.relative_to(tests)
+        if path.parts[0] == "ros":
             item.add_marker(pytest.mark.ros)
-        elif folders[0] in ("render", "viewer"):
+        elif path.parts[0] in ("render", "viewer"):
             item.add_marker(pytest.mark.gl)
+        if not item.get_closest_marker("slow") and not any(
+            path.is_relative_to(name) for name in NOT_QUICK
+        ):
+            item.add_marker(pytest.mark.quick)
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
 

@@ -1,4 +1,4 @@
-"""How unlike two pictures are: SSIM, PSNR, FLIP. Runs in the tracer's environment.
+"""Similarity of two pictures: SSIM, PSNR, FLIP. Runs in the tracer's environment.
 
     measure.py PAIRS.npz
 

@@ -26,7 +26,7 @@ _NUMBERS: dict[str, Any] = {
     "cos_outer": float,
     "cos_radius": float,
 }
-"""What a light may have, by its kind; see `export.lamp`."""
+"""Parameters of a light, with their types, by its kind; see `export.lamp`."""
 
 
 class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]

@@ -1,4 +1,4 @@
-"""What a pixel of the comparison shows, so that differences can be told apart.
+"""Regions of the compared pictures, by which differences are told apart.
 
 Ground truth of a view in, a number for each pixel out: the index of one of `REGIONS`.
 """
@@ -14,14 +14,13 @@ from numpy.typing import NDArray
 __all__ = ["REGIONS", "VIEWS", "regions_of"]
 
 REGIONS = ("outside", "edges", "textures", "smooth")
-"""What lies beyond all surfaces; where surfaces meet or bend; where the base colour varies; the
-rest."""
+"""Beyond all surfaces; where surfaces meet or bend; where the base colour varies; the rest."""
 
 VIEWS = ("depth", "instance", "normals", "albedo")
 """The views that `regions_of` needs."""
 
 REACH_PX = 2
-"""How far from an edge, or from what lies outside, a pixel counts as such."""
+"""Distance from an edge, or from the outside, within which a pixel belongs to that region [px]."""
 
 LEAST_COSINE = 0.9
 """Between the normals of neighbours on one surface."""

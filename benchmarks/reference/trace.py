@@ -23,8 +23,8 @@ PASS_SAMPLES = 32
 """Samples per pixel that are traced at once: memory grows with them."""
 
 GUIDE_PASSES, GUIDE_SEED = 8, 100
-"""What guides the denoiser is seen so often that it has no noise of its own: with 16 samples the
-denoiser did not trust it, and blurred edges and textures."""
+"""Passes and seed of the pictures that guide the denoiser, enough to be free of noise: with 16
+samples the denoiser did not trust them, and blurred edges and textures."""
 
 _GUIDES = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal"}
 

@@ -39,7 +39,7 @@ class ToolMissing(Exception):
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Traced:
-    """What the tracer saw.
+    """Result of the path tracer.
 
     Attributes
     ----------

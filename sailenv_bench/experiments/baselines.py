@@ -32,7 +32,7 @@ from sailenv_ros.world.tiny_bodies import TinyBodies
 __all__ = ["BASELINES", "BaselineScene", "Picture"]
 
 COMMON = ("rgb", "depth", "instance")
-"""What every renderer here can draw."""
+"""Views that every renderer here can draw."""
 
 
 class Picture(Protocol):

@@ -1,4 +1,4 @@
-"""What detectors' output tensors mean: arrays in, `Detections` in the network's input out.
+"""Decodes output tensors of detectors: arrays in, `Detections` in the network's input out.
 
 Recognises a network's kind by the shapes of its outputs. Knows no file and no runtime.
 """
@@ -25,7 +25,7 @@ Size = tuple[int, int]
 
 CLASSES = len(COCO_NAMES)
 LEAST_SCORE = 0.05
-"""What scores less is dropped at once."""
+"""Score threshold; detections with a lower score are dropped at once."""
 
 OVERLAP = 0.5
 PROTOTYPES = 32

@@ -1,4 +1,4 @@
-"""How well a detector knows the rooms' objects: views and detections in, scores by class out."""
+"""Scores of a detector on objects of the rooms: views and detections in, scores by class out."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FOUND = (255, 90, 80)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scored:
-    """What a detector made of one viewpoint.
+    """Score of a detector at one viewpoint.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a detector saw in a picture, and how it overlaps with what is there.
+"""Detections in a picture, and their overlap with the ground truth.
 
 Boxes are (left, top, right, bottom) of pixel edges [px]: a single pixel at (u, v) has u, v, u + 1,
 v + 1.

@@ -24,7 +24,7 @@ Size = tuple[int, int]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputStyle:
-    """How a network wants its picture.
+    """Format of the picture that a network takes as its input.
 
     Attributes
     ----------

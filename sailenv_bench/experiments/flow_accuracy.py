@@ -1,4 +1,4 @@
-"""How exact flow is: the simulator's and others' against the motion field of plain arithmetic.
+"""Accuracy of optical flow: ours and that of estimators, against an analytic motion field.
 
 Scenarios and methods in, end-point errors and pictures out. Runs in process, in lockstep.
 """
@@ -44,7 +44,7 @@ STANDING = look_at((-1.7, -0.9, 1.75), (0.3, 0.0, 1.4))
 EYE = "eye"
 
 MOVES_PX = 0.05
-"""What moves by more between two pictures counts as moving [px]."""
+"""Least displacement between two pictures that counts as motion [px]."""
 
 
 @dataclass(slots=True)
@@ -76,7 +76,7 @@ class FlowErrors:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Accuracy:
-    """How a scenario went.
+    """Result of one scenario.
 
     Attributes
     ----------

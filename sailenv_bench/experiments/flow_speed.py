@@ -1,4 +1,4 @@
-"""How long flow takes: ours with the picture, beside the picture with others' estimates.
+"""Time per frame: pictures with our flow, and pictures with the flow of estimators.
 
 Frame sources and methods in, times by method out. All methods take turns on one simulator, so that
 what disturbs the machine disturbs all alike.

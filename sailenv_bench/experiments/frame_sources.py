@@ -1,4 +1,4 @@
-"""Where an experiment's frames come from: an `Agent`, or a `Simulation` in this process.
+"""Frame sources of experiments: an `Agent`, or a `Simulation` in this process.
 
 Both give the frame dict that users get. The Agent is imported only where it is used: without ROS
 the other source works.

@@ -1,4 +1,4 @@
-"""What a figure has to be read with: the machine, versions, the commit, the command, the load.
+"""Provenance of a figure: the machine, versions, the commit, the command, the load.
 
 The running system in, a JSON-able dict out. Knows no experiment.
 """

@@ -45,7 +45,7 @@ class BoxSolid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instant:
-    """Where camera and boxes are at one instant.
+    """Poses of the camera and the boxes at one instant.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Instant:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionField:
-    """What the arithmetic says of each pixel.
+    """Analytic ground truth of each pixel.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the paper measured, to stand beside our figures with its source.
+"""Figures that the paper measured, for comparison with ours.
 
 E. Meloni, L. Pasqualini, M. Tiezzi, M. Gori, S. Melacci: SAILenv: Learning in Virtual Visual
 Environments Made Simple, 2020, https://arxiv.org/abs/2007.08224. Numbers alone; knows nothing here.

@@ -1,4 +1,4 @@
-"""Which tables a result has: the one place that knows every experiment by its name."""
+"""Tables of a result; the one module that knows every experiment by its name."""
 
 from __future__ import annotations
 

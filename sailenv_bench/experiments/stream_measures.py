@@ -1,4 +1,4 @@
-"""How well flow explains the pictures of a stream: by the pictures alone, no truth asked.
+"""Measures of how well flow explains the pictures of a stream; no ground truth is needed.
 
 Two pictures and a flow in, sums out. `FlowFactor` finds the number by which a flow must be
 multiplied to be in true units; `warp_residual` says what is left of the difference of two pictures.
@@ -58,7 +58,7 @@ class FlowFactor:
         self._costs: list[Costs] = []
         self._still = 0.0
         self.pixels = 0
-        """How many have been asked."""
+        """Number of pixels that were used."""
 
     def add(
         self,

@@ -24,7 +24,7 @@ from sailenv_ros.errors import DeadlineExceeded, ProtocolError, SailenvError
 __all__ = ["Worker", "main"]
 
 START_S = 180.0
-"""How long a worker may take until its first word [s]: it builds a scene, perhaps twice."""
+"""Time that a worker may take to report that it is ready [s]: it builds a scene, perhaps twice."""
 
 ROUND_S = 300.0
 END_S = 30.0

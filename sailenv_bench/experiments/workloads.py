@@ -1,4 +1,4 @@
-"""What is timed when frames are counted: one way from the simulator to its user each.
+"""Workloads for counting frames per second; each is one way from the simulator to its user.
 
 A setting in, something that makes frames out. Runs in a process of its own (`worker`), so that
 environment, caches and OpenGL contexts are its own.
@@ -35,7 +35,7 @@ STEPS = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """What a worker does.
+    """Settings of a worker.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Workload(Protocol):
 
     @property
     def repeated(self) -> int:
-        """How many frames were asked for again because images were lost."""
+        """Number of frames requested again because images were lost."""
 
     def step(self) -> None:
         """Advance physics by `STEPS`."""
@@ -83,7 +83,7 @@ class Workload(Protocol):
 
 
 class _NothingLost:
-    """What loses no frames."""
+    """Base of the workloads that lose no frames."""
 
     repeated = 0
 

@@ -1,4 +1,4 @@
-"""Where the objects of a scene stand: beside walls, upon one another, or at given places.
+"""Places the objects of a scene: against walls, on other objects, or at given poses.
 
 Entries of a scene and their assets in, poses out. Knows no physics engine: what carries an object
 is found from the collision shapes of both, so that it rests there from the first step on.
@@ -32,7 +32,7 @@ RESTING_GAP_M = 0.001
 WALL_GAP_M = 0.004
 
 _SAMPLES = np.linspace(-0.45, 0.45, 9)
-"""Where under an object its carrier's height is looked for, as shares of its size."""
+"""Points below an object at which the height of its carrier is sampled, as shares of its size."""
 
 Floats = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Where packs and what they are made from lie on this machine; nothing here reads them."""
+"""Paths of the packs, and of what they are made from, on this machine; nothing is read here."""
 
 from __future__ import annotations
 

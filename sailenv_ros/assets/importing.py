@@ -24,8 +24,6 @@ from sailenv_ros.types.validation import IDENTIFIER
 
 __all__ = ["import_asset"]
 
-"""What catalogue names look like."""
-
 DENSITY_KG_M3 = 150.0
 """Of household objects on the whole, which are mostly air."""
 

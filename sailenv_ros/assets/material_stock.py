@@ -48,7 +48,7 @@ class LaidMaterial:
 
 
 class MaterialStock:
-    """Where materials come from, for one scene.
+    """The materials that one scene can name: built in, of packs, and of its own pictures.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ class PackPart(_PackModel):
 
 
 class PackEntry(_PackModel):
-    """What `pack.yaml` says of one object.
+    """One object as `pack.yaml` describes it.
 
     Attributes
     ----------
@@ -174,7 +174,7 @@ class AssetPack:
 
     @property
     def entries(self) -> Mapping[str, PackEntry]:
-        """What `pack.yaml` says of each asset, by catalogue name."""
+        """The entries of `pack.yaml`, by catalogue name."""
         return MappingProxyType(self._entries)
 
     def fingerprint(self, name: str) -> str:

@@ -29,7 +29,7 @@ __all__ = [
 
 MAX_PICTURE_BYTES = 8_000_000
 MAX_PICTURE_PX = 16_000_000
-"""What is larger is refused before it is decoded."""
+"""Greatest number of pixels; a larger picture is refused before it is decoded."""
 
 MAX_SENT = 64
 """Pictures that users may send in a simulator's life, so that they cannot fill the memory."""

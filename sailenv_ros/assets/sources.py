@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 class UnbuiltPack:
-    """What has not been built of the standard pack: its names are known, its objects are not.
+    """Objects of the standard pack that are not built yet; their names alone are known.
 
     Parameters
     ----------

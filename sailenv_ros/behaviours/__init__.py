@@ -1,4 +1,4 @@
-"""How objects move of themselves: small pure functions of time, state and a seeded generator."""
+"""Motion of objects by themselves: pure functions of time, state and a seeded generator."""
 
 from sailenv_ros.behaviours.base import (
     MAX_SPEED_M_S,

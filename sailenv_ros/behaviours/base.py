@@ -1,4 +1,4 @@
-"""What a behaviour is: a parameter model and one function from a body's state to an action.
+"""Definition of a behaviour: a parameter model and a function from a body's state to an action.
 
 The function sees time, the body's state, a memory of its own and a seeded generator; it returns
 what the engine shall do during the next physics step. It knows no engine, so it can be tested
@@ -81,7 +81,7 @@ class BehaviourParameters(BaseModel):
 
     @property
     def view_distance_m(self) -> float:
-        """How far away from the viewer it may be [m]."""
+        """Greatest distance from the viewer [m]."""
         return MAX_VIEW_DISTANCE_M
 
 
@@ -124,7 +124,7 @@ class BodyState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Action:
-    """What the engine does to the body during the next step; ``None`` leaves it alone.
+    """Commands to the physics engine for one body and the next step; ``None`` changes nothing.
 
     Attributes
     ----------
@@ -202,7 +202,7 @@ class BodyStates:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actions:
-    """What the engine does to N bodies during the next step; see `Action`.
+    """Commands to the physics engine for N bodies and the next step; see `Action`.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How long objects move of themselves, told by what a scene file says of them.
+"""Durations of the motion of objects, computed from the descriptions in a scene file.
 
 Plain data of behaviours and lessons in, seconds and faults out; starts nothing.
 """

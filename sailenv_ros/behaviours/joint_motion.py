@@ -1,4 +1,4 @@
-"""How joints are moved: to a position within a time, and to and fro.
+"""Motions of joints: to a position within a time, and back and forth.
 
 Both ask for the velocity that brings the joint to where it should be at the end of the step, so
 what was held up catches up as far as the joint's effort lets it.
@@ -29,7 +29,7 @@ ARRIVED = 1e-3
 """Of a motion that ends nearer to its aim, [rad] or [m], the joint ends exactly there."""
 
 CATCHES_UP = 2.0
-"""What was held up is moved this much faster than the motion's greatest speed at most."""
+"""Greatest speed of a joint that was held up, as a multiple of the motion's greatest speed."""
 
 
 class JointMotion(BehaviourParameters):

@@ -1,4 +1,4 @@
-"""Which behaviours exist, and how one is checked and started.
+"""Registry of the behaviours; checks and starts them.
 
 Names of generators: a behaviour's random numbers depend on the world's seed, the object's name
 and the behaviour's place in the object's list, and on nothing else.

@@ -59,7 +59,7 @@ class UniformMovement(BehaviourParameters):
 
     @property
     def view_distance_m(self) -> float:
-        """How far away from the viewer it may be [m]."""
+        """Greatest distance from the viewer [m]."""
         return self.view_distance
 
 

@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 ARRIVED = 1e-6
-"""What is nearer than this to its goal is there [m], [rad]."""
+"""A body nearer than this to its goal has arrived [m], [rad]."""
 
 
 class ObjectWaypoint(BaseModel):

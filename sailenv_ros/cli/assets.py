@@ -29,7 +29,7 @@ __all__ = ["add_parser", "run"]
 
 
 COLUMNS, TILE_PX, AZIMUTH_DEG = 10, 192, 32.0
-"""How a sheet is laid out, and from where its objects are seen, unless asked otherwise."""
+"""Layout of a contact sheet, and the azimuth of its views, unless given: columns, px, deg."""
 
 
 def add_parser(subparsers: Any) -> None:

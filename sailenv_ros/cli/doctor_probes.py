@@ -1,4 +1,4 @@
-"""What `sailenv doctor` dares to try only in a process of its own: drivers and native libraries.
+"""Probes of `sailenv doctor` that need a process of their own: drivers and native libraries.
 
 `python -m sailenv_ros.cli.doctor_probes NAME` prints one marked line of JSON. A driver may hang,
 crash or print whatever it likes: `try_probe` survives it and says what happened.

@@ -1,4 +1,4 @@
-"""What the commands of experiments have in common: a progress bar, tables, result files."""
+"""Common parts of the experiments' commands: a progress bar, tables, result files."""
 
 from __future__ import annotations
 

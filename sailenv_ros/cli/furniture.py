@@ -13,7 +13,7 @@ from sailenv_content.standard.pack_build import build_standard_pack
 __all__ = ["build_furniture", "object_progress"]
 
 REPORTS = 10
-"""How often progress is said where there is no terminal to draw a bar on."""
+"""Number of progress messages where there is no terminal for a bar."""
 
 
 def build_furniture(

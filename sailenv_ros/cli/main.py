@@ -34,7 +34,7 @@ COMMANDS = {
     "setup": "build the furniture and bake the light of the rooms, once on each machine",
     "stream": "make the published streams of continual learning as bags",
 }
-"""What each subcommand does, by its name, which is its module's too."""
+"""Purpose of each subcommand, by its name, which is also the name of its module."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

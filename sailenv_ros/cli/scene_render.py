@@ -30,7 +30,7 @@ CAMERA = "scene_render_camera"
 """Its agent; the scene may have agents of its own."""
 
 DEFAULT_EYE_M = (0.0, 0.0, 1.5)
-"""Where the camera stands if only what it faces is given [m]."""
+"""Position of the camera if only its target is given [m]."""
 
 PICTURE_SUFFIXES = (".png", ".jpg")
 

@@ -26,7 +26,7 @@ class Frame(FrameData):
 
     @cached_property
     def objects(self) -> ObjectTable:
-        """What is known of every object of the scene at the frame's instant, seen or not.
+        """Ground truth of every object of the scene at the frame's instant, visible or not.
 
         Raises
         ------
@@ -37,7 +37,7 @@ class Frame(FrameData):
 
     @cached_property
     def amodal(self) -> AmodalMasks:
-        """What each object covers, whatever lies in front of it: drawn when it is asked for first.
+        """Amodal masks: the pixels of each object, drawn alone; drawn at the first request.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What was written → `metadata.yaml`, by which rosbag2 knows a bag folder; version 9 as in Jazzy.
+"""Writes `metadata.yaml`, by which rosbag2 knows a bag folder; version 9 as in Jazzy.
 
 Counts and times in, a file out. Knows no messages.
 """
@@ -23,7 +23,7 @@ METADATA_FILE = "metadata.yaml"
 
 _VERSION = 9
 _NEVER_NS = 2**63 - 1
-"""What rosbag2 gives as the start of a bag without messages."""
+"""Start time that rosbag2 gives a bag without messages [ns]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -80,10 +80,10 @@ _STAMPED = frozenset(AGENT_TOPICS.values())
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
 
 _NEWER_FIELD = "string lesson"
-"""What the definition of `FrameInfo` got last; version 0.2.0 had not that before it either."""
+"""The newest field of `FrameInfo`; version 0.2.0 lacked it and the field before it."""
 
 _NEWER_PART_OF_SCENES = "sailenv_msgs/RigidBody"
-"""What the definition of `SceneInfo` got last within its parts; version 0.2.0 had it not."""
+"""The newest type within the parts of `SceneInfo`; version 0.2.0 lacked it."""
 
 _LONGEST_APPENDIX = 64
 """Bytes that all newer fields take where they are empty, and more [B]."""

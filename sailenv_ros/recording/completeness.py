@@ -1,4 +1,4 @@
-"""Which images of announced frames never came: counted, so that nothing is lost in silence.
+"""Counts the images of announced frames that never arrived, so that every loss is reported.
 
 Times of sending in, a count out. Images and infos come on topics of their own and overtake each
 other; a frame is settled when `SLACK` later ones have been announced. Knows no ROS.

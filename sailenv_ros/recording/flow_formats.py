@@ -30,7 +30,7 @@ __all__ = [
 Flow = NDArray[np.float32]
 
 FLO_UNKNOWN = 1e10
-"""What a .flo file has where there is no flow; readers count everything above 1e9 as unknown."""
+"""Value in a .flo file where there is no flow; readers take everything above 1e9 as unknown."""
 
 _FLO_TAG = b"PIEH"
 _KITTI_STEP_PX = 1.0 / 64.0

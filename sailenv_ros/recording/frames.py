@@ -60,7 +60,7 @@ def recorded_agents(reader: RecordingReader) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _FrameEntry:
-    """Where a frame's messages lie: rows of the reader."""
+    """Positions of a frame's messages: rows of the reader."""
 
     log_ns: int
     stamp_ns: int

@@ -42,7 +42,7 @@ STEPS_PER_S = 240
 """Physics steps per simulated second."""
 
 FRAME_TIMEOUT_S = 120.0
-"""How long one frame may take to be rendered [s]."""
+"""Time limit for rendering one frame [s]."""
 
 
 class FrameRecorder:

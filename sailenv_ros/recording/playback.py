@@ -85,7 +85,7 @@ class PlaybackClock:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Programme:
-    """What is played, and from when.
+    """Messages to play, and the time at which playing starts.
 
     Attributes
     ----------

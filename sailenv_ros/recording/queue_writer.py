@@ -51,7 +51,7 @@ class QueueWriter:
 
     @property
     def statistics(self) -> WriterStatistics:
-        """What was written so far."""
+        """Counts of the messages and bytes written so far."""
         return self._writer.statistics
 
     def add_topic(self, topic: RecordedTopic) -> None:

@@ -23,7 +23,7 @@ __all__ = ["RecordingReader", "files_of"]
 _ENTRY = np.dtype([*ENTRY.descr, ("file", "<u2"), ("topic", "<u2"), ("rank", "u1")])
 
 _RANKS = (("SceneInfo", 0), ("Clock", 0), ("Image", 1), ("FrameInfo", 3))
-"""What comes first of what was recorded at one instant; a frame's info closes it."""
+"""Order of messages recorded at one instant, by type: lower ranks first, a frame's info last."""
 
 
 class RecordingReader:

@@ -60,7 +60,7 @@ class SnapshotBuffer:
 
     @property
     def statistics(self) -> WriterStatistics:
-        """What was taken so far, and how much of it lies in files."""
+        """Counts of the messages and bytes taken so far, and of the bytes that lie in files."""
         return WriterStatistics(
             messages=self._taken,
             message_bytes=self._taken_bytes,

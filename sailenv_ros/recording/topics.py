@@ -1,4 +1,4 @@
-"""What is recorded, as data types: a topic of a recording, and how a recording shall be written.
+"""Data types of recordings: a recorded topic, and the options of writing.
 
 Made by the table of channels or read from a file; goes to the writer and to `metadata.yaml`.
 Knows neither ROS nor files.
@@ -19,7 +19,7 @@ from sailenv_ros.types.validation import is_finite_number
 __all__ = ["OfferedQos", "RecordedTopic", "RecordingOptions", "qos_of_yaml"]
 
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}
-"""How rosbag2 writes a duration that never ends."""
+"""The infinite duration, as rosbag2 writes it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,7 +114,7 @@ class RecordedTopic:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingOptions:
-    """How a recording is written.
+    """Options for writing a recording.
 
     Attributes
     ----------

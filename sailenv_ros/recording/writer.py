@@ -27,7 +27,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WriterStatistics:
-    """What was taken so far.
+    """Counts of the messages and bytes that a writer has taken so far.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class RecordingWriter:
 
     @property
     def statistics(self) -> WriterStatistics:
-        """What was taken so far."""
+        """Counts of the messages and bytes taken so far."""
         return WriterStatistics(
             messages=self._messages,
             message_bytes=self._message_bytes,

@@ -1,4 +1,4 @@
-"""What every renderer is: the contract between the simulation and a back end.
+"""Contract between the simulation and a renderer.
 
 Imports no graphics library, so that the fallback and the simulation can share it.
 """
@@ -20,12 +20,12 @@ __all__ = ["BACKEND_NAMES", "BackendName", "RenderBackend", "RenderedViews"]
 BackendName: TypeAlias = Literal["auto", "native", "gl", "tiny"]
 
 BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
-"""What can be asked for."""
+"""Names of back ends that can be requested."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class RenderedViews:
-    """What one call of `RenderBackend.render` made.
+    """Result of one call of `RenderBackend.render`.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ __all__ = ["MAX_BYTES", "MAX_DIAGNOSTICS", "load_document", "text_of_file"]
 
 MAX_BYTES = 4_000_000
 MAX_DIAGNOSTICS = 100
-"""So many are told at most."""
+"""Greatest number of diagnostics reported."""
 
 MAX_COLLECTED = 1000
 """So many are looked at before they are sorted: a hostile file must not cost minutes."""

@@ -15,7 +15,7 @@ WIDTH = 120
 """Longest line, but for texts that cannot be broken."""
 
 MARGIN = 6
-"""What stands before a collection on a line of its own, mostly."""
+"""Width kept free for the text that usually precedes a collection on its line [characters]."""
 
 FIRST = ("name", "type", "asset", "on", "wall", "at", "position")
 """Keys by which people know an entry, and where it is."""

@@ -210,7 +210,7 @@ class Colour(_FieldType):
 
     @property
     def accepted(self) -> str:
-        """What is accepted."""
+        """The accepted values, in words."""
         return (
             "a colour such as '#ff8800' (quoted, sRGB) or [r, g, b] of linear numbers "
             f"from 0 to {shown_number(self.most)}"

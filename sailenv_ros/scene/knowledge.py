@@ -1,4 +1,4 @@
-"""What a scene file's names may refer to; given to the loader by whoever knows it."""
+"""Names that a scene file may refer to; given to the loader by its caller."""
 
 from __future__ import annotations
 

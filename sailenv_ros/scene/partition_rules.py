@@ -1,4 +1,4 @@
-"""What must hold between the walls inside a room and the parts of its floor.
+"""Rules for the walls inside a room and the parts of its floor.
 
 Rules take entries as plain data, of which nothing is certain yet, as those of `rules`.
 """

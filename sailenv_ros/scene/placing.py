@@ -1,4 +1,4 @@
-"""How entries of a scene file say where something is and how it is turned."""
+"""Position and orientation of the entries of a scene file."""
 
 from __future__ import annotations
 

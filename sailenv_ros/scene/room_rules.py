@@ -1,4 +1,4 @@
-"""What must hold between the parts of a room: openings lie in their walls, apart, names are free.
+"""Rules for the parts of a room: openings lie in their walls and do not overlap, names are free.
 
 Rules take entries as plain data, of which nothing is certain yet, as those of `rules`.
 """

@@ -1,4 +1,4 @@
-"""What must hold between the keys of one entry of a scene file.
+"""Rules between the keys of one entry of a scene file.
 
 Each rule takes an entry as plain data, of which nothing is certain yet, and yields the place
 inside it and a sentence. Rules keep silent about values that are wrong in themselves.

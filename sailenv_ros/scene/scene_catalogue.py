@@ -1,4 +1,4 @@
-"""Where scenes are found: folders with YAML files in, names and paths out; reads no file."""
+"""Finds scene files by name: folders with YAML files in, names and paths out; reads no file."""
 
 from __future__ import annotations
 

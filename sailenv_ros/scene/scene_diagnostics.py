@@ -36,7 +36,7 @@ __all__ = ["Diagnostic", "diagnose", "model_diagnostics"]
 
 
 Models: TypeAlias = Mapping[Loc, type[SceneModel]]
-"""Which model stands for the mapping at a place."""
+"""Model of the mapping at each place."""
 
 
 @dataclass(frozen=True, slots=True)

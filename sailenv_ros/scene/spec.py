@@ -1,4 +1,4 @@
-"""What a scene file may hold: `SceneSpec`, validated and immutable.
+"""Contents of a scene file: `SceneSpec`, validated and immutable.
 
 Data type that leaves `scene/`: the description that the world is built from. Units in a file are
 metres, kilograms, seconds and degrees; colours are ``#rrggbb`` (sRGB) or linear numbers; they are

@@ -71,7 +71,7 @@ class BodySpec(SceneModel):
 
     @property
     def angular_velocity_rad_s(self) -> tuple[float, float, float]:
-        """How fast it turns at the start, about the world's axes [rad/s]."""
+        """Initial angular velocity, about the world's axes [rad/s]."""
         x, y, z = (math.radians(rate) for rate in self.angular_velocity)
         return x, y, z
 

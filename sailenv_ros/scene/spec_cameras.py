@@ -39,7 +39,7 @@ class WaypointSpec(Aimed):
 
     @property
     def pose(self) -> Pose:
-        """Where the mover is and how it is turned there."""
+        """Pose of the mover there."""
         return self.pose_at(self.position)
 
 
@@ -79,7 +79,7 @@ class MoverSpec(Aimed):
 
     @property
     def pose(self) -> Pose:
-        """Where it starts: where it was put, else at its first waypoint."""
+        """Initial pose: the given one, else that of the first waypoint."""
         if self.position is None and self.waypoints:
             return self.waypoints[0].pose
         return self.pose_at(_START if self.position is None else self.position)

@@ -62,7 +62,7 @@ def _fixed_is_fixed(entry: Mapping[str, Any]) -> Faults:
 
 
 class JointSpec(SceneModel):
-    """What an object is joined to, and how it can move on it."""
+    """Joint of an object: its parent, its axis and its limits."""
 
     rules: ClassVar[tuple[Rule, ...]] = (_axis_has_length, _limits_in_order, _fixed_is_fixed)
 

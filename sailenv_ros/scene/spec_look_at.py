@@ -1,4 +1,4 @@
-"""What an agent or a mover of a scene file keeps looking at."""
+"""Look-at target of an agent or a mover of a scene file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _looks_at_something(entry: Entry) -> Faults:
 
 
 class LookAtSpec(SceneModel):
-    """What is faced, wherever it goes and whoever faces it goes."""
+    """Target that an agent or a mover keeps facing, wherever both of them go."""
 
     rules: ClassVar[tuple[Rule, ...]] = (_looks_at_something,)
 

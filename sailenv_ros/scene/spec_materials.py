@@ -32,7 +32,7 @@ _Side: TypeAlias = Annotated[float, Number(least=0.01, most=100.0, unit="m")]
 
 
 class LookSpec(SceneModel):
-    """How a surface looks, as far as it is not its own material's look."""
+    """Appearance of a surface, as far as it differs from its own material."""
 
     rules: ClassVar[tuple[Rule, ...]] = (at_most_one("material", "picture"),)
 
@@ -80,7 +80,7 @@ class LookSpec(SceneModel):
 
 
 class MaterialSpec(LookSpec):
-    """What an object, or one of its materials, is made of instead of its own."""
+    """Material that replaces an object's own, or one of its own."""
 
     part: Annotated[str, Text(r"[^\x00-\x1f]{1,200}", "the name of one of its materials")] = Field(
         default=ALL_PARTS,

@@ -34,7 +34,7 @@ __all__ = ["BehaviourSpec", "ObjectSpec"]
 
 
 class BehaviourSpec(SceneModel):
-    """How an object moves of itself; all keys but `type` are the behaviour's parameters.
+    """Behaviour of an object; all keys but `type` are the behaviour's parameters.
 
     Examples
     --------
@@ -160,11 +160,11 @@ class ObjectSpec(Turned):
 
     @property
     def pose(self) -> Pose:
-        """Where it starts."""
+        """Initial pose."""
         return self.pose_at(self.position)
 
     @property
     def angular_velocity_rad_s(self) -> tuple[float, float, float]:
-        """How fast it turns at the start, about the world's axes [rad/s]."""
+        """Initial angular velocity, about the world's axes [rad/s]."""
         x, y, z = (math.radians(rate) for rate in self.angular_velocity)
         return x, y, z

@@ -21,7 +21,7 @@ def _number(name: str, *, whole: bool = False) -> Number:
 
 
 class PictureSpec(SceneModel):
-    """What is done to an agent's picture; nothing else depends on it."""
+    """Settings of an agent's picture; nothing else depends on them."""
 
     exposure: Annotated[float, _number("exposure")] = Field(
         default=_STANDARD.exposure,

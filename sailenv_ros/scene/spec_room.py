@@ -93,7 +93,7 @@ class _OrNone:
 
 
 class SurfaceSpec(LookSpec):
-    """What a wall, floor or ceiling is made of; a name alone stands for its material."""
+    """Material of a wall, floor or ceiling; a name alone stands for its material."""
 
     material: MaterialName = Field(
         default="plaster", description="e.g. plaster, oak_planks, white_tiles, wallpaper_damask"
@@ -157,7 +157,7 @@ class CurtainSpec(SceneModel):
 
 
 class _OpeningBase(SceneModel):
-    """What windows and doors have."""
+    """Base of windows and doors."""
 
     wall: _Wall = Field(description="north (+y), east (+x), south (-y) or west (-x)")
     at: _Along = Field(

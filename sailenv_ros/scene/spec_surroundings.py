@@ -28,7 +28,7 @@ _STANDARD = Environment()
 
 
 class EnvironmentSpec(SceneModel):
-    """What surrounds the objects: ambient light, sky or background colour, exposure."""
+    """Surroundings of the objects: ambient light, sky or background colour, exposure."""
 
     ambient: Radiance = Field(
         default=_STANDARD.ambient,
@@ -76,7 +76,7 @@ class EnvironmentSpec(SceneModel):
 
 
 class _LightBase(SceneModel):
-    """What every light has."""
+    """Base of all lights."""
 
     name: Name = Field(description="unique among the lights of the scene")
     colour: Radiance = Field(default=(1.0, 1.0, 1.0), description="colour of the light")

@@ -1,4 +1,4 @@
-"""Where scenes lie that were made on this machine, and how they are written there, never beyond.
+"""Scenes made on this machine: their folder, and writing into it and nowhere else.
 
 A name and a text in, a file out. Knows no scene's content.
 """

@@ -33,7 +33,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class TextDiagnostic:
-    """What is wrong with a text, and where."""
+    """An error in a text, and its place."""
 
     mark: Mark
     message: str

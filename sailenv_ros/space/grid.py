@@ -32,7 +32,7 @@ EMPTY_SIDE_M = 10.0
 MOST_CELLS = 4_000_000
 
 TOUCH_M = 1e-9
-"""What is nearer to the body's surface by no more than rounding does not touch it [m]."""
+"""Tolerance of contact: a place nearer to the body's surface by less than this is free [m]."""
 
 
 def map_free_space(solids: Iterable[Solid], body: BodySize, *, stamp_ns: int = 0) -> FreeSpace:

@@ -1,4 +1,4 @@
-"""What rays through a scene met; the answer to `cast_rays`."""
+"""First hits of rays through a scene; the result of `cast_rays`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["RayCast"]
 
 
 class RayCast(NamedTuple):
-    """What each ray met first.
+    """First hit of each ray.
 
     Attributes
     ----------

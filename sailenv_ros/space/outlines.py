@@ -1,4 +1,4 @@
-"""What collision shapes cover of the ground: shapes in a band of heights → convex outlines.
+"""Outlines of collision shapes on the ground: shapes in a band of heights → convex outlines.
 
 The outline of a convex solid between two heights, seen from above, is the convex hull of its
 corners between them and of the points where its edges cross them. The line between any two corners

@@ -1,4 +1,4 @@
-"""What the operating system lends: memory, locks, shipped files, transport, threads, futures.
+"""Services of the operating system: memory, locks, shipped files, transport, threads, futures.
 
 Knows no scene and no frame.
 """

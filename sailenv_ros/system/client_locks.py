@@ -18,7 +18,8 @@ from sailenv_ros.system.process_locks import ProcessLock, holder_of, private_fol
 __all__ = ["ClientLock", "client_lives"]
 
 KEPT_S = 60.0
-"""What a killed client leaves is kept so long, for simulators to find that it was killed [s]."""
+"""Age up to which the lock file of a killed client is kept, so that simulators notice its end
+[s]."""
 
 
 class ClientLock(ProcessLock):

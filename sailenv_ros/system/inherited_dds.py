@@ -1,4 +1,4 @@
-"""What a forked process inherits of Fast DDS and must not keep: its identity and held locks.
+"""Renews the state of Fast DDS that a forked process must not keep: its identity and held locks.
 
 Fast DDS makes some things once in a process. The first eight bytes of every GUID are one of them:
 vendor, host, process id, a random number. A process that is forked later inherits these, and the
@@ -42,7 +42,7 @@ _MADE_ONCE = (
     f"{_SCOPE}16SharedMemManager14SegmentWrapper9WatchTask3getEvE19watch_task_instance",
     f"{_SCOPE}17SharedMemWatchdog3getEvE18watch_dog_instance",
 )
-"""What is made by the first who needs it; a guard variable tells whether it has been."""
+"""Singletons that their first user creates; a guard variable tells whether each exists."""
 
 _MUTEX = f"_Z{_SCOPE}17SharedSegmentBase4mtx_EvE4mtx_"
 

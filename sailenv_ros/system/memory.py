@@ -1,4 +1,4 @@
-"""How the C library treats freed memory: a process that makes big arrays all the time keeps it.
+"""Setting of the C library's allocator: a process that allocates large arrays keeps freed memory.
 
 Frames are some megabytes, made and freed many times a second. By default the memory goes back to
 the system each time, and each page of the next frame is faulted in anew. Knows nothing of frames.

@@ -1,4 +1,4 @@
-"""Where the files lie that are shipped beside the code: scenes and configuration.
+"""Paths of the files that are shipped beside the code: scenes and configuration.
 
 A source checkout and an editable install have `scenes/` and `config/` beside the package. Every
 other install (venv, user site, `--target`, ament prefix) has them in `share/sailenv_ros/` of some

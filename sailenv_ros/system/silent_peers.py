@@ -11,7 +11,7 @@ import socket
 __all__ = ["SILENT_S", "end_when_silent"]
 
 SILENT_S = 9.0
-"""Who neither answers nor takes anything for so long has gone [s]."""
+"""A peer that neither answers nor accepts data for this long is considered gone [s]."""
 
 
 def end_when_silent(peer: socket.socket, silent_s: float) -> None:

@@ -1,4 +1,4 @@
-"""Which Fast DDS profile our own processes use: shared memory, as much of it as there is.
+"""Choice of the Fast DDS profile of our processes: shared memory, as much of it as is free.
 
 The node and the `Agent` call `use_shared_memory_profile` before their first ROS context. It only
 sets an environment variable, so it needs no ROS; a profile or middleware of the user's wins.
@@ -64,7 +64,7 @@ _SEGMENT_LOCK = re.compile(r"(fastrtps_[0-9a-f]{16})_el")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileChoice:
-    """What was decided.
+    """Result of choosing a Fast DDS profile.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What an agent is: a named camera with a size, a rate, views and a way to be moved.
+"""Description of an agent: a named camera with a size, a rate, views and a way to be moved.
 
 `AgentSpec` is what a client asks for and what the simulator reports; `AgentPose` answers where
 an agent is. Both travel between `simulation.py` and every client of it.
@@ -98,7 +98,7 @@ class AgentSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AgentPose:
-    """Where an agent is.
+    """Pose of an agent at an instant.
 
     Attributes
     ----------

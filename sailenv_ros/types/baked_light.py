@@ -50,7 +50,7 @@ class Unwrapping:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class LightChart:
-    """Where the light of one instance lies in the light map.
+    """Chart of one instance in the light map.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class ProbeGrid:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class SunEdges:
-    """Where a directional light's shadows end, more finely than the light map has it.
+    """Shadow edges of a directional light, at a finer resolution than the light map.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class SunEdges:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class LightLayer:
-    """What one light gives to the scene, for white light of intensity 1.
+    """Contribution of one light to the scene, for white light of intensity 1.
 
     Texels hold irradiance / pi on the texel's surface, so that a matt surface's radiance is albedo
     times it. Probes hold four numbers per colour, ``c0, cx, cy, cz``, from which irradiance / pi on

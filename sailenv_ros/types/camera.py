@@ -27,7 +27,7 @@ MAX_SIZE_PX = 4096
 
 @dataclass(frozen=True, kw_only=True)
 class CameraIntrinsics:
-    """What a camera sees, apart from where it stands.
+    """Intrinsics of a pinhole camera, with its clip distances.
 
     Attributes
     ----------

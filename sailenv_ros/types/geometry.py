@@ -34,7 +34,7 @@ __all__ = [
 Matrix = NDArray[np.float64]
 
 UNIT_TOLERANCE = 1e-3
-"""How far a quaternion's norm may lie from 1 before it is refused."""
+"""Greatest difference of a quaternion's norm from 1; others are refused."""
 
 POSITION_LIMIT_M = 1e4
 """Coordinates beyond this [m] lose the precision that ground truth needs, and are refused."""
@@ -60,7 +60,7 @@ IDENTITY.flags.writeable = False
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where something stands and how it is turned, in the world frame.
+    """Position and orientation in the world frame.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where every instance of a scene is at one instant, and how it moves.
+"""Poses and velocities of all instances of a scene at one instant.
 
 Made by `world/`; every `Frame` carries it, messages and recordings keep it. What motion between
 two frames, and everything else about objects in space, is computed from.

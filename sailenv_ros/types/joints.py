@@ -50,6 +50,6 @@ class JointState:
 
     @property
     def open_share(self) -> float:
-        """How far it is between its limits, 0 to 1; NaN where it has none."""
+        """Position as a share of the range between its limits, 0 to 1; NaN without limits."""
         span = self.high - self.low
         return (self.position - self.low) / span if 0.0 < span < math.inf else math.nan

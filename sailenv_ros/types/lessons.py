@@ -1,4 +1,4 @@
-"""Where an orchestrated stream is: which lesson of which lap; told with each frame.
+"""Progress of an orchestrated stream: the current lesson and lap; sent with each frame.
 
 Made by `simulation/`, goes to frames, messages, recordings and windows.
 """
@@ -19,7 +19,7 @@ LessonPhase: TypeAlias = Literal["lesson", "pause", "ended", "stopped"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LessonState:
-    """What is taught now.
+    """State of the lessons at an instant.
 
     Attributes
     ----------

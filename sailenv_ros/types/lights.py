@@ -149,7 +149,7 @@ class SkyMap:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Environment:
-    """What surrounds the objects.
+    """Surroundings of the objects: ambient light, sky or background colour, exposure.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a look-at constraint says: the point or the object that an agent or a mover faces.
+"""Look-at constraint: the point or the object that an agent or a mover faces.
 
 Crosses `scene/`, `simulation/` and `world/`, which resolves it: see `world.gaze`.
 """

@@ -1,4 +1,4 @@
-"""What an object looks like and how it collides: meshes, materials, collision shapes, assets.
+"""Appearance and collision geometry of objects: meshes, materials, collision shapes, assets.
 
 Travels from `assets/` to `world/` (which reads shapes and mass) and `render/` (which reads
 parts). Nothing here knows a file format, PyBullet or OpenGL. Models are compared by identity:
@@ -135,7 +135,7 @@ class ModelPart:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Model:
-    """What is drawn of an object: parts in one body frame."""
+    """Visible geometry of an object: parts in one body frame."""
 
     name: str
     parts: tuple[ModelPart, ...]
@@ -167,7 +167,7 @@ class Model:
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles all parts have."""
+        """Number of triangles of all parts."""
         return sum(len(part.mesh.triangles) for part in self.parts)
 
     def only(self, meshes: tuple[int, ...]) -> Model:
@@ -318,7 +318,7 @@ class Asset:
 
     @property
     def body_model(self) -> Model:
-        """What is drawn as the body: the model without its parts; the model where it has none."""
+        """Visible geometry of the body: the model without its labelled parts."""
         return self.model.only(self._body_meshes)
 
     def part_model(self, part: AssetPart) -> Model:

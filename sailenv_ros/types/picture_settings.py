@@ -1,4 +1,4 @@
-"""How an agent's camera turns radiance into its picture: exposure, tone curve, effects.
+"""Settings of the picture of an agent's camera: exposure, tone curve, effects.
 
 Travels in `Camera` to the renderer. Concerns the picture alone: no ground truth depends on it.
 """
@@ -32,7 +32,7 @@ _WHOLE = frozenset({"supersampling"})
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureSettings:
-    """What is done to the picture, and to nothing else.
+    """Settings that change the picture and nothing else.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a mover is to the physics engine when it is a rigid body: a ball and its constants.
+"""Rigid body of a mover in the physics engine: a ball and its constants.
 
 Crosses `scene/`, `operations/`, `world/`, which makes the ball: see `world.mover_body`.
 """

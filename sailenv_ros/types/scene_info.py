@@ -1,4 +1,4 @@
-"""What clients are told of the scene: names, tables, agents; sent again at every change.
+"""Scene as clients see it: names, tables, agents; sent again at every change.
 
 Made by `simulation.py` from the world's `SceneContents`; goes to messages, sockets, windows.
 """

@@ -67,7 +67,7 @@ class DrawnInstance:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SceneContents:
-    """What a scene holds, apart from poses; compared by identity.
+    """Contents of a scene, apart from poses; compared by identity.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ class WorldSnapshot:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Observation:
-    """What one camera saw at an earlier instant: the past that flow and occlusion refer to.
+    """Earlier observation of one camera: the past that flow and occlusion refer to.
 
     Attributes
     ----------

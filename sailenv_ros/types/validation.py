@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 IDENTIFIER = re.compile(r"[a-z][a-z0-9_]{0,62}")
-"""What agents and assets may be called: a name that ROS and file systems accept too."""
+"""Pattern of the names of agents and assets; ROS and file systems accept them too."""
 
 
 def is_number(value: object) -> TypeGuard[float]:

@@ -1,4 +1,4 @@
-"""What each view of a frame is: its array, its unit, how it is made, shown, sent and stored.
+"""Specification of each view of a frame: its array, unit, source, display, topic and file format.
 
 `VIEWS` says it once: whoever makes, shows, sends, stores or documents views reads it there and
 names none of its own.
@@ -31,21 +31,21 @@ __all__ = [
 
 
 ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry", "motion"]
-"""What makes a view: the lit picture; arithmetic on depth and instance id, which all back ends
+"""Source of a view: the lit picture; arithmetic on depth and instance id, which all back ends
 share; an attribute of the surface, which the geometry pass writes as it is; or arithmetic on a
 frame and the one that follows it, which no renderer makes (`sailenv_ros.frame.motion`)."""
 
 ViewDisplay: TypeAlias = Literal[
     "colour", "depth", "category", "instance", "flow", "direction", "mask", "place", "displacement"
 ]
-"""How a view is shown as a picture; `pictures.colours` has a function for each."""
+"""Display of a view as a picture; `pictures.colours` has a function for each."""
 
 ImageCodec: TypeAlias = Literal["jpeg", "png"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewSpec:
-    """What one view is, how it is made, shown and sent.
+    """Specification of one view.
 
     Attributes
     ----------
@@ -274,14 +274,14 @@ VIEWS: Mapping[str, ViewSpec] = MappingProxyType({spec.name: spec for spec in _S
 """Every view by name."""
 
 FIVE_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if spec.by_default)
-"""What an agent gets unless it asks otherwise."""
+"""Views of an agent unless it asks for others."""
 
 
 ALWAYS_MADE: tuple[str, ...] = ("depth",)
-"""What costs nothing beside any other view: for a frame of which only the camera is wanted."""
+"""Views that cost nothing beside any other: for a frame of which only the camera is wanted."""
 
 RENDERED_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if not spec.needs_next)
-"""What a frame can have when it is made."""
+"""Views that a frame can have as soon as it is rendered."""
 
 
 def view_spec(name: str) -> ViewSpec:

@@ -36,7 +36,7 @@ MAX_BEHAVIOURS = 16
 MAX_WRENCHES = 64
 
 TOUCH_M = 0.02
-"""What is nearer may rest on a body."""
+"""Greatest distance at which another body may rest on a body [m]."""
 
 NOT_THERE = -1
 """PyBullet's number of what is not in the engine yet."""
@@ -231,7 +231,7 @@ class Body:
 
     @property
     def behaviours(self) -> tuple[RunningBehaviour, ...]:
-        """What moves it, in the order in which they are asked."""
+        """The behaviours that move it, in the order in which they are evaluated."""
         return self._behaviours
 
     def push(self, wrench: RunningBehaviour) -> None:

@@ -28,7 +28,7 @@ __all__ = ["BodyTable", "LabelledPiece"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LabelledPiece:
-    """What one instance id stands for: a body without its parts, or one part of it.
+    """Meaning of one instance id: a body without its parts, or one part of it.
 
     Attributes
     ----------

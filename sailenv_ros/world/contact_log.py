@@ -1,4 +1,4 @@
-"""What touched what in the last steps: the engine's points of contact, summed for each pair.
+"""Contacts in the last steps: the engine's contact points, summed for each pair of bodies.
 
 The engine after each step in, `Contact`s out. It is listened to only for a while after somebody
 has asked: reading the points of every step would cost more than the step where much is piled up.

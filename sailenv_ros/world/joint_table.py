@@ -1,4 +1,4 @@
-"""Which objects hang together on joints: bodies in, one tree of the engine for each assembly."""
+"""Assemblies of objects on joints: bodies in, one tree of the engine for each assembly."""
 
 from __future__ import annotations
 

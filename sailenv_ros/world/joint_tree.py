@@ -20,7 +20,7 @@ from sailenv_ros.world.placement import JointPlacement, Placement
 __all__ = ["JointTree", "JointLink"]
 
 HELD = 1e-9
-"""What moves by less in a step, [rad] or [m], is held by its friction and does not move."""
+"""Motion in one step below which a joint is held by its friction and does not move [rad], [m]."""
 
 STUCK = 0.02
 """Slower than this, [rad/s] or [m/s], and with torque to spare, friction has stopped a joint: the
@@ -61,7 +61,7 @@ class JointLink:
 
     @property
     def joint(self) -> JointPlacement:
-        """What it moves on."""
+        """The joint on which it moves."""
         assert self.placement.joint is not None
         return self.placement.joint
 

@@ -1,4 +1,4 @@
-"""Where a joint brings what moves on it, and how fast: arithmetic alone, no engine.
+"""Kinematics of joints: pose and velocity of an object on a joint; arithmetic alone, no engine.
 
 A point x of an object whose joint is at q is at ``parent · rest · motion(q) · x``, where motion
 turns about the axis through the joint's origin (hinge) or shifts along it (slide).

@@ -1,4 +1,4 @@
-"""Which lamp each light shines in: what a scene says of places in, names of lights out.
+"""Assigns lights to lamps: the places in a scene in, names of lights out.
 
 Scenes describe lights and furniture apart. A lamp (an object with a material that glows) is on by
 the lights that are in it, so its shade goes dark when they are switched off or taken away, and
@@ -18,7 +18,7 @@ from sailenv_ros.world.body_table import LabelledPiece
 __all__ = ["REACH_M", "lit_by"]
 
 LAMP_TYPES = ("point", "spot")
-"""What shines in lamps; area lights stand for windows."""
+"""Types of lights that belong to lamps; area lights stand for windows."""
 
 REACH_M = 0.5
 """A light is in the nearest lamp if it is no farther from the box around it [m].

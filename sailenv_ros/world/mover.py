@@ -42,7 +42,7 @@ MAX_PITCH_DEG = 89.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MoverCommand:
-    """How a mover walks, as a first-person camera does.
+    """Velocity command of a mover, which walks like a first-person camera.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class WaypointTrack:
 
     @property
     def legs(self) -> int:
-        """How many ways from a waypoint to another there are; 0 for a single one."""
+        """Number of legs from one waypoint to the next; 0 for a single one."""
         count = len(self.waypoints)
         return count if self.loop and count > 1 else count - 1
 
@@ -170,7 +170,7 @@ class Mover:
 
     @property
     def track(self) -> WaypointTrack | None:
-        """Where waypoints lead it; None if there are none."""
+        """Track through its waypoints; None if there are none."""
         return self._track
 
     @property
@@ -190,7 +190,7 @@ class Mover:
 
     @property
     def controller(self) -> Controller:
-        """What drives it."""
+        """The controller that drives it."""
         return self._controller
 
     def pose_at(self, time_ns: int) -> Pose:
@@ -209,12 +209,12 @@ class Mover:
 
     @property
     def gaze(self) -> Gaze | None:
-        """What it faces; None if nothing."""
+        """Solver of its gaze; None if it looks at nothing."""
         return self._gaze
 
     @property
     def look_at(self) -> LookAt | None:
-        """What it faces, as it is told; None if nothing."""
+        """Its look-at target as data; None if there is none."""
         return None if self._gaze is None else self._gaze.described()
 
     def face(self, gaze: Gaze | None, time_ns: int) -> None:
@@ -228,7 +228,7 @@ class Mover:
 
     @property
     def body(self) -> MoverBody | None:
-        """What it is in the engine; None if it is no rigid body."""
+        """Its rigid body in the engine; None if it has none."""
         return self._body
 
     def embody(self, body: MoverBody | None, time_ns: int) -> None:

@@ -33,7 +33,7 @@ from sailenv_ros.world.struck import LinkMotion, Strike, StruckBody, StruckLink,
 __all__ = ["AT_REST", "BOUNCES_FROM_M_S", "Motion", "MoverBody"]
 
 BOUNCES_FROM_M_S = 0.05
-"""What strikes more slowly stays where it is [m/s]; gravity gives a resting body 0.04 in a step."""
+"""Least speed of an impact that bounces [m/s]; gravity gives a resting body 0.04 in a step."""
 
 NO_SPIN_RAD_S = 1e-12
 """Slower is rounding: less than 4e-9 rad in an hour."""

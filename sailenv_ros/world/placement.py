@@ -17,7 +17,7 @@ Vector3 = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointPlacement:
-    """What an object is joined to.
+    """Joint by which an object is attached.
 
     Attributes
     ----------

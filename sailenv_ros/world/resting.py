@@ -24,11 +24,12 @@ TRIAL_STEPS = 120
 
 STILL_M = 0.002
 STILL_DEG = 0.5
-"""What settles by less is at rest where it is."""
+"""Rotation while settling below which an object is at rest at its first pose [deg]."""
 
 SETTLES_M = 0.02
 SETTLES_DEG = 8.0
-"""What settles by less, as a cushion does, is at rest where it has settled."""
+"""Rotation while settling below which an object, such as a cushion, is at rest where it settled
+[deg]."""
 
 STILL_M_S = 0.05
 STILL_RAD_S = 1.0

@@ -1,4 +1,4 @@
-"""What is done to bodies before a physics step: behaviours, walls that hold them up, floating.
+"""Actions on bodies before a physics step: behaviours, walls that hold bodies up, floating.
 
 Bodies and a time in, calls of the engine out. Behaviours that can be asked for many bodies at once
 are; each body's share is the same bytes as if it were alone.

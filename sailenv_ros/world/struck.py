@@ -1,4 +1,4 @@
-"""What a ball strikes: how easily it gives way at a point, and how it is pushed there.
+"""Collision response of bodies hit by a ball: their mobility at a point, and the impulse they take.
 
 The engine's numbers of bodies and links in, velocities and impulses out. Used in the step in which
 it was struck, before anything else moves it.
@@ -26,7 +26,7 @@ NEAR_M = 0.02
 
 
 class Strike(NamedTuple):
-    """What one body gave the ball in a step.
+    """Contact of the ball with one body in a step.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class StruckBody:
 
 
 class StruckLink:
-    """What hangs on joints, at a point where it is struck.
+    """An assembly on joints, at the point where it is hit.
 
     How easily it gives way is told by how much faster the engine's impulse has made it. It is
     pushed in the next step.

@@ -1,4 +1,4 @@
-"""What carries an object: the surfaces that are drawn, and not the hulls that physics knows.
+"""Support of an object: found from drawn surfaces, not from the hulls of the physics engine.
 
 A world, an object and a place in; the height at which it stands there, and upon what, out.
 """
@@ -20,7 +20,8 @@ Floats = NDArray[np.float64]
 
 FOOT_SHARE = 0.02
 LEAST_FOOT_M = 0.003
-"""What is no higher above an object's lowest point is its foot: a share of its height, or more."""
+"""Height of an object's foot above its lowest point [m]: a share of its height, but at least
+this."""
 
 MOST_FOOT_POINTS = 64
 

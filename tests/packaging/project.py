@@ -25,14 +25,18 @@ BUILT_FROM = (
 )
 
 
-def copy_sources(folder: Path) -> Path:
-    """Copy what is built from; so that no build leaves anything in the project's folder."""
+def copy_sources(folder: Path, *, compiled: bool = False) -> Path:
+    """Copy the sources of a build, so that no build leaves anything in the project's folder.
+
+    With `compiled` the native library comes along, if there is one: setup.py takes it where it fits
+    the sources, and compiles otherwise.
+    """
     folder.mkdir(parents=True)
+    left_out = ("__pycache__",) if compiled else ("__pycache__", "*.so")
     for name in BUILT_FROM:
         source = ROOT / name
         if source.is_dir():
-            ignored = shutil.ignore_patterns("__pycache__", "*.so")
-            shutil.copytree(source, folder / name, ignore=ignored)
+            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns(*left_out))
         else:
             shutil.copy2(source, folder / name)
     return folder

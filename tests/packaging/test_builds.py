@@ -97,7 +97,7 @@ def test_without_a_compiler_the_rest_is_built(tmp_path: Path) -> None:
 
 def test_colcon_builds_a_workspace_whose_node_runs(tmp_path: Path) -> None:
     """Both packages build from the defaults file; the node runs from where ros2 run looks."""
-    copy_sources(tmp_path / "src" / "sailenv_ros")
+    copy_sources(tmp_path / "src" / "sailenv_ros", compiled=True)
     environment = without(*OURS) | {
         "COLCON_DEFAULTS_FILE": "src/sailenv_ros/colcon_defaults.yaml",
         "PATH": f"{SCRIPTS}{os.pathsep}{os.environ['PATH']}",
@@ -136,7 +136,7 @@ def test_colcon_builds_a_workspace_whose_node_runs(tmp_path: Path) -> None:
 @pytest.mark.skipif(ROS_IS_SOURCED, reason="the packages of an installed ROS 2 are not pip's")
 def test_pip_installs_into_a_new_venv_where_the_node_runs(tmp_path: Path) -> None:
     """`pip install` of both folders is all that is needed; the node runs from both its places."""
-    sources = copy_sources(tmp_path / "sources")
+    sources = copy_sources(tmp_path / "sources", compiled=True)
     environment = without(*OURS, *BOOTSTRAPPED, "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
     venv = tmp_path / "venv"
     run(sys.executable, "-m", "venv", venv, folder=tmp_path, environment=environment)

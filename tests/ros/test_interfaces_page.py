@@ -69,17 +69,12 @@ def offered(ask: Callable[[str, str], Any], expected: dict[str, str]) -> dict[st
     return found
 
 
-def test_the_page_has_every_topic(probe: Probe) -> None:
+def test_the_page_has_every_topic_and_service(probe: Probe) -> None:
     """Names and types are those of the node."""
-    expected = names_and_types("Topics")
-    assert offered(probe.node.get_publisher_names_and_types_by_node, expected) == expected
-
-
-def test_the_page_has_every_service(probe: Probe) -> None:
-    """Names and types are those of the node."""
-    expected = names_and_types("Services")
-    found = offered(probe.node.get_service_names_and_types_by_node, expected)
-    assert {name: type_ for name, type_ in found.items() if "sim_node" not in name} == expected
+    topics, services = names_and_types("Topics"), names_and_types("Services")
+    assert offered(probe.node.get_publisher_names_and_types_by_node, topics) == topics
+    found = offered(probe.node.get_service_names_and_types_by_node, services)
+    assert {name: type_ for name, type_ in found.items() if "sim_node" not in name} == services
 
 
 def shown_range(entry: Any) -> str:

@@ -1,4 +1,4 @@
-"""What a camera must see, found with rays: embree instead of a rasteriser."""
+"""Reference view of a camera, by ray casting: embree instead of a rasteriser."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ STANDS_OUT = 40
 """Luma, of 255, by which a pixel is darker than all eight around it."""
 
 EDGE_PX = 3
-"""How near to where surfaces meet dashes are looked for."""
+"""Greatest distance from an edge between surfaces at which dashes are looked for [px]."""
 
 DARKER = 8
 """Luma by which a dash is darker than the same surface on both its sides."""

@@ -25,7 +25,7 @@ MOST_OBJECTS = 6
 
 @dataclass
 class _Model:
-    """What one thread knows must be there."""
+    """State that one thread expects to find."""
 
     poses: dict[int, Pose] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)

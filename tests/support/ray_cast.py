@@ -18,7 +18,7 @@ from sailenv_ros.types.snapshot import WorldSnapshot
 
 @dataclass(frozen=True)
 class Hits:
-    """What each pixel's ray meets first.
+    """First hit of each pixel's ray.
 
     Attributes
     ----------

@@ -33,7 +33,7 @@ DISCOVERY_S = 0.2
 
 
 class Topic:
-    """What arrived on one topic, in order."""
+    """Messages that arrived on one topic, in order."""
 
     def __init__(self, name: str) -> None:
         self.name = name

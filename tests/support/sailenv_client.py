@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 ANSWER_S = 60.0
-"""How long a test waits for an answer [s]."""
+"""Time that a test waits for an answer [s]."""
 
 
 def _client_class() -> Any:

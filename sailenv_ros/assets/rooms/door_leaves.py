@@ -28,7 +28,7 @@ DENSITY_KG_M3 = 350.0
 """Of a leaf of wood that is partly hollow: a door of 0.9 × 2.05 m weighs 23 kg."""
 
 WIDEST_DEG = 115.0
-"""How far a leaf opens, unless its description has it wider open."""
+"""Greatest opening angle of a leaf, unless its description opens it further [deg]."""
 
 FRICTION_NM, DAMPING_NMS = 2.0, 1.0
 

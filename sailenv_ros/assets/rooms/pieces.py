@@ -34,7 +34,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WallFrame:
-    """Where a wall's inner face lies: places on it become places in the room.
+    """Frame of a wall's inner face; converts places on the wall to places in the room.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ _GROUT = np.array([0.52, 0.50, 0.47], dtype=np.float32)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Laid:
-    """Which tile each pixel belongs to, and where in it; arrays are (H, W) [m]."""
+    """The tile that each pixel belongs to, and its place in that tile; arrays are (H, W) [m]."""
 
     number: NDArray[np.intp]
     x: Floats

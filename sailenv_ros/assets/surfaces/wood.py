@@ -34,7 +34,7 @@ _BEVEL_DEPTH_M = 0.0006
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Boards:
-    """Which board each pixel belongs to, and where in it; arrays are (H, W).
+    """The board that each pixel belongs to, and its place in that board; arrays are (H, W).
 
     Attributes
     ----------

@@ -26,7 +26,7 @@ STILL_DEG = 2.0
 """By how much what stands may move and turn in two seconds."""
 
 NEAR_M = 0.08
-"""What comes to rest no farther away may lie there [m]."""
+"""Greatest distance of a resting object from its planned place [m]."""
 
 LEAST_PIXELS = 3
 _LOOK_PX = (240, 180)

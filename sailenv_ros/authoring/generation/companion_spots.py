@@ -1,4 +1,4 @@
-"""Where what belongs to a piece can be: before, beside, behind, around, under or over it.
+"""Places for the companions of a piece: before, beside, behind, around, under or on it.
 
 A piece that has its place and a rule in, ways to draw a place for a companion out. Knows nothing of
 what else is in the room.

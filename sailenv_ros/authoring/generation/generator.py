@@ -45,7 +45,7 @@ __all__ = ["GeneratedScene", "Generator", "generate_scene"]
 
 MAX_ATTEMPTS = 40
 MAX_ROUNDS = 8
-"""How often what is at fault is taken out before the room is drawn again."""
+"""Greatest number of times that faulty objects are removed before the room is drawn again."""
 
 RUG_GAP_M = 0.001
 
@@ -102,7 +102,7 @@ class Generator:
 
     @property
     def rules(self) -> Rules:
-        """What rooms are made by."""
+        """The rules by which rooms are made."""
         return self._rules
 
     def generate(self, kind: str, seed: int) -> GeneratedScene:

@@ -1,4 +1,4 @@
-"""What a generator has placed: an object's keys in a scene file, and where it is in the plan."""
+"""Objects placed by a generator: their keys in a scene file, and their places in the plan."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from sailenv_ros.errors import InvalidRequest
 __all__ = ["MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]
 
 PREFIX = "generated:"
-"""How the name of a scene begins that is made when it is asked for."""
+"""Prefix of the names of scenes that are generated on request."""
 
 MAX_SEED = 2**31 - 1
 

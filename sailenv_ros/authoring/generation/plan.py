@@ -20,11 +20,11 @@ Flags = NDArray[np.bool_]
 
 CELL_M = 0.05
 BODY_RADIUS_M = 0.25
-"""Of the one who walks: half as wide as the narrowest way [m]."""
+"""Radius of the walking agent: half of the narrowest passage [m]."""
 
 _HEAD_M = 1.9
 _STEP_M = 0.05
-"""What is lower is walked over, what is higher than a head is walked under [m]."""
+"""Greatest height of an obstacle that one can step over [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,7 +186,7 @@ class Area:
 
 @dataclass(slots=True)
 class RoomPlan:
-    """What stands where, and where one can still walk.
+    """Plan of a room: occupied places, and the floor on which one can still walk.
 
     Parameters
     ----------

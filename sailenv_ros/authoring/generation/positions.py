@@ -1,4 +1,4 @@
-"""Where a piece of furniture can be by itself: at a wall, in a corner, on the floor, hung up.
+"""Places for a piece of furniture by itself: at a wall, in a corner, on the floor, hung up.
 
 A rule, an object and random numbers in, an `Item` with its place out. Knows nothing of what else is
 in the room.

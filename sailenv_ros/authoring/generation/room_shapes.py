@@ -33,7 +33,7 @@ OUTER = {
 
 @dataclass(slots=True, kw_only=True)
 class Shell:
-    """What a room is before it is furnished.
+    """A room before it is furnished.
 
     Attributes
     ----------

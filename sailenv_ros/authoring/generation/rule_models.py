@@ -1,4 +1,4 @@
-"""What rule files may say: kinds of rooms, furniture, what lies on what, materials, light.
+"""Models of rule files: kinds of rooms, furniture, small objects, materials, light.
 
 Models of the files in ``config/rooms``; see `rule_files` for how they are read. Lengths are metres,
 angles degrees. A span is two numbers, least and most, or one number for both.
@@ -80,7 +80,7 @@ class ClearRule(_RuleModel):
 
 
 class CompanionRule(_RuleModel):
-    """What belongs to a piece of furniture, and where."""
+    """A companion of a piece of furniture, and its place beside it."""
 
     put: _Name = Field(description="name of a piece in furniture.yaml")
     where: Annotated[Side, Choice(get_args(Side))] = Field(description="side of the other piece")
@@ -126,7 +126,7 @@ class FurnitureRule(_RuleModel):
 
 
 class ThingRule(_RuleModel):
-    """What lies or stands on a piece of furniture."""
+    """An object that lies or stands on a piece of furniture."""
 
     put: tuple[str, ...] = Field(min_length=1, description="names of the catalogue, one is taken")
     count: Count = Field(default=(1, 1), description="how many")

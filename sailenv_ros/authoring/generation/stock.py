@@ -34,7 +34,7 @@ class Stock:
 
     @property
     def assets(self) -> AssetLibrary:
-        """Where they come from."""
+        """The library of the assets."""
         return self._assets
 
     def asset(self, name: str) -> Asset:

@@ -1,4 +1,4 @@
-"""What lies on what: things from lists, placed on furniture and before the chairs of a table.
+"""Placement of small objects from lists: on furniture, and on a table before its chairs.
 
 `Item`s that stand in, `Item`s that lie on them out. Heights are found when the scene is built.
 """

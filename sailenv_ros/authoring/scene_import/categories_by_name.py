@@ -1,4 +1,4 @@
-"""What an imported object is, by the words of its name: `config/import_categories.yaml`."""
+"""Category of an imported object, from the words of its name: `config/import_categories.yaml`."""
 
 from __future__ import annotations
 

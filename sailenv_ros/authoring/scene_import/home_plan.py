@@ -28,7 +28,7 @@ ARC_STEP = math.radians(12.0)
 """A round wall becomes straight ones of at most this turn."""
 
 FRONT_YAW_DEG = -90.0
-"""Where what is not turned in the plan looks: south, towards who looks at the drawing."""
+"""Yaw of a piece that is not turned in the plan: it faces south, towards the reader of the plan."""
 
 
 _PIECES = ("pieceOfFurniture", "doorOrWindow", "light", "furnitureGroup", "shelfUnit")
@@ -36,7 +36,7 @@ _PIECES = ("pieceOfFurniture", "doorOrWindow", "light", "furnitureGroup", "shelf
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Paint:
-    """How a surface is painted.
+    """Paint of a surface: a colour or a picture, and its shininess.
 
     Attributes
     ----------

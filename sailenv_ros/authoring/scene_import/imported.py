@@ -1,4 +1,4 @@
-"""What importers make of a file: models, and the entries of a scene that places them.
+"""Results of the importers: models, and the entries of a scene that places them.
 
 Plain data; `writing` makes a pack and a scene file of it.
 """

@@ -1,4 +1,4 @@
-"""Which kinds of scenes are imported, and the way of all of them from file to file."""
+"""The scene formats that can be imported, and the steps common to all, from file to file."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ IMPORTED_SUFFIXES = tuple(_IMPORTERS)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportReport:
-    """What was imported.
+    """Summary of an import.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where the bodies of URDF and MJCF files stand, and on what: in the world, or on a joint.
+"""Poses and carriers of the bodies of URDF and MJCF files: in the world, or on a joint.
 
 Bodies as `robot_reader` tells of them in, entries of a scene file out. Bodies come in the order of
 the file: what carries others before these.

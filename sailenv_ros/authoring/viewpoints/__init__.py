@@ -1,4 +1,4 @@
-"""Where to put cameras: poses chosen by rules and seeds.
+"""Camera placement: poses chosen by rules and seeds.
 
 A rule is one file here: settings, and a function that chooses; `rule_table` names them all.
 """

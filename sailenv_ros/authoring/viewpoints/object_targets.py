@@ -31,7 +31,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
-    """Which viewpoints count.
+    """Conditions that a viewpoint must meet.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Target:
 
     @property
     def drawn(self) -> DrawnInstance:
-        """What is drawn of it."""
+        """The drawn instance."""
         return self.snapshot.contents.instances[self.row]
 
 

@@ -43,7 +43,7 @@ class RoomView(FreeView):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outlook:
-    """What is seen from a pose.
+    """Measures of the view from a pose.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which camera rules exist, and how one is checked and used."""
+"""Table of the camera rules; checks and applies them."""
 
 from __future__ import annotations
 

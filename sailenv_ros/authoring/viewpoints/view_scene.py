@@ -1,4 +1,4 @@
-"""What a camera rule is made of, and what it may ask of a scene.
+"""Parts of a camera rule, and the queries that a rule may make of a scene.
 
 A rule is one function on a `ViewScene`, settings and random numbers: the same of these give the
 same poses.

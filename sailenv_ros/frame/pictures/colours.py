@@ -235,4 +235,4 @@ _DISPLAYS: Mapping[ViewDisplay, Callable[[NDArray[Any]], Rgb]] = {
     "place": colour_places,
     "displacement": colour_displacements,
 }
-"""How views are shown that need nothing but their values."""
+"""Display functions of the views that need nothing but their values."""

@@ -22,7 +22,7 @@ from sailenv_ros.types.views import VIEWS
 __all__ = ["frame_dict"]
 
 _NAMES = {"rgb": "main", "instance": "object"}
-"""What the SAILenv client calls a view, where it is not our name."""
+"""Names of views in the SAILenv client, where they differ from ours."""
 
 _INSTANCE_BGRX: NDArray[np.uint32] = np.ascontiguousarray(
     cv2.cvtColor(instance_colours()[None], cv2.COLOR_RGB2BGRA)[0]

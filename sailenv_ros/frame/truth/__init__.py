@@ -1,4 +1,4 @@
-"""What is known of each object in a frame: table, boxes, amodal masks, points of a cloud.
+"""Ground truth of each object in a frame: table, boxes, amodal masks, points of a cloud.
 
 Data types and pure functions on a `Frame`; `Frame.objects`, `Frame.amodal` and `Frame.points` lead
 here. Draws nothing itself.

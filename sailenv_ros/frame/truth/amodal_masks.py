@@ -21,7 +21,7 @@ NO_BOX = (-1, -1, -1, -1)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AmodalMasks(RowsById):
-    """What each object of one frame covers, drawn alone.
+    """Amodal masks of one frame: the pixels of each object, drawn alone.
 
     The canvas has three times the picture's width and height, with the picture in its middle: what
     of an object lies farther outside is not counted.

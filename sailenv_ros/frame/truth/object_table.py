@@ -57,7 +57,7 @@ class Keypoints:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ObjectTable(RowsById):
-    """What is known of every object of the scene at a frame's instant, seen or not.
+    """Ground truth of every object of the scene at a frame's instant, visible or not.
 
     Columns of the pose are NaN where the frame has no `states`, those of the instance view 0 and -1
     where it has none. Those of amodal masks are -1 and NaN but in a table made by `with_amodal`.

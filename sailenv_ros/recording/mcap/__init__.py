@@ -8,4 +8,4 @@ from typing import Literal
 __all__ = ["Compression"]
 
 Compression = Literal["zstd", "lz4", "none"]
-"""How chunks are compressed."""
+"""Compression of chunks."""

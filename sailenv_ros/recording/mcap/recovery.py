@@ -30,7 +30,7 @@ _LOOSE_BYTES = 2**20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Recovered:
-    """What was restored of one file.
+    """Result of restoring one file.
 
     Attributes
     ----------

@@ -34,7 +34,7 @@ _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeviceReport:
-    """What came of trying one EGL device.
+    """Result of trying one EGL device.
 
     Attributes
     ----------

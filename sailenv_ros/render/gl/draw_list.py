@@ -1,4 +1,4 @@
-"""What is drawn: the parts of all instances, sorted into batches, with their matrices per frame.
+"""Draw list: the parts of all instances, sorted into batches, with their matrices per frame.
 
 Scene contents come in once, poses and camera each frame; out comes a block of uniforms for each
 part, and for each batch the parts that an eye may see. All matrices are composed in double
@@ -31,7 +31,7 @@ call of its own, with uniforms.
 """
 
 _MATERIAL, _GLOW, _NORMAL, _CHART = 4, 6, 8, 11
-"""Where things lie in the block; before them the columns of the matrix to clip space."""
+"""Offsets in the block [floats]; before them stand the columns of the matrix to clip space."""
 
 
 _CASTER = BatchKind()

@@ -21,7 +21,7 @@ __all__ = ["GeometryBuffers", "MeshSlice"]
 
 @dataclass(frozen=True, slots=True)
 class MeshSlice:
-    """Where a mesh lies in the index buffer and among the clusters."""
+    """Position of a mesh in the index buffer and among the clusters."""
 
     first_index: int
     index_count: int

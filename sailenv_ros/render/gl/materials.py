@@ -23,7 +23,7 @@ __all__ = ["BatchKind", "MaterialBuffers"]
 
 @dataclass(frozen=True, slots=True, order=True)
 class BatchKind:
-    """What materials must share to be drawn by one program.
+    """Properties that materials must share to be drawn by one program.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How much of the light from around reaches each surface past its neighbours in the picture.
+"""Ambient occlusion in screen space: the share of the ambient light that reaches each surface.
 
 Depth and instance ids come in, the ambient visibility at half resolution goes out. Each sample
 looks at twelve points around it, within a radius on the surface and the denser the nearer: what

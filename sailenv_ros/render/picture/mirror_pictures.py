@@ -1,4 +1,4 @@
-"""What flat mirrors show is put into the picture.
+"""Draws the reflections of flat mirrors into the picture.
 
 The mirrors of `flat_mirrors` and a way to draw what each shows come in; the picture's radiance
 goes out. Where the picture's edges are smooth, so are those of its mirrors.

@@ -16,7 +16,7 @@ from sailenv_ros.render.picture.kernels import make_picture, resolve_samples
 __all__ = ["SAME_SURFACE", "AmbientShade", "apply_visibility", "tone_map"]
 
 AmbientShade: TypeAlias = tuple[NDArray[np.uint8], NDArray[np.float32]]
-"""What `ambient_occlusion.ambient_visibility` returns: the visibility, and 1 / depth there."""
+"""Result of `ambient_occlusion.ambient_visibility`: the visibility, and 1 / depth there."""
 
 SAME_SURFACE = 0.04
 """Share of its depth by which a sample of the visibility may lie off a pixel's own surface."""

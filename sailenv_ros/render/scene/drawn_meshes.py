@@ -49,7 +49,7 @@ class DrawnMesh:
 
     @property
     def key(self) -> tuple[int, int]:
-        """What tells drawn meshes apart while both objects live."""
+        """Key that is unique to a drawn mesh while both of its objects live."""
         return id(self.mesh), id(self.unwrapping)
 
     @property
@@ -61,7 +61,7 @@ class DrawnMesh:
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices are drawn."""
+        """Number of vertices that are drawn."""
         return len(
             self.mesh.positions if self.unwrapping is None else self.unwrapping.vertices[self.part]
         )
@@ -106,7 +106,7 @@ def unwrappings(contents: SceneContents) -> list[Unwrapping | None]:
 _unwrapped_models: weakref.WeakKeyDictionary[Model, tuple[Unwrapping, Unwrapping]] = (
     weakref.WeakKeyDictionary()
 )
-"""What each model was unwrapped by last: the unwrapping that was baked, and the model's own."""
+"""Last unwrapping of each model: the one that was baked, and the model's own."""
 
 
 def _unwrapped(model: Model, baked: Unwrapping) -> Unwrapping:

@@ -39,8 +39,8 @@ CATEGORY = "mirror"
 """In objects of this category any flat metal is a mirror, however rough its material says."""
 
 SILVERED = 0.9
-"""What such a mirror reflects at least of the colour that it reflects best, as silver behind glass
-does: models give their mirrors the grey of what they happen to reflect."""
+"""Least reflectance of such a mirror in its brightest channel, as of silver behind glass: models
+give their mirrors the grey of what they happen to reflect."""
 
 NEAR_PLANE_M = 4e-3
 """Pixels this near to the mirror's plane belong to it; its frame stands out further."""

@@ -35,7 +35,7 @@ Term: TypeAlias = tuple[NDArray[np.float16], NDArray[np.float32]]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LayerSum:
-    """What a light map is the sum of; see `sum_texels`, which adds it up."""
+    """Terms of the sum that makes a light map; see `sum_texels`, which adds them up."""
 
     terms: Sequence[Term]
     more: NDArray[np.float32]

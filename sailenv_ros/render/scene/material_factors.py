@@ -1,4 +1,4 @@
-"""What a material is apart from its textures: the numbers that shading multiplies them with.
+"""Numbers of a material by which shading multiplies its textures.
 
 Knows no graphics library: every back end shades with the same numbers.
 """

@@ -1,4 +1,4 @@
-"""What a room looks like from its middle, blurred step by step: what shiny surfaces mirror.
+"""Reflection map: a room seen from its middle, blurred for several roughnesses.
 
 Pictures of linear radiance in six directions come in, a texture goes out: the directions of the
 world laid flat on an octahedron, for several roughnesses one behind the other.

@@ -28,7 +28,7 @@ LARGE_M = 3.0
 """Instances of this diagonal, such as walls, use the point in the middle."""
 
 BEFORE_M = 0.05
-"""How far before the box around the metal its point is."""
+"""Distance of the point in front of the box around the metal [m]."""
 
 INSIDE_M = 0.1
 """Points keep this distance from the walls, and above what stands at their place."""
@@ -37,14 +37,14 @@ CLEAR_M = 0.02
 """Points nearer than this to the box around an object count as inside."""
 
 FAR_M = 1.2
-"""What is farther from all points than this uses the one in the middle."""
+"""Surfaces farther than this from all points use the point in the middle [m]."""
 
 LEAST_METALLIC, MOST_ROUGHNESS = 0.5, 0.45
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Spot:
-    """Where a model mirrors, before scaling."""
+    """Reflective region of a model, before scaling."""
 
     middle: NDArray[np.float64]
     size: NDArray[np.float64]

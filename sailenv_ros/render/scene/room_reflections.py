@@ -1,4 +1,4 @@
-"""What shiny surfaces mirror of a room, kept for each light apart.
+"""Reflection maps of a room, kept separately for each light.
 
 Radiance is linear in the power of each light. So the room is looked at once for each light alone,
 at power 1, and once for the sky and what glows; when a light is made brighter or gets another

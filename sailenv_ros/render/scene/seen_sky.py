@@ -35,8 +35,8 @@ KNEE, SHOULDER = 0.18, 0.62
 curve makes light grey of it: the white of walls in the sun is brighter."""
 
 BASE_PX, BASE_VARIANCE = 24, 0.08
-"""How broad differences are that are compressed, and the variance of log luminance below which a
-difference is fine."""
+"""Width of the differences that are compressed [px], and the variance of log luminance below which
+a difference is fine."""
 
 DETAIL = 1.35
 """Fine differences are made so much stronger, in stops: a pixel of the sky is some pixels of the

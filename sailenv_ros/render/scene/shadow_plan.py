@@ -1,4 +1,4 @@
-"""What a shadow map must show anew, and where it lies: the same for every back end.
+"""Update plan and projection of a shadow map; the same for every back end.
 
 A snapshot, a light and the choice of what casts come in; out comes what is to be drawn, if
 anything, and the matrix into the map. A map is drawn again only when something that it depends on
@@ -54,7 +54,7 @@ def _casting(extents: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShadowRedraw:
-    """What is to be drawn of a map.
+    """Drawing steps that bring a shadow map up to date.
 
     Attributes
     ----------

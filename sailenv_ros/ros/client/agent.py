@@ -36,7 +36,7 @@ ORDINARY_S = 30.0
 """An operation whose own deadline is longer takes long by nature [s]."""
 
 END_S = 2.0
-"""How long the simulator may take to take note of an Agent's end [s]."""
+"""Time that the simulator may take to notice the end of an Agent [s]."""
 
 
 class Agent(Operations):
@@ -280,14 +280,14 @@ depth_frame_active : bool
 
     @property
     def picture(self) -> PictureSettings:
-        """How the pictures are made now; the simulator is asked."""
+        """The present picture settings, asked from the simulator."""
         return self.get_picture()
 
     # -- frames ----------------------------------------------------------------------------
 
     @property
     def recaptured(self) -> int:
-        """How often a frame was asked for anew because images did not arrive."""
+        """Number of frames requested again because images did not arrive."""
         return self._recaptured + (0 if self._frames is None else self._frames.recaptured)
 
     def get_frame(

@@ -44,13 +44,13 @@ __all__ = ["Connection"]
 _log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.1
-"""How often a wait looks whether the simulator still lives [s]."""
+"""Interval at which a wait checks whether the simulator still lives [s]."""
 
 STOPPED_S = 1.0
 """A look that takes so much longer than it should tells that this process was stopped [s]."""
 
 POLL_INTERVAL_S = 0.005
-"""How often a condition of the ROS graph is looked at, which tells of no change by itself [s]."""
+"""Interval at which conditions of the ROS graph without a change notice are polled [s]."""
 
 _LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -1,4 +1,4 @@
-"""How a client gets an agent's frames: one captured now, or the newest of those at a rate.
+"""Fetches an agent's frames: one captured now, or the newest of a stream at a given rate.
 
 Captured ones come through shared memory where the simulator is on this machine and of this user;
 else, and at a rate, by topics.

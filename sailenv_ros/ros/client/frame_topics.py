@@ -49,7 +49,7 @@ class AgentTopics:
 
     @property
     def incomplete(self) -> int:
-        """How many frames were given up because an image of theirs never came."""
+        """Number of frames given up because one of their images never arrived."""
         return self._sync.incomplete
 
     @property

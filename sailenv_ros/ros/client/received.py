@@ -1,4 +1,4 @@
-"""What a client received, as its own data: messages and arrays → a `Frame`."""
+"""Converts received messages and arrays to a `Frame`."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ class RecordedAgent(Sequence[dict[str, Any]]):
 
     @property
     def incomplete(self) -> int:
-        """How many frames are passed over because an image of theirs was not recorded."""
+        """Number of frames skipped because one of their images was not recorded."""
         return self._frames.incomplete
 
     # -- frames ----------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What a simulator announced of its scene: the newest, and the recent ones by their revisions.
+"""The recent scene announcements of a simulator, by their revision; the newest among them.
 
 `SceneInfo`s in, in the order in which they were announced. Used by one thread at a time.
 """

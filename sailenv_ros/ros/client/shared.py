@@ -18,7 +18,7 @@ from sailenv_ros.ros.client.simulator_process import SimulatorProcess
 __all__ = ["Link", "acquire", "release"]
 
 DISCOVERY_S = 1.0
-"""How long a simulator on another host may take to be found before one is started here [s]."""
+"""Time that a simulator on another host may take to be found before one is started here [s]."""
 
 
 @dataclass(slots=True, eq=False)

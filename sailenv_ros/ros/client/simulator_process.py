@@ -20,7 +20,7 @@ from sailenv_ros.system.transport import remove_abandoned_segments, stay_local
 __all__ = ["SimulatorProcess"]
 
 END_TIMEOUT_S = 5.0
-"""How long the child may take to end before it is killed [s]."""
+"""Time that the child process may take to end before it is killed [s]."""
 
 
 class SimulatorProcess:

@@ -34,14 +34,14 @@ LOOK_INTERVAL_S = 0.5
 """Between two looks whether clients live [s of wall time]."""
 
 FIND_S = 2.0
-"""How long discovery may take to tell whose a new agent is [s of wall time]."""
+"""Time that discovery may take to find the owner of a new agent [s of wall time]."""
 
 _CLIENT = re.compile(r"client_\d+_[0-9a-f]{6}")
 
 
 @dataclass(slots=True)
 class _Lease:
-    """Who holds an agent; nobody is known yet where there are no clients."""
+    """The clients that hold an agent; none are known yet while ``clients`` is empty."""
 
     registered_s: float
     clients: set[str] = field(default_factory=set)

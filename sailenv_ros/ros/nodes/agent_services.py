@@ -25,7 +25,7 @@ from sailenv_ros.types.views import checked_views
 __all__ = ["AgentServices"]
 
 AWAIT_SUBSCRIBERS_S = 0.5
-"""How long a capture waits for subscribers of its views that are just being matched [s]."""
+"""Time that a capture waits for subscribers of its views that are just being matched [s]."""
 
 _CAPTURE = SERVICES[Operations.capture.name]
 

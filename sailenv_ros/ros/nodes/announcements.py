@@ -1,4 +1,4 @@
-"""What the simulation tells of itself → `scene_info` (latched) and `/clock`.
+"""Publishes the state of the simulation: `scene_info` (latched) and `/clock`.
 
 Called from the simulation's loop thread, so that a frame's scene_info is always out before the
 frame; each call is one small message.

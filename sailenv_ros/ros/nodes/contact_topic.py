@@ -1,4 +1,4 @@
-"""What touches what → the topic `contacts`, while somebody subscribes to it."""
+"""Publishes the contacts between objects on the topic `contacts`, while it has subscribers."""
 
 from __future__ import annotations
 

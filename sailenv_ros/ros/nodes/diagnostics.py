@@ -31,7 +31,7 @@ SLOW = 0.9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AgentCounts:
-    """What an agent's publisher did since it was asked before.
+    """Counts of an agent's publisher since the previous report.
 
     Attributes
     ----------

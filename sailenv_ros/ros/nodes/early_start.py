@@ -39,7 +39,7 @@ ROS_LIBRARIES = Path(sys.prefix, "opt", "ros_libraries")
 """Links to the libraries of the ROS 2 wheels."""
 
 _FOLDERS = "ros_*.libs"
-"""Where the ROS 2 wheels have libraries, in site-packages."""
+"""Folders in site-packages in which the ROS 2 wheels keep their libraries."""
 
 _BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 """Set, it tells the ROS 2 wheels that `LD_LIBRARY_PATH` is as they need it."""

@@ -1,4 +1,4 @@
-"""Where the lessons are → the topic `lesson`, at every change; latched."""
+"""Publishes the current lesson on the latched topic `lesson`, at each change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a node process ends: signals, a parent that has died, and a clean-up with a deadline.
+"""End of a node process: signals, a parent that has died, and a clean-up with a deadline.
 
 Knows no ROS and no simulation; the node waits on a `StopRequest` and ends in its main thread.
 """

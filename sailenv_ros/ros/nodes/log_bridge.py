@@ -1,4 +1,4 @@
-"""What the ROS-free part logs with `logging`, passed on to a ROS node's logger."""
+"""Passes log records of the ROS-free part, made with `logging`, to a ROS node's logger."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ __all__ = ["LIVE", "PARAMETERS", "Parameter", "SimParameters", "sim_parameters"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimParameters:
-    """How to run the simulator.
+    """Parameters of the simulator node, checked.
 
     Attributes
     ----------

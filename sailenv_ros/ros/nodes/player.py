@@ -37,10 +37,10 @@ __all__ = ["PARAMETERS", "Player", "main"]
 
 NODE_NAME = "player"
 LOOK_INTERVAL_S = 0.05
-"""How often it is looked whether the end or a pause was asked for, while waiting [s]."""
+"""Interval at which a wait checks for a requested end or pause [s]."""
 
 ACKNOWLEDGE_S = 2.0
-"""How long subscribers may take to say that they have the last messages [s]."""
+"""Time that subscribers may take to acknowledge the last messages [s]."""
 
 _CLOCK_NAME = "/clock"
 

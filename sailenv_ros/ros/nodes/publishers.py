@@ -40,7 +40,7 @@ __all__ = ["AgentPublisher"]
 _log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.05
-"""How often it is looked whether somebody subscribes, while nothing is rendered [s]."""
+"""Interval at which subscriptions are checked while nothing is rendered [s]."""
 
 
 class AgentPublisher:

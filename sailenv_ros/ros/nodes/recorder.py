@@ -57,13 +57,13 @@ __all__ = ["PARAMETERS", "Recorder", "main"]
 NODE_NAME = "recorder"
 
 LOOK_INTERVAL_S = 0.1
-"""How often it is looked for agents and topics that have come [s]."""
+"""Interval at which new agents and topics are looked for [s]."""
 
 CLEAN_END_S = 1.5
-"""How long a simulator that ends by itself may take from its lock to its topics [s]."""
+"""Time that a simulator which ends by itself may take from its lock to its topics [s]."""
 
 DEPTH = 30
-"""How many messages of a topic may wait in the middleware: a second of frames."""
+"""Number of messages of a topic that may wait in the middleware: a second of frames."""
 
 _log = logging.getLogger(f"sailenv_ros.ros.nodes.{NODE_NAME}")  # __name__ may be __main__
 
@@ -142,7 +142,7 @@ class Recorder:
 
     @property
     def frames(self) -> int:
-        """How many frames were announced while this listened."""
+        """Number of frames that were announced since the recorder began to listen."""
         return sum(counter.frames for counter in self._counters.values())
 
     @property

@@ -60,7 +60,7 @@ __all__ = ["SimNode", "main", "run"]
 NODE_NAME = "sim_node"
 
 SWITCH_INTERVAL_S = 0.0005
-"""How long one Python thread may keep the others waiting; Python's own 5 ms delays every frame."""
+"""Switch interval of Python's threads [s]; Python's default of 5 ms delays every frame."""
 
 _log = logging.getLogger(f"sailenv_ros.ros.nodes.{NODE_NAME}")  # __name__ may be __main__
 

@@ -1,1 +1,1 @@
-"""What a scene draws at random: distributions, things to draw, and drawing, without physics."""
+"""Randomisation of a scene: distributions, things to draw, and drawing, without physics."""

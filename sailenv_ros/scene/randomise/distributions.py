@@ -28,7 +28,7 @@ class Distribution(Protocol):
     """One way to draw a value."""
 
     takes: str
-    """What it is given, in words."""
+    """The values that it accepts, in words."""
 
     def check(self, given: object, accept: Accept) -> Any:
         """Return what is kept of what was given; None if it is not what it takes."""

@@ -1,4 +1,4 @@
-"""What must hold between what a scene draws at random and what it has."""
+"""Rules for the names that randomisation refers to: they must exist in the scene."""
 
 from __future__ import annotations
 

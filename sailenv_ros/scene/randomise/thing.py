@@ -21,7 +21,7 @@ from sailenv_ros.scene.randomise.drawn import Draw
 __all__ = ["EVERY", "Pick", "RandomTargets", "Thing", "ThingOfEpochs", "Values", "Which"]
 
 Values: TypeAlias = dict[str, Any]
-"""What was drawn, in plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
+"""Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
 ``environment`` by its keys, ``added`` a list of objects."""
 
 Pick: TypeAlias = Callable[[str, str, Draw], Any]
@@ -32,7 +32,7 @@ EVERY = ("epoch", "frame")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RandomTargets:
-    """What there is to be drawn for, by name.
+    """Targets of randomisation, by name.
 
     Attributes
     ----------
@@ -79,10 +79,10 @@ Which: TypeAlias = Annotated[tuple[str, ...], _Names()]
 
 
 class Thing(SceneModel):
-    """What every entry of `randomise` has."""
+    """Base of every entry of `randomise`."""
 
     KEY: ClassVar[str] = ""
-    """Which of `Values` it fills."""
+    """The key of `Values` that it fills."""
 
     name: Name = Field(
         description="unique among them; its values depend on it and the seed, not on other entries"

@@ -1,1 +1,1 @@
-"""What the catalogue of assets is shown and filled with: thumbnails and uploaded models."""
+"""Contents of the asset catalogue: thumbnails and uploaded models."""

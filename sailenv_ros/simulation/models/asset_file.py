@@ -73,7 +73,7 @@ def write_asset(path: Path, asset: Asset) -> None:
 
 
 _MALFORMED = (LookupError, ValueError, TypeError, AttributeError, RecursionError, OverflowError)
-"""What comes of a description that is another one than it should be."""
+"""Exceptions that a malformed description may raise."""
 
 
 def read_asset(path: Path) -> Asset:

@@ -42,7 +42,7 @@ _DATA, _ANSWER, _ASSET = "data", "answer.json", "asset"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportLimits:
-    """What an import may take.
+    """Limits of an import.
 
     Attributes
     ----------

@@ -34,7 +34,7 @@ DETAIL = 2
 """It is drawn so many times as large, and made smaller: fine parts are seen better."""
 
 ANSWER_S = 60.0
-"""How long a thumbnail may take, the process's start included [s]."""
+"""Time limit for a thumbnail, the start of the process included [s]."""
 
 END_S = 5.0
 

@@ -31,7 +31,7 @@ FLOOR_SCALE = 4.0
 """The floor reaches beyond the picture's edges."""
 
 LIFT_M = 0.001
-"""What is flat lies upon the floor, not in it [m]."""
+"""Height above the floor at which flat objects are shown [m]."""
 
 FLOOR_COLOUR = (0.30, 0.30, 0.31)
 

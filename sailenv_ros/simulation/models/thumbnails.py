@@ -39,7 +39,7 @@ _log = logging.getLogger(__name__)
 
 
 class Catalogue(Protocol):
-    """What is known of the assets; `SceneLibrary` does."""
+    """Queries about assets that thumbnails need; `SceneLibrary` answers them."""
 
     def canonical_asset(self, name: str) -> str:
         """Return the catalogue name of a catalogue or display name."""

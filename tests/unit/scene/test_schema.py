@@ -67,10 +67,18 @@ def test_the_package_s_scenes_fit_it(name: str) -> None:
     _validator(BEHAVIOURS).validate(node.plain())
 
 
+@pytest.fixture(scope="module")
+def spin_validator() -> jsonschema.Draft7Validator:
+    """The schema with one behaviour, made once for all examples."""
+    return _validator({"spin": _Spin})
+
+
 @unhurried
-@given(scenes)
-def test_what_the_loader_accepts_fits_it(data: dict[str, Any]) -> None:
-    _validator({"spin": _Spin}).validate(data)
+@given(data=scenes)
+def test_what_the_loader_accepts_fits_it(
+    spin_validator: jsonschema.Draft7Validator, data: dict[str, Any]
+) -> None:
+    spin_validator.validate(data)
 
 
 BEYOND_A_SCHEMA = {

@@ -43,6 +43,7 @@ def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_light_that_is_baked_meanwhile_is_shown(cell: Path) -> None:
     """The same picture as that of a simulation that begins with the light."""
     with Simulation(cell, mode="lockstep", agent=EYE) as simulation:

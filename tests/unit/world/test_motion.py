@@ -92,6 +92,7 @@ def positions(world: Any) -> NDArray[np.float64]:
     return np.asarray(world.snapshot().world_from_body[:, :3, 3])
 
 
+@pytest.mark.slow
 def test_nothing_leaves_a_closed_box_in_a_minute() -> None:
     """60 s of the fiercest motion: no body's middle gets beyond the middle of a 10 cm wall."""
     world = make_world(*closed_box(), *crowd())
@@ -186,6 +187,7 @@ def test_a_poltergeist_wakes_what_sleeps() -> None:
     assert len({tuple(np.round(place, 3)) for place in places}) >= 5
 
 
+@pytest.mark.slow
 def test_everything_at_once_comes_back_byte_for_byte() -> None:
     """2,000 steps with all behaviours, several on one body: two worlds agree in every byte."""
 

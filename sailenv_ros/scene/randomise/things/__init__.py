@@ -1,1 +1,1 @@
-"""What can be drawn at random, one file each; `thing_table` lists them."""
+"""Things that can be drawn at random, one file each; `thing_table` lists them."""

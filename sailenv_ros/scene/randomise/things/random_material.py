@@ -19,7 +19,7 @@ _Seed = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
 
 
 class RandomMaterial(Thing):
-    """What objects, walls, the floor or the ceiling are made of."""
+    """Material of objects, walls, the floor or the ceiling."""
 
     KEY: ClassVar[str] = "materials"
 

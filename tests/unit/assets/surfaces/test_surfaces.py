@@ -35,59 +35,60 @@ def test_the_kinds_that_rooms_need_are_there() -> None:
     assert {"wallpaper_stripes", "wallpaper_damask"} <= set(NAMES)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_surface_has_three_read_only_textures(name: str) -> None:
-    textures = _textures(surface(name))
-    assert [texture.shape for texture in textures] == [(1024, 1024, 4)] * 3
-    assert [texture.dtype for texture in textures] == [np.uint8] * 3
-    assert not any(texture.flags.writeable for texture in textures)
-    assert all((texture[..., 3] == 255).all() for texture in textures)
+def _check_textures(name: str, textures: list[NDArray[np.uint8]]) -> None:
+    """Three opaque read-only pictures."""
+    assert [texture.shape for texture in textures] == [(1024, 1024, 4)] * 3, name
+    assert [texture.dtype for texture in textures] == [np.uint8] * 3, name
+    assert not any(texture.flags.writeable for texture in textures), name
+    assert all((texture[..., 3] == 255).all() for texture in textures), name
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_opposite_edges_continue(name: str) -> None:
+def _check_seams(name: str, textures: list[NDArray[np.uint8]]) -> None:
     """The step across a seam is as one between neighbours inside (at a joint, if it is one)."""
-    for texture in _textures(surface(name)):
+    for texture in textures:
         for axis in (0, 1):
             values = texture[..., :3].astype(np.int16)
             steps = np.abs(np.diff(values, axis=axis)).mean(axis=(1 - axis, 2))
             ends = np.take(values, 0, axis=axis) - np.take(values, -1, axis=axis)
-            seam = np.abs(ends).mean()
-            assert seam <= 1.1 * steps.max()
+            assert np.abs(ends).mean() <= 1.1 * steps.max(), name
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_name_and_seed_decide_every_byte(name: str) -> None:
-    first = _made.__wrapped__(name, (0.4, 0.3, 0.2), 7)
-    again = _made.__wrapped__(name, (0.4, 0.3, 0.2), 7)
-    other = _made.__wrapped__(name, (0.4, 0.3, 0.2), 8)
-    for one, two in zip(_textures(first), _textures(again), strict=True):
-        np.testing.assert_array_equal(one, two)
-    assert not np.array_equal(_textures(first)[0], _textures(other)[0])
+def _check_average(name: str, albedo: NDArray[np.uint8], colour: NDArray[np.float64]) -> None:
+    """Joints, pores and figures change it by a quarter at most, and hardly its hue."""
+    average = _linear(albedo).mean(axis=(0, 1))
+    np.testing.assert_allclose(average, colour, rtol=0.25, err_msg=name)
+    np.testing.assert_allclose(
+        average / average.sum(), colour / colour.sum(), atol=0.02, err_msg=name
+    )
+
+
+def _check_normals(name: str, texture: NDArray[np.uint8]) -> None:
+    """Of unit length, level on average, never turned over."""
+    normals = texture[..., :3].astype(np.float64) - 128.0
+    assert np.abs(np.linalg.norm(normals, axis=-1) / 127.0 - 1.0).max() < 0.02, name
+    assert np.abs(normals[..., :2].mean(axis=(0, 1))).max() < 1.5, name
+    assert normals[..., 2].min() > 0, name
+
+
+def test_each_surface_is_seamless_and_follows_from_name_colour_and_seed() -> None:
+    """Every byte repeats; another seed gives another picture of the same average colour."""
+    colour = (0.42, 0.30, 0.24)
+    for name in NAMES:
+        textures = _textures(surface(name, colour=colour))
+        _check_textures(name, textures)
+        _check_seams(name, textures)
+        _check_average(name, textures[0], np.array(colour))
+        _check_normals(name, textures[2])
+        again = _textures(_made.__wrapped__(name, colour, 0))
+        assert [one.tobytes() for one in textures] == [two.tobytes() for two in again], name
+        other = _textures(_made.__wrapped__(name, colour, 1))
+        assert not np.array_equal(textures[0], other[0]), name
 
 
 def test_a_surface_is_made_once() -> None:
     """Models are compared by identity, so the GPU holds each texture once."""
     assert surface("plaster") is surface("plaster")
     assert surface("plaster", colour=(0.1, 0.2, 0.3)) is not surface("plaster")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_the_average_is_near_the_colour_asked_for(name: str) -> None:
-    """Joints, pores and figures change it by a fifth at most, and hardly its hue."""
-    colour = np.array([0.42, 0.30, 0.24])
-    made = surface(name, colour=(0.42, 0.30, 0.24))
-    average = _linear(_textures(made)[0]).mean(axis=(0, 1))
-    np.testing.assert_allclose(average, colour, rtol=0.25)
-    np.testing.assert_allclose(average / average.sum(), colour / colour.sum(), atol=0.02)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_normals_are_of_unit_length_and_level_on_average(name: str) -> None:
-    normals = _textures(surface(name))[2][..., :3].astype(np.float64) - 128.0
-    assert np.abs(np.linalg.norm(normals, axis=-1) / 127.0 - 1.0).max() < 0.02
-    assert np.abs(normals[..., :2].mean(axis=(0, 1))).max() < 1.5
-    assert normals[..., 2].min() > 0
 
 
 def test_normals_lean_away_from_what_rises() -> None:
