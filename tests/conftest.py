@@ -37,7 +37,7 @@ NOT_QUICK = (
     "render",
     "ros",
     "viewer",
-    "unit/bake",
+    "unit/light/bake",
     "unit/reliability",
 )
 """Folders and files whose tests are left out of the quick tier, which `scripts/check` runs.
