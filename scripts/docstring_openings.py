@@ -13,7 +13,15 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-FOLDERS = ("sailenv_ros", "sailenv_msgs_py", "sailenv_content", "sailenv_bench", "benchmarks", "scripts", "tests/support")
+FOLDERS = (
+    "sailenv_ros",
+    "sailenv_msgs_py",
+    "sailenv_content",
+    "sailenv_bench",
+    "benchmarks",
+    "scripts",
+    "tests/support",
+)
 MOST = 20
 OPENING = re.compile(r"\W*(What|Which|Who|Whose|Whom)\b")
 

@@ -22,7 +22,8 @@ from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Placement
-from sailenv_ros.world.mover import Mover, WaypointTrack
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover_motion import WaypointTrack
 from sailenv_ros.world.placement import JointPlacement
 from sailenv_ros.world.world import World
 

@@ -11,7 +11,8 @@ import math
 
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
-from sailenv_ros.world.mover import Mover, turned
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover_motion import turned
 
 __all__ = ["PROXY_RADIUS_M", "CollisionProxy"]
 

@@ -12,8 +12,9 @@ from sailenv_ros.errors import UnknownName
 from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision_proxy import CollisionProxy
-from sailenv_ros.world.mover import Mover, MoverCommand
+from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_body import AT_REST, Motion, MoverBody
+from sailenv_ros.world.mover_motion import MoverCommand
 
 __all__ = ["MovingStands"]
 

@@ -35,7 +35,8 @@ from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.lit_lamps import lit_by
-from sailenv_ros.world.mover import Mover, MoverCommand
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover_motion import MoverCommand
 from sailenv_ros.world.moving_stands import MovingStands
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions

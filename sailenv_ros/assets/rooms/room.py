@@ -25,6 +25,7 @@ from sailenv_ros.assets.rooms.doors import (
     doorway_parts,
 )
 from sailenv_ros.assets.rooms.pieces import Faces, WallFrame, collision_of
+from sailenv_ros.assets.rooms.wall_frames import Vector3, behind, partition_frame, wall_frame
 from sailenv_ros.assets.rooms.walls import (
     Hole,
     box_of_slab,
@@ -43,7 +44,6 @@ from sailenv_ros.scene.spec_room import (
     DoorwaySpec,
     FloorAreaSpec,
     OpeningSpec,
-    PartitionSpec,
     RoomSpec,
     SurfaceSpec,
     WallName,
@@ -61,18 +61,10 @@ from sailenv_ros.types.model import (
 
 __all__ = ["RoomPart", "room_parts"]
 
-Vector3 = tuple[float, float, float]
 _Frames: TypeAlias = Mapping[WallName, WallFrame]
 _Looks: TypeAlias = Mapping[SurfaceSpec, Surface]
 
 _surfaces: weakref.WeakValueDictionary[tuple[object, ...], Surface] = weakref.WeakValueDictionary()
-
-_OUTWARD: dict[str, Vector3] = {
-    "north": (0.0, 1.0, 0.0),
-    "east": (1.0, 0.0, 0.0),
-    "south": (0.0, -1.0, 0.0),
-    "west": (-1.0, 0.0, 0.0),
-}
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -132,7 +124,7 @@ def _looks(spec: RoomSpec) -> Iterator[SurfaceSpec]:
 def _room_parts(
     spec: RoomSpec, looks: tuple[tuple[SurfaceSpec, Surface], ...]
 ) -> tuple[RoomPart, ...]:
-    frames: _Frames = {wall: _frame(spec, wall) for wall in WALLS}
+    frames: _Frames = {wall: wall_frame(spec, wall) for wall in WALLS}
     surfaces = dict(looks)
     return (
         *_slabs(spec, surfaces),
@@ -194,50 +186,6 @@ def _doorway_hole(doorway: DoorwaySpec) -> Hole:
 def _vector(values: NDArray[np.float64]) -> Vector3:
     x, y, z = values.tolist()
     return x, y, z
-
-
-def partition_frame(
-    partition: PartitionSpec, height_m: float
-) -> tuple[WallFrame, tuple[WallName, WallName]]:
-    """Return a wall as its side to the south or west has it, and where its sides look."""
-    (x0, y0), (x1, y1) = partition.start, partition.end
-    along_x = abs(x1 - x0) > abs(y1 - y0)
-    half = partition.thickness / 2.0
-    x, y = (x0 + x1) / 2.0, (y0 + y1) / 2.0
-    frame = WallFrame(
-        along=(1.0, 0.0, 0.0) if along_x else (0.0, 1.0, 0.0),
-        outward=(0.0, 1.0, 0.0) if along_x else (1.0, 0.0, 0.0),
-        middle_m=(x, y - half, 0.0) if along_x else (x - half, y, 0.0),
-        length_m=abs(x1 - x0) if along_x else abs(y1 - y0),
-        height_m=height_m,
-        thickness_m=partition.thickness,
-        overhang_m=0.0,
-    )
-    return frame, ("south", "north") if along_x else ("west", "east")
-
-
-def _behind(frame: WallFrame) -> WallFrame:
-    """Return a wall as its other side has it."""
-    ox, oy, _ = frame.outward
-    x, y, _ = frame.middle_m
-    thick = frame.thickness_m
-    return replace(frame, outward=(-ox, -oy, 0.0), middle_m=(x + thick * ox, y + thick * oy, 0.0))
-
-
-def _frame(spec: RoomSpec, wall: WallName) -> WallFrame:
-    size_x, size_y, height = spec.size
-    lies_along_x = wall in ("north", "south")
-    ox, oy, _ = _OUTWARD[wall]
-    return WallFrame(
-        along=(1.0, 0.0, 0.0) if lies_along_x else (0.0, 1.0, 0.0),
-        outward=_OUTWARD[wall],
-        middle_m=(ox * size_x / 2.0, oy * size_y / 2.0, 0.0),
-        length_m=size_x if lies_along_x else size_y,
-        height_m=height,
-        thickness_m=spec.thickness,
-        # The walls to north and south run on behind the ends of the two others.
-        overhang_m=spec.thickness if lies_along_x else 0.0,
-    )
 
 
 def _slabs(spec: RoomSpec, looks: _Looks) -> Iterator[RoomPart]:
@@ -314,7 +262,7 @@ def _boarded(
             for d in partition.doorways
         ]
         yield frame, beside
-        yield _behind(frame), beside
+        yield behind(frame), beside
 
 
 def _moved_mesh(mesh: Mesh, by: Vector3) -> Mesh:

@@ -16,7 +16,7 @@ from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.assets.recipe import standard_recipe
 from sailenv_ros.authoring.scene_import.categories_by_name import category_of_name
-from sailenv_ros.authoring.scene_import.home_plan import HomePiece, Paint
+from sailenv_ros.authoring.scene_import.home_types import HomePiece, Paint
 from sailenv_ros.authoring.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_ros.authoring.scene_import.scene_parts import asset_of_parts
 from sailenv_ros.authoring.scene_import.wavefront_colours import material_file, with_glass

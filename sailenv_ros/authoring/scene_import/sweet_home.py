@@ -23,14 +23,8 @@ from sailenv_ros.assets.model_files import LARGEST_TEXTURE_PX, RawPart, texture_
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.authoring.scene_import.default_light import ENVIRONMENT, SUN
 from sailenv_ros.authoring.scene_import.home_furniture import HomeFurniture
-from sailenv_ros.authoring.scene_import.home_plan import (
-    Home,
-    HomePiece,
-    HomeRoom,
-    HomeWall,
-    Paint,
-    read_home,
-)
+from sailenv_ros.authoring.scene_import.home_plan import read_home
+from sailenv_ros.authoring.scene_import.home_types import Home, HomePiece, HomeRoom, HomeWall, Paint
 from sailenv_ros.authoring.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_ros.authoring.scene_import.plan_slabs import inside, slab
 from sailenv_ros.authoring.scene_import.plan_walls import Opening, wall_solid

@@ -10,7 +10,8 @@ import pytest
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.collision_proxy import PROXY_RADIUS_M
-from sailenv_ros.world.mover import Mover, MoverCommand, WaypointTrack
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover_motion import MoverCommand, WaypointTrack
 from sailenv_ros.world.world import World
 from tests.support.simple_solids import UNIT_BALL, placed
 from tests.unit.world.test_motion import HALF_M, closed_box

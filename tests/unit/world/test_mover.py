@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.world.mover import Mover, WaypointTrack
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover_motion import WaypointTrack
 
 SQUARE = (
     Pose((0.0, 0.0, 1.0)),

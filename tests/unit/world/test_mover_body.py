@@ -14,7 +14,8 @@ from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.rigid_body import RigidBody
-from sailenv_ros.world.mover import Mover, WaypointTrack
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.mover_motion import WaypointTrack
 from sailenv_ros.world.world import World
 from tests.support.plain_doors import DOOR_INERTIA, door
 from tests.support.simple_solids import UNIT_BALL, placed
