@@ -21,7 +21,7 @@ from sailenv_msgs_py.services import SERVICES
 from sailenv_ros.agent.frame_client import FrameClient
 from sailenv_ros.agent.recorded import RecordedAgent
 from sailenv_ros.agent.remote import RemoteSimulator
-from sailenv_ros.agents import AgentSpec, check_frame_rate
+from sailenv_ros.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
 from sailenv_ros.frame import checked_views
@@ -356,7 +356,7 @@ depth_frame_active : bool
         SimulatorLost, DeadlineExceeded
             If no frame came in time.
         """
-        check_frame_rate(rate_hz)
+        WAITED_RATE.number("rate_hz", rate_hz)
         if agent not in (None, self.id):
             raise InvalidRequest("agent", agent, f"{self.id!r}: an Agent receives its own frames")
         limit_s = self._timeout_s if timeout_s is None else timeout_s

@@ -18,7 +18,7 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sailenv_ros.agents import AgentSpec, check_frame_rate
+from sailenv_ros.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.catalogue.thumbnails import Thumbnails
 from sailenv_ros.catalogue.upload_queue import UploadQueue
@@ -276,7 +276,7 @@ class Simulation(Operations):
         SimulationClosed, DeadlineExceeded
             If no frame came in time.
         """
-        check_frame_rate(rate_hz)
+        WAITED_RATE.number("rate_hz", rate_hz)
         name = agent or self.own_agent or next((spec.name for spec in self.info.agents), "")
         with self.stream(name, self._own_views(name)) as stream:
             self.set_rate(rate_hz, agent=name)
