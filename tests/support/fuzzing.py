@@ -36,6 +36,7 @@ from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.simulation.scenario import scenario_entries
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.validation import vector
 from sailenv_ros.viewer.request_arguments import arguments_of_text
 from tests.support.upload_files import box_zip
 
@@ -245,7 +246,7 @@ def _read_viewer(data: bytes, folder: Path) -> object:
             read("value")
         except SailenvError:
             continue
-    return given.numbers("numbers", 3)
+    return vector("numbers", given.get("numbers"))
 
 
 @cache

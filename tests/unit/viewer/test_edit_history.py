@@ -7,8 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from sailenv_ros.simulation.room_edits import RoomRecord
-from sailenv_ros.viewer.command_context import CommandContext
-from sailenv_ros.viewer.edit_history import EditHistory, EditStep
+from sailenv_ros.viewer.edit_history import Conversation, EditHistory, EditStep
 
 
 def test_a_step_is_kept_when_scenes_are_looked_at_while_it_is_undone() -> None:
@@ -18,7 +17,7 @@ def test_a_step_is_kept_when_scenes_are_looked_at_while_it_is_undone() -> None:
     async def run(*_: Any) -> None:
         history.forget_other_scenes(3)
 
-    context = cast(CommandContext, SimpleNamespace(info=SimpleNamespace(epoch=3), run=run))
+    context = cast(Conversation, SimpleNamespace(info=SimpleNamespace(epoch=3), run=run))
     records = RoomRecord(room=None), RoomRecord(room=None, objects=(cast(Any, "floor"),))
     for what in ("first", "second"):
         step = EditStep(
