@@ -73,12 +73,19 @@ class EditStep:
 
 
 class EditHistory:
-    """What was done and can be undone, and what was undone and can be done again."""
+    """What was done and can be undone, and what was undone and can be done again.
+
+    Attributes
+    ----------
+    busy : asyncio.Lock
+        Held while a change is made or undone, so that an undo that is asked for right after a
+        change waits until that has been taken down.
+    """
 
     def __init__(self) -> None:
         self._done: list[EditStep] = []
         self._undone: list[EditStep] = []
-        self._busy = asyncio.Lock()
+        self.busy = asyncio.Lock()
 
     @property
     def undo_what(self) -> str:
@@ -125,7 +132,7 @@ class EditHistory:
         return await self._step(context, backwards=False)
 
     async def _step(self, context: Conversation, *, backwards: bool) -> tuple[str, int]:
-        async with self._busy:
+        async with self.busy:
             self.forget_other_scenes(context.info.epoch)
             taken, put = (self._done, self._undone)[:: 1 if backwards else -1]
             if not taken:

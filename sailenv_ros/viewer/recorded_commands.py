@@ -15,6 +15,14 @@ from sailenv_ros.viewer.request_arguments import Arguments
 __all__ = ["edits_object", "edits_surroundings", "take_down"]
 
 
+def _one_at_a_time(run: Run) -> Run:
+    async def alone(context: CommandContext, given: Arguments) -> Any:
+        async with context.history.busy:
+            return await run(context, given)
+
+    return alone
+
+
 def edits_object(words: str) -> Callable[[Run], Run]:
     """Have a command that changes one object be undoable.
 
@@ -24,6 +32,7 @@ def edits_object(words: str) -> Callable[[Run], Run]:
 
     def declare(run: Run) -> Run:
         @wraps(run)
+        @_one_at_a_time
         async def recorded(context: CommandContext, given: Arguments) -> Any:
             before: ObjectRecord | None = None
             if given.get("obj") is not None:
@@ -47,6 +56,7 @@ def edits_surroundings(words: str) -> Callable[[Run], Run]:
 
     def declare(run: Run) -> Run:
         @wraps(run)
+        @_one_at_a_time
         async def recorded(context: CommandContext, given: Arguments) -> Any:
             before = await context.run(EditOperations.surroundings_record)
             epoch = context.info.epoch

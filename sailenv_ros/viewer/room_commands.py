@@ -43,10 +43,11 @@ async def floor_plan(context: CommandContext, given: Arguments) -> Any:
 async def set_room(context: CommandContext, given: Arguments) -> Any:
     """Resize the room, or make one; tell the objects whose places it has taken."""
     x, y, height = vector("size", given.get("size"))
-    epoch = context.info.epoch
-    before, after = await context.run(RoomOperations.set_room_size, (x, y, height))
-    words = "making the room" if before.room is None else "resizing the room"
-    take_down(context, words, (words,), epoch, before, after)
+    async with context.history.busy:
+        epoch = context.info.epoch
+        before, after = await context.run(RoomOperations.set_room_size, (x, y, height))
+        words = "making the room" if before.room is None else "resizing the room"
+        take_down(context, words, (words,), epoch, before, after)
     return {"replaced": [record.name for record in before.objects]}
 
 
