@@ -67,14 +67,6 @@ class Service:
         self._write, self._read, self._fill, self._result = write, read, fill, result
         self._request_types = field_types(type_.Request)
         self._response_types = field_types(type_.Response)
-        self._variable = next(
-            (
-                parameter.name
-                for parameter in operation.signature.parameters.values()
-                if parameter.kind is inspect.Parameter.VAR_KEYWORD
-            ),
-            "",
-        )
 
     @property
     def of_agent(self) -> bool:
@@ -153,17 +145,7 @@ class Service:
                 given[parameter] = None
         if self._read is not None:
             given = self._read(given)
-        positional = [
-            parameter.name
-            for parameter in self.operation.signature.parameters.values()
-            if parameter.kind is inspect.Parameter.POSITIONAL_ONLY
-        ]
-        changes = dict(given.pop(self._variable, None) or {}) if self._variable else {}
-        args = tuple(given.pop(name) for name in positional if name in given)
-        clash = sorted(set(changes) & set(self.operation.signature.parameters))
-        if clash:
-            raise InvalidRequest(self._variable, clash, "names of what can be changed")
-        return args, {**given, **changes}
+        return self.operation.arguments(given)
 
     def respond(self, response: Any, result: Any, info: SceneInfo) -> None:
         """Fill the response of an operation that succeeded.

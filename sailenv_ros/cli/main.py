@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from sailenv_ros import __version__
 from sailenv_ros.errors import SailenvError
 
-__all__ = ["COMMANDS", "main"]
+__all__ = ["COMMANDS", "command_parser", "main"]
 
 COMMANDS = {
     "behaviours": "list how objects can move of themselves, with every parameter",
@@ -37,6 +37,21 @@ COMMANDS = {
 """Purpose of each subcommand, by its name, which is also the name of its module."""
 
 
+def command_parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """Return the parser of a command line; it knows the options of the command that is named."""
+    parser = argparse.ArgumentParser(
+        prog="sailenv", description="A virtual visual environment: its tools for the command line."
+    )
+    parser.add_argument("--version", action="version", version=f"sailenv_ros {__version__}")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, purpose in COMMANDS.items():
+        if list(words[:1]) == [name]:
+            importlib.import_module(f"sailenv_ros.cli.{name}").add_parser(subparsers)
+        else:
+            subparsers.add_parser(name, help=purpose)
+    return parser
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; return its exit status.
 
@@ -47,17 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         130 after Ctrl-C.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    parser = argparse.ArgumentParser(
-        prog="sailenv", description="A virtual visual environment: its tools for the command line."
-    )
-    parser.add_argument("--version", action="version", version=f"sailenv_ros {__version__}")
-    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, purpose in COMMANDS.items():
-        if words[:1] == [name]:
-            importlib.import_module(f"sailenv_ros.cli.{name}").add_parser(subparsers)
-        else:
-            subparsers.add_parser(name, help=purpose)
-    args = parser.parse_args(words)
+    args = command_parser(words).parse_args(words)
     try:
         status = int(args.run(args))
         sys.stdout.flush()  # here, where a reader that has gone is still caught

@@ -16,10 +16,10 @@ from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet, save_pi
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.labels import CategoryTable
-from sailenv_ros.types.validation import checked_integer, checked_number
+from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 
 __all__ = ["add_arguments", "render_scene"]
@@ -94,9 +94,9 @@ def _check(args: argparse.Namespace) -> None:
     if args.plain and count != 1:
         accepted = "drawn with --views NAME and no more than one --time: it is one picture"
         raise InvalidRequest("--plain", f"{count} pictures", accepted)
-    checked_integer("--width", args.width, MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
-    checked_integer("--height", args.height, MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
-    checked_number("--fov", args.fov, 1.0, 170.0, unit="deg")
+    INTRINSICS_LIMITS["width"].integer("--width", args.width)
+    INTRINSICS_LIMITS["height"].integer("--height", args.height)
+    INTRINSICS_LIMITS["vertical_fov_deg"].number("--fov", args.fov)
     checked_integer("--columns", args.columns, 1, 1000)
     for name in args.views:
         if name not in VIEWS:

@@ -14,7 +14,7 @@ from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.placing import Aimed
 from sailenv_ros.scene.rules import at_most_one, few_samples
 from sailenv_ros.scene.spec_picture import PictureSpec
-from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
@@ -31,9 +31,7 @@ __all__ = [
 
 Range: TypeAlias = tuple[float, float]
 
-_Size: TypeAlias = Annotated[
-    int, Number(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
-]
+_Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
 _Metres: TypeAlias = Annotated[float, Number(least=0.0, most=1e3, unit="m")]
 _Degrees: TypeAlias = Annotated[float, Number(least=-90.0, most=90.0, unit="deg")]
 _Turn: TypeAlias = Annotated[float, Number(least=-720.0, most=720.0, unit="deg/s")]
@@ -72,7 +70,7 @@ class CameraModel(SceneModel):
     ] = Field(default="camera", description="unique among the cameras of the recipe")
     width: _Size = Field(default=640, description="of its pictures [px]")
     height: _Size = Field(default=480, description="of its pictures [px]")
-    vertical_fov: Annotated[float, Number(least=1.0, most=170.0, unit="deg")] = Field(
+    vertical_fov: Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])] = Field(
         default=_LENS.vertical_fov_deg, description="full vertical angle of view [deg]"
     )
     picture: PictureSpec = Field(

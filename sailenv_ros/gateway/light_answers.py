@@ -5,12 +5,12 @@ Colours on the wire are red, green, blue from 0 to 255 (sRGB); ours are linear.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from typing import Any
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_floats, pack_ints, pack_string, pack_strings
-from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
+from sailenv_ros.gateway.steps import Answer, Ask, in_words, one_line
 from sailenv_ros.gateway.unity import unity_from_vector, vector_from_unity
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.types.colour import linear_from_srgb8, srgb8_from_linear
@@ -25,6 +25,28 @@ LIGHT_NOT_FOUND = "light_not_found"
 Vector3 = tuple[float, float, float]
 
 
+def _linear(red: int, green: int, blue: int) -> Vector3:
+    return linear_from_srgb8("colour", (red, green, blue))
+
+
+def _attribute(
+    name: str, pack: Callable[[Any], bytes], unpack: Callable[..., Any]
+) -> tuple[Callable[..., Answer], Callable[..., Answer]]:
+    """Return the answers that read and write an attribute of a light, by its name in `Light`."""
+
+    def read(self: LightAnswers, light: str) -> Answer:
+        try:
+            found: Light = yield Ask(Operations.get_light, light)
+            return [pack_string("ok"), pack(getattr(found, name))]
+        except SailenvError as error:
+            return [pack_string(one_line(error))]
+
+    def write(self: LightAnswers, light: str, **fields: Any) -> Answer:
+        return in_words(lambda: Ask(Operations.set_light, light, **{name: unpack(**fields)}))
+
+    return read, write
+
+
 class LightAnswers:
     """Answers about lights; the method's name is the command's.
 
@@ -36,6 +58,26 @@ class LightAnswers:
 
     def __init__(self, info: Callable[[], SceneInfo]) -> None:
         self._info = info
+
+    get_light_colour, set_light_colour = _attribute(
+        "colour", lambda colour: pack_ints(*srgb8_from_linear(colour)), _linear
+    )
+    get_light_intensity, set_light_intensity = _attribute(
+        "intensity", pack_floats, lambda value: value
+    )
+    get_light_indirect, set_light_indirect = _attribute(
+        "indirect_multiplier", pack_floats, lambda value: value
+    )
+    get_light_position, set_light_position = _attribute(
+        "position_m",
+        lambda ours: pack_floats(*unity_from_vector(ours)),
+        lambda vector: vector_from_unity("position", vector),
+    )
+    get_light_direction, set_light_direction = _attribute(
+        "direction",
+        lambda ours: pack_floats(*unity_from_vector(ours)),
+        lambda vector: vector_from_unity("direction", vector),
+    )
 
     def get_lights(self) -> Answer:
         """Return the lights' names."""
@@ -50,48 +92,6 @@ class LightAnswers:
             return [pack_string(LIGHT_NOT_FOUND)]
         return [pack_string(found.type)]
 
-    def get_light_colour(self, light: str) -> Answer:
-        """Return a light's colour."""
-        return (yield from _read(light, lambda it: pack_ints(*srgb8_from_linear(it.colour))))
-
-    def set_light_colour(self, light: str, red: int, green: int, blue: int) -> Answer:
-        """Change a light's colour."""
-        return (yield from _written(light, lambda: {"colour": _linear(red, green, blue)}))
-
-    def get_light_intensity(self, light: str) -> Answer:
-        """Return a light's intensity."""
-        return (yield from _read(light, lambda it: pack_floats(it.intensity)))
-
-    def set_light_intensity(self, light: str, value: float) -> Answer:
-        """Change a light's intensity."""
-        return (yield from _written(light, lambda: {"intensity": value}))
-
-    def get_light_indirect(self, light: str) -> Answer:
-        """Return the factor of a light's bounced part."""
-        return (yield from _read(light, lambda it: pack_floats(it.indirect_multiplier)))
-
-    def set_light_indirect(self, light: str, value: float) -> Answer:
-        """Change the factor of a light's bounced part."""
-        return (yield from _written(light, lambda: {"indirect_multiplier": value}))
-
-    def get_light_position(self, light: str) -> Answer:
-        """Return where a light is."""
-        return (yield from _read(light, lambda it: pack_floats(*unity_from_vector(it.position_m))))
-
-    def set_light_position(self, light: str, vector: Vector3) -> Answer:
-        """Move a light."""
-        position = ("position", vector)
-        return (yield from _written(light, lambda: {"position_m": vector_from_unity(*position)}))
-
-    def get_light_direction(self, light: str) -> Answer:
-        """Return where a light travels to."""
-        return (yield from _read(light, lambda it: pack_floats(*unity_from_vector(it.direction))))
-
-    def set_light_direction(self, light: str, vector: Vector3) -> Answer:
-        """Change where a light travels to; a direction of any length."""
-        direction = ("direction", vector)
-        return (yield from _written(light, lambda: {"direction": vector_from_unity(*direction)}))
-
     def get_ambient_colour(self) -> Answer:
         """Return the colour of the light that arrives from everywhere."""
         yield from ()
@@ -99,39 +99,10 @@ class LightAnswers:
 
     def set_ambient_colour(self, red: int, green: int, blue: int) -> Answer:
         """Change the colour of the light that arrives from everywhere."""
-        return (yield from in_words(_with_ambient(red, green, blue)))
+        return in_words(lambda: Ask(Operations.set_ambient_light, _linear(red, green, blue)))
 
     def set_background(self, red: int, green: int, blue: int) -> Answer:
         """Show a colour where nothing is hit, or the sky if one channel is negative."""
-        return (yield from in_words(_with_background(red, green, blue)))
-
-
-def _read(name: str, pack: Callable[[Light], bytes]) -> Answer:
-    try:
-        light: Light = yield Ask(Operations.get_light, name)
-        return [pack_string("ok"), pack(light)]
-    except SailenvError as error:
-        return [pack_string(one_line(error))]
-
-
-def _written(name: str, changes: Callable[[], dict[str, Any]]) -> Answer:
-    return (yield from in_words(_changed(name, changes)))
-
-
-def _changed(name: str, changes: Callable[[], dict[str, Any]]) -> Generator[Step, Any, None]:
-    yield Ask(Operations.set_light, name, **changes())
-
-
-def _with_ambient(red: int, green: int, blue: int) -> Generator[Step, Any, None]:
-    yield Ask(Operations.set_ambient_light, _linear(red, green, blue))
-
-
-def _with_background(red: int, green: int, blue: int) -> Generator[Step, Any, None]:
-    if min(red, green, blue) < 0:
-        yield Ask(Operations.set_background, "sky")
-    else:
-        yield Ask(Operations.set_background, "colour", _linear(red, green, blue))
-
-
-def _linear(red: int, green: int, blue: int) -> Vector3:
-    return linear_from_srgb8("colour", (red, green, blue))
+        if min(red, green, blue) < 0:
+            return in_words(lambda: Ask(Operations.set_background, "sky"))
+        return in_words(lambda: Ask(Operations.set_background, "colour", _linear(red, green, blue)))

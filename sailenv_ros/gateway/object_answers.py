@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Generator
-from typing import Any
+from collections.abc import Callable
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_string, pack_strings
@@ -14,7 +13,7 @@ from sailenv_ros.gateway.scenario_json import (
     mapping_of_json,
 )
 from sailenv_ros.gateway.scene_names import scene_of_wire
-from sailenv_ros.gateway.steps import Answer, Ask, Step, in_words, one_line
+from sailenv_ros.gateway.steps import Answer, Ask, in_words, one_line
 from sailenv_ros.gateway.unity import pose_from_unity, scale_from_unity
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.types.scene_info import SceneInfo
@@ -84,11 +83,13 @@ class ObjectAnswers:
 
     def despawn_object(self, id: int) -> Answer:
         """Take an object out of the scene."""
-        return (yield from in_words(_despawned(id)))
+        return in_words(lambda: Ask(Operations.despawn_object, id))
 
     def move_object(self, id: int, position: Vector3, rotation: Vector3) -> Answer:
         """Move an object."""
-        return (yield from in_words(_moved_object(id, position, rotation)))
+        return in_words(
+            lambda: Ask(Operations.move_object, id, pose=pose_from_unity(position, rotation))
+        )
 
     def spawn_view_frustum(self) -> Answer:
         """Do nothing: what stays in a view needs no body around it. Nothing is answered."""
@@ -126,13 +127,3 @@ class ObjectAnswers:
             _log.warning("the model %r was refused: %s", filename, one_line(error))
             return [pack_string(f"error: {one_line(error)}")]
         return [pack_string(name)]
-
-
-def _moved_object(
-    instance_id: int, position: Vector3, rotation: Vector3
-) -> Generator[Step, Any, None]:
-    yield Ask(Operations.move_object, instance_id, pose=pose_from_unity(position, rotation))
-
-
-def _despawned(instance_id: int) -> Generator[Step, Any, None]:
-    yield Ask(Operations.despawn_object, instance_id)

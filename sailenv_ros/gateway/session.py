@@ -122,10 +122,7 @@ class Session:
 
     def change_scene(self, name: str) -> Answer:
         """Change the scene, for everybody."""
-        return (yield from in_words(self._changed_scene(name)))
-
-    def _changed_scene(self, name: str) -> Generator[Step, Any, None]:
-        yield Ask(Operations.change_scene, scene_of_wire(name, self._info()))
+        return in_words(lambda: Ask(Operations.change_scene, scene_of_wire(name, self._info())))
 
     def get_categories(self) -> Answer:
         """Return the number and name of each category."""
@@ -143,11 +140,10 @@ class Session:
 
     def set_position(self, position: Vector3) -> Answer:
         """Move the agent, or the mover that it follows."""
-        return (yield from in_words(self._moved(position)))
-
-    def _moved(self, position: Vector3) -> Generator[Step, Any, None]:
-        yield Ask(
-            Operations.set_position, vector_from_unity("position", position), agent=self.agent
+        return in_words(
+            lambda: Ask(
+                Operations.set_position, vector_from_unity("position", position), agent=self.agent
+            )
         )
 
     def get_rotation(self) -> Answer:
@@ -157,15 +153,14 @@ class Session:
 
     def set_rotation(self, rotation: Vector3) -> Answer:
         """Turn the agent, or the mover that it follows."""
-        return (yield from in_words(self._turned(rotation)))
-
-    def _turned(self, rotation: Vector3) -> Generator[Step, Any, None]:
-        turn = pose_from_unity((0.0, 0.0, 0.0), rotation)
-        yield Ask(Operations.set_rotation, turn.rpy_deg, agent=self.agent)
+        return in_words(
+            lambda: Ask(
+                Operations.set_rotation,
+                pose_from_unity((0.0, 0.0, 0.0), rotation).rpy_deg,
+                agent=self.agent,
+            )
+        )
 
     def toggle_follow(self) -> Answer:
         """Follow the mover, or stop."""
-        return (yield from in_words(self._toggled()))
-
-    def _toggled(self) -> Generator[Step, Any, None]:
-        yield Ask(Operations.toggle_follow, agent=self.agent)
+        return in_words(lambda: Ask(Operations.toggle_follow, agent=self.agent))

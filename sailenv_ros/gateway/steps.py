@@ -53,10 +53,16 @@ Answer: TypeAlias = Generator[Step, Any, Sequence[bytes]]
 """Yields steps, is sent their results or thrown their errors, returns the bytes to send."""
 
 
-def in_words(asking: Generator[Step, Any, object]) -> Answer:
-    """Answer ``ok`` when all is done, else with the sentence of what went wrong."""
+def in_words(asked: Callable[[], Ask]) -> Answer:
+    """Answer ``ok`` when what is asked for is done, else with the sentence of what went wrong.
+
+    Parameters
+    ----------
+    asked : callable
+        Gives the operation; what it raises is told as well.
+    """
     try:
-        yield from asking
+        yield asked()
     except SailenvError as error:
         _log.warning("a client's request was refused: %s", one_line(error))
         return [pack_string(one_line(error))]

@@ -6,17 +6,16 @@ accepts, and describes itself to JSON Schema. They know no particular scene entr
 
 from __future__ import annotations
 
-import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-from sailenv_ros.scene.messages import nearest, shown, shown_number
+from sailenv_ros.scene.messages import nearest, shown
 from sailenv_ros.types.colour import hex_from_linear, linear_from_hex
-from sailenv_ros.types.validation import is_integer, is_number
+from sailenv_ros.types.validation import Bounds, is_number, shown_number
 
 __all__ = [
     "FIELD_ERROR",
@@ -70,77 +69,29 @@ class _FieldType:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Number(_FieldType):
+class Number(Bounds, _FieldType):
     """A finite number within bounds; for ``Annotated[float, Number(...)]``.
 
     Attributes
     ----------
-    above : float or None
-        Exclusive lower bound.
-    least, most : float or None
-        Inclusive bounds.
-    unit : str
-        Shown in brackets; empty for pure numbers.
-    whole : bool
-        True if only integers are accepted.
     hint : str
         Added to the sentence of a refusal.
     """
 
-    above: float | None = None
-    least: float | None = None
-    most: float | None = None
-    unit: str = ""
-    whole: bool = False
     hint: str = ""
 
-    @property
-    def accepted(self) -> str:
-        """All that is accepted, e.g. ``"a number above 0 and at most 100 [kg]"``."""
-        return self._phrase(self._low(), self.most)
+    @classmethod
+    def within(cls, bounds: Bounds) -> Number:
+        """Return the field of a number that a data class has these bounds for."""
+        return cls(**{each.name: getattr(bounds, each.name) for each in fields(Bounds)})
 
     def check(self, value: object) -> float | int:
         """Return the number, or raise a `field_error`."""
-        if not is_number(value) or (self.whole and not is_integer(value)):
-            raise field_error(f"must be {self.accepted}, got {shown(value)}")
-        try:
-            number = value if self.whole else float(value)
-        except OverflowError:
-            number = math.inf
-        accepted = self._missed(number)
-        if accepted:
-            hint = f" {self.hint}" if self.hint else ""
+        accepted = self.refused(value)
+        if accepted or not is_number(value):
+            hint = f" {self.hint}" if self.hint and is_number(value) else ""
             raise field_error(f"must be {accepted}, got {shown(value)}{hint}")
-        return number
-
-    def _missed(self, number: float | int) -> str:
-        """Return what the number should have been; nothing if it is accepted."""
-        if not math.isfinite(number):
-            return self.accepted
-        if (self.above is not None and number <= self.above) or (
-            self.least is not None and number < self.least
-        ):
-            # Only the bound that was missed is told, where it is not one of a close pair.
-            return self._phrase(self._low(), None) if self.least is None else self.accepted
-        return self.accepted if self.most is not None and number > self.most else ""
-
-    def _low(self) -> float | None:
-        return self.least if self.above is None else self.above
-
-    def _phrase(self, low: float | None, most: float | None) -> str:
-        noun = "an integer" if self.whole else "a number"
-        unit = f" [{self.unit}]" if self.unit else ""
-        if low is not None and low == most:
-            return f"{shown_number(low)}{unit}"
-        if low is None:
-            bounds = "" if most is None else f" of at most {shown_number(most)}"
-        elif self.above is not None:
-            bounds = f" above {shown_number(low)}"
-            bounds += "" if most is None else f" and at most {shown_number(most)}"
-        else:
-            bounds = f" from {shown_number(low)}"
-            bounds += " up" if most is None else f" to {shown_number(most)}"
-        return f"{noun}{bounds}{unit}"
+        return value if self.whole else float(value)
 
     def json_schema(self) -> dict[str, Any]:
         """Describe it to JSON Schema."""

@@ -1,6 +1,6 @@
 """The base of all scene models, and the types of their fields with bounds and units.
 
-Builds on `kinds`; knows no particular scene entry.
+Builds on `field_types`; knows no particular scene entry.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
 from sailenv_ros.scene.field_types import Colour, Number, Several, Text
+from sailenv_ros.types.lights import MAX_RADIANCE
 
 __all__ = [
     "BROKEN_RULE",
@@ -71,7 +72,7 @@ class SceneModel(BaseModel):
 
 
 LinearColour: TypeAlias = Annotated[tuple[float, float, float], Colour()]
-Radiance: TypeAlias = Annotated[tuple[float, float, float], Colour(most=1e6)]
+Radiance: TypeAlias = Annotated[tuple[float, float, float], Colour(most=MAX_RADIANCE)]
 Fraction: TypeAlias = Annotated[float, Number(least=0.0, most=1.0)]
 
 Name: TypeAlias = Annotated[

@@ -8,7 +8,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["nearest", "shown", "shown_number", "suggestion"]
+__all__ = ["nearest", "shown", "suggestion"]
 
 _MAX_SHOWN = 60
 _MAX_LISTED = 10
@@ -25,11 +25,6 @@ def shown(value: object) -> str:
     if isinstance(value, list | tuple):
         return _shortened("[" + ", ".join(shown(entry) for entry in value[:8]) + "]")
     return _shortened(" ".join(repr(value).split()))
-
-
-def shown_number(value: float) -> str:
-    """Show a number without needless digits: 1000000, 0.001."""
-    return f"{value:.10g}"
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:

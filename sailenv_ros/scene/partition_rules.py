@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from sailenv_ros.scene.messages import shown, shown_number
+from sailenv_ros.scene.messages import shown
 from sailenv_ros.scene.room_rules import DOOR_SIZE_M, room_part_names
-from sailenv_ros.types.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = [
     "along_an_axis",

@@ -134,12 +134,13 @@ def _plain(entry: Mapping[str, Any]) -> str:
 
 
 def _number(entry: Mapping[str, Any]) -> str:
-    low = entry.get("minimum", entry.get("exclusiveMinimum"))
-    high = entry.get("maximum", entry.get("exclusiveMaximum"))
+    above, high = entry.get("exclusiveMinimum"), entry.get("maximum")
+    low = entry.get("minimum", above)
     noun = "whole number" if entry.get("type") == "integer" else "number"
     if low is None or high is None or high >= 1e4:
-        return noun if low is None or low < 0 else f"{noun} ≥ {low:g}"
-    return f"{noun} {low:g} to {high:g}"
+        sign = "≥" if above is None else ">"
+        return noun if low is None or low < 0 else f"{noun} {sign} {low:g}"
+    return f"{noun} {low:g} to {high:g}" if above is None else f"{noun} > {low:g}, ≤ {high:g}"
 
 
 def _link(reference_path: str) -> str:

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias
 
-from sailenv_ros.scene.messages import shown, shown_number
-from sailenv_ros.types.validation import is_finite_number
+from sailenv_ros.scene.messages import shown
+from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = [
     "DOOR_SIZE_M",

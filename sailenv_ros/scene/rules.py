@@ -11,10 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from sailenv_ros.scene.fields import Rule
-from sailenv_ros.scene.messages import shown, shown_number, suggestion
+from sailenv_ros.scene.messages import shown, suggestion
 from sailenv_ros.types.labels import UNLABELLED_CATEGORY
 from sailenv_ros.types.picture_settings import LIMITS
-from sailenv_ros.types.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = [
     "Faults",
@@ -78,7 +78,7 @@ def few_samples(most: int, defaults: Mapping[str, int]) -> Rule:
     def rule(entry: Entry) -> Faults:
         picture = entry.get("picture")
         times = picture.get("supersampling", 1) if isinstance(picture, Mapping) else 1
-        if not is_finite_number(times) or times > LIMITS["supersampling"][1]:
+        if LIMITS["supersampling"].refused(times):
             return
         for key in ("width", "height"):
             size = entry.get(key, defaults[key])

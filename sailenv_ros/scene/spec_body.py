@@ -18,8 +18,7 @@ _DEFAULTS = RigidBody()
 
 
 def _within_limits(name: str) -> Number:
-    low, high, unit = RIGID_BODY_LIMITS[name]
-    return Number(least=low, most=high, unit=unit)
+    return Number.within(RIGID_BODY_LIMITS[name])
 
 
 class BodySpec(SceneModel):

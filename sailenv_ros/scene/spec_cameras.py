@@ -13,17 +13,15 @@ from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_
 from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
 from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
-from sailenv_ros.types.agents import MAX_RATE_HZ, AgentSpec
-from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.agents import RATE, AgentSpec
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
 __all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
 
-_Size: TypeAlias = Annotated[
-    int, Number(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
-]
-_Clip: TypeAlias = Annotated[float, Number(least=1e-3, most=1e4, unit="m")]
+_Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
+_Clip: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["near_m"])]
 _ViewName: TypeAlias = Annotated[str, Choice(RENDERED_VIEWS)]
 
 Controller = Literal["waypoint", "rigidbody"]
@@ -106,7 +104,7 @@ class AgentSpecModel(Turned):
     ] = Field(description="unique among the agents; a part of its topics' names")
     width: _Size = Field(default=_DEFAULTS.width, description="of its pictures [px]")
     height: _Size = Field(default=_DEFAULTS.height, description="of its pictures [px]")
-    vertical_fov: Annotated[float, Number(least=1.0, most=170.0, unit="deg")] = Field(
+    vertical_fov: Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])] = Field(
         default=_DEFAULTS.vertical_fov_deg, description="full vertical angle of view [deg]"
     )
     near: _Clip = Field(default=_DEFAULTS.near_m, description="nearest depth that is seen [m]")
@@ -114,7 +112,7 @@ class AgentSpecModel(Turned):
     depth_range: _Clip = Field(
         default=10.0, description="depth that the 8-bit depth picture shows as black [m]"
     )
-    rate: Annotated[float, Number(least=0.0, most=MAX_RATE_HZ, unit="Hz")] = Field(
+    rate: Annotated[float, Number.within(RATE)] = Field(
         default=30.0, description="frames per simulated second [Hz]; 0: on request only"
     )
     views: tuple[_ViewName, ...] = Field(

@@ -18,9 +18,9 @@ from sailenv_ros.scene.fields import (
     Rule,
     SceneModel,
 )
-from sailenv_ros.scene.messages import shown, shown_number, suggestion
+from sailenv_ros.scene.messages import shown, suggestion
 from sailenv_ros.scene.rules import Faults
-from sailenv_ros.types.validation import is_finite_number
+from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = ["JointSpec", "joints_hold", "on_a_joint"]
 

@@ -7,7 +7,7 @@ from typing import Annotated, get_args
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Choice, Number, Switch
-from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.scene.fields import SceneModel
 from sailenv_ros.types.picture_settings import LIMITS, PictureSettings, ToneCurve
 
 __all__ = ["PictureSpec"]
@@ -15,9 +15,8 @@ __all__ = ["PictureSpec"]
 _STANDARD = PictureSettings()
 
 
-def _number(name: str, *, whole: bool = False) -> Number:
-    low, high, unit = LIMITS[name]
-    return Number(least=low, most=high, unit=unit, whole=whole)
+def _number(name: str) -> Number:
+    return Number.within(LIMITS[name])
 
 
 class PictureSpec(SceneModel):
@@ -31,7 +30,7 @@ class PictureSpec(SceneModel):
         default=_STANDARD.tone_curve,
         description="filmic rolls highlights off; linear is plain sRGB, cut off at white",
     )
-    occlusion_strength: Fraction = Field(
+    occlusion_strength: Annotated[float, _number("occlusion_strength")] = Field(
         default=_STANDARD.occlusion_strength,
         description="how much corners and contacts darken the light from around; 0: off",
     )
@@ -42,11 +41,11 @@ class PictureSpec(SceneModel):
     smooth_edges: Annotated[bool, Switch()] = Field(
         default=_STANDARD.smooth_edges, description="true if stair-steps are smoothed"
     )
-    supersampling: Annotated[int, _number("supersampling", whole=True)] = Field(
+    supersampling: Annotated[int, _number("supersampling")] = Field(
         default=_STANDARD.supersampling,
         description="samples on a side of a pixel, whose light is averaged; 1: its centre alone",
     )
-    bloom: Fraction = Field(
+    bloom: Annotated[float, _number("bloom")] = Field(
         default=_STANDARD.bloom, description="share of the light that is spread around; 0: off"
     )
     full_well: Annotated[float, _number("full_well")] = Field(

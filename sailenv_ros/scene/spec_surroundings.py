@@ -6,10 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number
-from sailenv_ros.scene.fields import Direction, Fraction, Name, Position, Radiance, Rule, SceneModel
+from sailenv_ros.scene.field_types import Choice, Number, Switch
+from sailenv_ros.scene.fields import Direction, Name, Position, Radiance, Rule, SceneModel
 from sailenv_ros.scene.rules import below, without_zero_length
-from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.lights import ENVIRONMENT_LIMITS, LIGHT_LIMITS, Environment, Light
 
 __all__ = [
     "AreaLightSpec",
@@ -20,11 +20,26 @@ __all__ = [
     "SpotLightSpec",
 ]
 
-_Strength: TypeAlias = Annotated[float, Number(least=0.0, most=1e6)]
-_Length: TypeAlias = Annotated[float, Number(above=0.0, most=1e3, unit="m")]
-_HalfAngle: TypeAlias = Annotated[float, Number(least=0.0, most=89.0, unit="deg")]
-
 _STANDARD = Environment()
+
+
+def _of_light(name: str) -> Number:
+    return Number.within(LIGHT_LIMITS[name])
+
+
+def _of_environment(name: str) -> Number:
+    return Number.within(ENVIRONMENT_LIMITS[name])
+
+
+_KEYS = {
+    "position": "position_m",
+    "range": "range_m",
+    "inner_cone": "inner_cone_deg",
+    "outer_cone": "outer_cone_deg",
+    "width": "width_m",
+    "height": "height_m",
+}
+"""Attributes of `Light` by the keys that have not their unit."""
 
 
 class EnvironmentSpec(SceneModel):
@@ -45,7 +60,7 @@ class EnvironmentSpec(SceneModel):
     sky_ground: Radiance = Field(
         default=_STANDARD.sky_ground, description="below the horizon, where there is no object"
     )
-    sky_share: Fraction = Field(
+    sky_share: Annotated[float, _of_environment("sky_share")] = Field(
         default=_STANDARD.sky_share,
         description="share of the sky's light that reaches the objects: 1 outdoors, about 0.2 in "
         "a room",
@@ -55,17 +70,17 @@ class EnvironmentSpec(SceneModel):
         max_length=200,
         description="name of a photographed sky, e.g. forest; empty for that of the three colours",
     )
-    sky_rotation: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
+    sky_rotation: Annotated[float, _of_environment("sky_rotation")] = Field(
         default=_STANDARD.sky_rotation,
         description="turns the photographed sky about the vertical, counter-clockwise as seen from "
         "above [deg], so that its sun stands where the light does",
     )
-    sky_blend: bool = Field(
+    sky_blend: Annotated[bool, Switch()] = Field(
         default=_STANDARD.sky_blend,
         description="shows the photographed sky as bright as a photographer would blend it with "
         "the room; false shows its radiance as it is, mostly white behind windows",
     )
-    exposure: Annotated[float, Number(least=-20.0, most=20.0, unit="stops")] = Field(
+    exposure: Annotated[float, _of_environment("exposure")] = Field(
         default=_STANDARD.exposure,
         description="the picture is brightened by 2 to the power of it [stops]",
     )
@@ -80,27 +95,19 @@ class _LightBase(SceneModel):
 
     name: Name = Field(description="unique among the lights of the scene")
     colour: Radiance = Field(default=(1.0, 1.0, 1.0), description="colour of the light")
-    intensity: _Strength = Field(
+    intensity: Annotated[float, _of_light("intensity")] = Field(
         default=1.0,
         description="irradiance at normal incidence [W/m2] of a directional light, radiant "
         "intensity [W/sr] of a point or spot light, radiance [W/(m2 sr)] of an area light",
     )
-    indirect_multiplier: _Strength = Field(
+    indirect_multiplier: Annotated[float, _of_light("indirect_multiplier")] = Field(
         default=1.0, description="scales only the light that bounces"
     )
 
     def to_light(self) -> Light:
         """Return the data type that the renderer takes."""
-        units = {
-            "position": "position_m",
-            "range": "range_m",
-            "inner_cone": "inner_cone_deg",
-            "outer_cone": "outer_cone_deg",
-            "width": "width_m",
-            "height": "height_m",
-        }
         given: dict[str, Any] = self.model_dump()
-        return Light(**{units.get(key, key): value for key, value in given.items()})
+        return Light(**{_KEYS.get(key, key): value for key, value in given.items()})
 
 
 class DirectionalLightSpec(_LightBase):
@@ -119,7 +126,9 @@ class PointLightSpec(_LightBase):
 
     type: Literal["point"]
     position: Position = Field(default=(0.0, 0.0, 3.0), description="where it is [m]")
-    range: _Length = Field(default=20.0, description="beyond it the light has no effect [m]")
+    range: Annotated[float, _of_light("range_m")] = Field(
+        default=20.0, description="beyond it the light has no effect [m]"
+    )
 
 
 class SpotLightSpec(PointLightSpec):
@@ -134,10 +143,10 @@ class SpotLightSpec(PointLightSpec):
     direction: Direction = Field(
         default=(0.0, 0.0, -1.0), description="where the light travels to, any length"
     )
-    inner_cone: _HalfAngle = Field(
+    inner_cone: Annotated[float, _of_light("inner_cone_deg")] = Field(
         default=20.0, description="half angle of the full brightness [deg]"
     )
-    outer_cone: _HalfAngle = Field(
+    outer_cone: Annotated[float, _of_light("outer_cone_deg")] = Field(
         default=35.0, description="half angle where the brightness has gone to 0 [deg]"
     )
 
@@ -152,8 +161,8 @@ class AreaLightSpec(_LightBase):
     direction: Direction = Field(
         default=(0.0, 0.0, -1.0), description="where its front looks, any length"
     )
-    width: _Length = Field(default=1.0, description="its size [m]")
-    height: _Length = Field(default=1.0, description="its size [m]")
+    width: Annotated[float, _of_light("width_m")] = Field(default=1.0, description="its size [m]")
+    height: Annotated[float, _of_light("height_m")] = Field(default=1.0, description="its size [m]")
 
 
 LightSpec: TypeAlias = Annotated[

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
-from sailenv_ros.types.scene_info import TimeMode
+from sailenv_ros.errors import InvalidState, UnknownName
+from sailenv_ros.types.scene_info import REAL_TIME_FACTOR, TimeMode
+from sailenv_ros.types.validation import checked_flag
 
 __all__ = ["Clock"]
 
@@ -30,7 +31,7 @@ class Clock:
         if mode not in _MODES:
             raise UnknownName("mode", str(mode), _MODES)
         self.mode: TimeMode = mode
-        self.paused = paused
+        self.paused = checked_flag("paused", paused)
         self.set_real_time_factor(real_time_factor)
 
     @property
@@ -63,8 +64,4 @@ class Clock:
 
     def set_real_time_factor(self, factor: float) -> None:
         """Change the speed of simulated time."""
-        value: object = factor
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not 0.1 <= factor <= 10.0:
-            raise InvalidRequest("real_time_factor", factor, "a number from 0.1 to 10")
-        self._real_time_factor = factor
+        self._real_time_factor = REAL_TIME_FACTOR.number("real_time_factor", factor)

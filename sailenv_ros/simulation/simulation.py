@@ -34,7 +34,7 @@ from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for
-from sailenv_ros.types.agents import AgentSpec, check_frame_rate
+from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.lessons import LessonState
@@ -276,7 +276,7 @@ class Simulation(Operations):
         SimulationClosed, DeadlineExceeded
             If no frame came in time.
         """
-        check_frame_rate(rate_hz)
+        WAITED_RATE.number("rate_hz", rate_hz)
         name = agent or self.own_agent or next((spec.name for spec in self.info.agents), "")
         with self.stream(name, self._own_views(name)) as stream:
             self.set_rate(rate_hz, agent=name)

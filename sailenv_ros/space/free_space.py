@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,12 +17,21 @@ from numpy.typing import ArrayLike, NDArray
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.space.paths import GridGraph, straightened
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.validation import checked_integer, checked_number, vector
+from sailenv_ros.types.validation import Bounds, check_bounds, checked_integer, vector
 
-__all__ = ["FREE", "OCCUPIED", "UNKNOWN", "BodySize", "FreeSpace"]
+__all__ = ["BODY_LIMITS", "FREE", "OCCUPIED", "UNKNOWN", "BodySize", "FreeSpace"]
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """Values of cells, those of nav_msgs/OccupancyGrid; unknown is where there is no floor."""
+
+BODY_LIMITS: Mapping[str, Bounds] = {
+    "height_m": Bounds(least=0.01, most=100.0, unit="m"),
+    "radius_m": Bounds(least=0.0, most=10.0, unit="m"),
+    "floor_m": Bounds(least=-1e4, most=1e4, unit="m"),
+    "step_m": Bounds(least=0.0, most=100.0, unit="m"),
+    "resolution_m": Bounds(least=0.005, most=1.0, unit="m"),
+}
+"""Bounds of each number of `BodySize`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,16 +57,7 @@ class BodySize:
     resolution_m: float = 0.05
 
     def __post_init__(self) -> None:
-        limits = {
-            "height_m": (0.01, 100.0),
-            "radius_m": (0.0, 10.0),
-            "floor_m": (-1e4, 1e4),
-            "step_m": (0.0, 100.0),
-            "resolution_m": (0.005, 1.0),
-        }
-        for name, (low, high) in limits.items():
-            value = checked_number(name, getattr(self, name), low, high, unit="m")
-            object.__setattr__(self, name, value)
+        check_bounds(self, BODY_LIMITS)
         if self.step_m >= self.height_m:
             raise InvalidRequest("step_m", self.step_m, f"below the height, {self.height_m:g} m")
 

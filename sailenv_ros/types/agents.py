@@ -13,31 +13,20 @@ from sailenv_ros.types.camera import CameraIntrinsics, require_drawable
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.validation import IDENTIFIER, checked_number, is_finite_number, is_number
+from sailenv_ros.types.validation import IDENTIFIER, Bounds, checked_flag, is_finite_number
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS, checked_views
 
-__all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "AgentPose", "AgentSpec"]
+__all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "RATE", "WAITED_RATE", "AgentPose", "AgentSpec"]
 
 MAX_AGENTS = 16
 MAX_RATE_HZ = 240.0
 
 
-def checked_rate(what: str, value: object) -> float:
-    """Return a rate of streamed frames, 0 to `MAX_RATE_HZ`; see `validation.checked_number`."""
-    return checked_number(what, value, 0.0, MAX_RATE_HZ, unit="Hz")
+RATE = Bounds(least=0.0, most=MAX_RATE_HZ, unit="Hz")
+"""Rates of streamed frames."""
 
-
-def check_frame_rate(rate_hz: object) -> None:
-    """Check a rate of frames that somebody waits for.
-
-    Raises
-    ------
-    InvalidRequest
-        If it is no number above 0 and at most `MAX_RATE_HZ`.
-    """
-    if not is_number(rate_hz) or not 0.0 < rate_hz <= MAX_RATE_HZ:
-        accepted = f"a number above 0 and at most {MAX_RATE_HZ:g} [Hz]"
-        raise InvalidRequest("rate_hz", rate_hz, accepted)
+WAITED_RATE = Bounds(above=0.0, most=MAX_RATE_HZ, unit="Hz")
+"""Rates of frames that somebody waits for."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +75,8 @@ class AgentSpec:
                 "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
             )
         object.__setattr__(self, "views", checked_views(self.views, supported=RENDERED_VIEWS))
-        checked_rate("rate_hz", self.rate_hz)
+        RATE.number("rate_hz", self.rate_hz)
+        checked_flag("following", self.following)
         near = self.intrinsics.near_m
         if not (is_finite_number(self.depth_range_m) and self.depth_range_m > near):
             raise InvalidRequest(

@@ -8,6 +8,7 @@ z forward) [m]. OpenGL's clip axes appear in `clip_from_optical` alone.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -17,12 +18,31 @@ from numpy.typing import ArrayLike, NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.validation import checked_integer, checked_number
+from sailenv_ros.types.validation import Bounds, check_bounds
 
-__all__ = ["MAX_SIZE_PX", "MIN_SIZE_PX", "Camera", "CameraIntrinsics", "require_drawable"]
+__all__ = [
+    "INTRINSICS_LIMITS",
+    "MAX_SIZE_PX",
+    "MIN_SIZE_PX",
+    "Camera",
+    "CameraIntrinsics",
+    "require_drawable",
+]
 
 MIN_SIZE_PX = 8
 MAX_SIZE_PX = 4096
+
+_SIZE = Bounds(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
+_CLIP = Bounds(least=1e-3, most=1e4, unit="m")
+
+INTRINSICS_LIMITS: Mapping[str, Bounds] = {
+    "width": _SIZE,
+    "height": _SIZE,
+    "vertical_fov_deg": Bounds(least=1.0, most=170.0, unit="deg"),
+    "near_m": _CLIP,
+    "far_m": _CLIP,
+}
+"""Bounds of each number of `CameraIntrinsics`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,12 +71,7 @@ class CameraIntrinsics:
     far_m: float = 100.0
 
     def __post_init__(self) -> None:
-        for name in ("width", "height"):
-            size = checked_integer(name, getattr(self, name), MIN_SIZE_PX, MAX_SIZE_PX, unit="px")
-            object.__setattr__(self, name, size)
-        checked_number("vertical_fov_deg", self.vertical_fov_deg, 1.0, 170.0, unit="deg")
-        checked_number("near_m", self.near_m, 1e-3, 1e4, unit="m")
-        checked_number("far_m", self.far_m, 1e-3, 1e4, unit="m")
+        check_bounds(self, INTRINSICS_LIMITS)
         if self.near_m >= self.far_m:
             raise InvalidRequest("near_m", self.near_m, f"less than far_m = {self.far_m:g} [m]")
 

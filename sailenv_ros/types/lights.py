@@ -5,7 +5,7 @@ Colours are linear RGB. Positions and directions are in the world frame.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.types.validation import checked_number, vector
+from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag, vector
 
 __all__ = [
+    "ENVIRONMENT_LIMITS",
     "LIGHT_ATTRIBUTES",
     "LIGHT_LIMITS",
+    "MAX_RADIANCE",
     "Environment",
     "Light",
     "LightType",
@@ -27,16 +29,26 @@ __all__ = [
 
 LightType = Literal["directional", "point", "spot", "area"]
 
-LIGHT_LIMITS: dict[str, tuple[float, float, str]] = {
-    "intensity": (0.0, 1e6, ""),
-    "indirect_multiplier": (0.0, 1e6, ""),
-    "range_m": (0.0, 1e3, "m"),
-    "inner_cone_deg": (0.0, 89.0, "deg"),
-    "outer_cone_deg": (0.0, 89.0, "deg"),
-    "width_m": (0.0, 1e3, "m"),
-    "height_m": (0.0, 1e3, "m"),
+LIGHT_LIMITS: Mapping[str, Bounds] = {
+    "intensity": Bounds(least=0.0, most=1e6),
+    "indirect_multiplier": Bounds(least=0.0, most=1e6),
+    "range_m": Bounds(above=0.0, most=1e3, unit="m"),
+    "inner_cone_deg": Bounds(least=0.0, most=89.0, unit="deg"),
+    "outer_cone_deg": Bounds(least=0.0, most=89.0, unit="deg"),
+    "width_m": Bounds(above=0.0, most=1e3, unit="m"),
+    "height_m": Bounds(above=0.0, most=1e3, unit="m"),
 }
-"""Least and greatest value of each number of a light, and its unit."""
+"""Bounds of each number of a light."""
+
+ENVIRONMENT_LIMITS: Mapping[str, Bounds] = {
+    "sky_share": Bounds(least=0.0, most=1.0),
+    "sky_rotation": Bounds(least=-360.0, most=360.0, unit="deg"),
+    "exposure": Bounds(least=-20.0, most=20.0, unit="stops"),
+}
+"""Bounds of each number of an environment."""
+
+MAX_RADIANCE = 1e6
+"""Greatest value of each channel of a linear colour."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,11 +73,11 @@ class Light:
     direction : (3,) tuple of float
         Where the light travels to; of directional, spot and area lights. Unit length.
     range_m : float
-        Beyond it a point or spot light has no effect [m].
+        Beyond it a point or spot light has no effect, above 0 and at most 1000 [m].
     inner_cone_deg, outer_cone_deg : float
         Half angles of a spot light's full and vanishing brightness [deg].
     width_m, height_m : float
-        Size of an area light [m].
+        Size of an area light, above 0 and at most 1000 [m].
     """
 
     name: str
@@ -85,10 +97,7 @@ class Light:
         if self.type not in get_args(LightType):
             raise UnknownName(f"type of light {self.name!r}", str(self.type), get_args(LightType))
         colour = _radiance(f"colour of light {self.name!r}", self.colour)
-        for name, (low, high, unit) in LIGHT_LIMITS.items():
-            what = f"{name} of light {self.name!r}"
-            value = checked_number(what, getattr(self, name), low, high, unit=unit)
-            object.__setattr__(self, name, value)
+        check_bounds(self, LIGHT_LIMITS, after=f" of light {self.name!r}")
         if self.inner_cone_deg > self.outer_cone_deg:
             accepted = f"at most outer_cone_deg = {self.outer_cone_deg:g} [deg]"
             what = f"inner_cone_deg of light {self.name!r}"
@@ -195,10 +204,12 @@ class Environment:
             raise UnknownName("background", str(self.background), ("sky", "colour"))
         for name in ("ambient", "background_colour", "sky_zenith", "sky_horizon", "sky_ground"):
             object.__setattr__(self, name, _radiance(name, getattr(self, name)))
+        check_bounds(self, ENVIRONMENT_LIMITS)
+        checked_flag("sky_blend", self.sky_blend)
 
 
 def _radiance(what: str, colour: ArrayLike) -> tuple[float, float, float]:
-    checked = vector(what, colour, limit=1e6)
+    checked = vector(what, colour, limit=MAX_RADIANCE)
     if min(checked) < 0.0:
-        raise InvalidRequest(what, checked, "three numbers from 0 to 1e+06")
+        raise InvalidRequest(what, checked, f"three numbers from 0 to {MAX_RADIANCE:.10g}")
     return checked

@@ -10,24 +10,22 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.types.validation import checked_flag, checked_integer, checked_number
+from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag
 
 __all__ = ["LIMITS", "NAMES", "PictureSettings", "ToneCurve"]
 
 ToneCurve = Literal["filmic", "linear"]
 
-LIMITS: dict[str, tuple[float, float, str]] = {
-    "exposure": (-16.0, 16.0, "stops"),
-    "occlusion_strength": (0.0, 1.0, ""),
-    "occlusion_radius_m": (0.01, 5.0, "m"),
-    "supersampling": (1, 4, ""),
-    "bloom": (0.0, 1.0, ""),
-    "full_well": (0.0, 1e7, "electrons"),
-    "read_noise": (0.0, 1e4, "electrons"),
+LIMITS: Mapping[str, Bounds] = {
+    "exposure": Bounds(least=-16.0, most=16.0, unit="stops"),
+    "occlusion_strength": Bounds(least=0.0, most=1.0),
+    "occlusion_radius_m": Bounds(least=0.01, most=5.0, unit="m"),
+    "supersampling": Bounds(least=1, most=4, whole=True),
+    "bloom": Bounds(least=0.0, most=1.0),
+    "full_well": Bounds(least=0.0, most=1e7, unit="electrons"),
+    "read_noise": Bounds(least=0.0, most=1e4, unit="electrons"),
 }
-"""Least and greatest value of each number, and its unit."""
-
-_WHOLE = frozenset({"supersampling"})
+"""Bounds of each number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,13 +77,7 @@ class PictureSettings:
         if self.tone_curve not in get_args(ToneCurve):
             raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
         checked_flag("smooth_edges", self.smooth_edges)
-        for name, (low, high, unit) in LIMITS.items():
-            value = getattr(self, name)
-            if name in _WHOLE:
-                value = checked_integer(name, value, int(low), int(high), unit=unit)
-            else:
-                value = checked_number(name, value, low, high, unit=unit)
-            object.__setattr__(self, name, value)
+        check_bounds(self, LIMITS)
 
     @staticmethod
     def checked(what: str, settings: object) -> PictureSettings:

@@ -5,21 +5,22 @@ Crosses `scene/`, `operations/`, `world/`, which makes the ball: see `world.move
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from sailenv_ros.types.validation import checked_flag, checked_number
+from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag
 
 __all__ = ["RIGID_BODY_LIMITS", "RigidBody"]
 
-RIGID_BODY_LIMITS: dict[str, tuple[float, float, str]] = {
-    "mass_kg": (0.001, 1000.0, "kg"),
-    "radius_m": (0.01, 1.0, "m"),
-    "drag_per_s": (0.0, 1000.0, "1/s"),
-    "angular_drag_per_s": (0.0, 1000.0, "1/s"),
-    "friction": (0.0, 10.0, ""),
-    "restitution": (0.0, 1.0, ""),
+RIGID_BODY_LIMITS: Mapping[str, Bounds] = {
+    "mass_kg": Bounds(least=0.001, most=1000.0, unit="kg"),
+    "radius_m": Bounds(least=0.01, most=1.0, unit="m"),
+    "drag_per_s": Bounds(least=0.0, most=1000.0, unit="1/s"),
+    "angular_drag_per_s": Bounds(least=0.0, most=1000.0, unit="1/s"),
+    "friction": Bounds(least=0.0, most=10.0),
+    "restitution": Bounds(least=0.0, most=1.0),
 }
-"""Least and greatest value of each number, and its unit."""
+"""Bounds of each number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +58,5 @@ class RigidBody:
     gravity: bool = True
 
     def __post_init__(self) -> None:
-        for name, (low, high, unit) in RIGID_BODY_LIMITS.items():
-            given = checked_number(f"body's {name}", getattr(self, name), low, high, unit=unit)
-            object.__setattr__(self, name, given)
+        check_bounds(self, RIGID_BODY_LIMITS, before="body's ")
         checked_flag("body's gravity", self.gravity)

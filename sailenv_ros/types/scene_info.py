@@ -19,10 +19,21 @@ from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.rigid_body import RigidBody
+from sailenv_ros.types.validation import Bounds
 
-__all__ = ["InstanceColumns", "MoverInfo", "SceneInfo", "SceneObject", "TimeMode"]
+__all__ = [
+    "REAL_TIME_FACTOR",
+    "InstanceColumns",
+    "MoverInfo",
+    "SceneInfo",
+    "SceneObject",
+    "TimeMode",
+]
 
 TimeMode = Literal["realtime", "lockstep"]
+
+REAL_TIME_FACTOR = Bounds(least=0.1, most=10.0)
+"""Simulated seconds per wall second that can be aimed at."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,46 +1,31 @@
-"""What a command is, and what it needs of the conversation that it came in."""
+"""Commands of the viewer's socket, and what they need of the conversation that they came in."""
 
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar
+from typing import Any, Protocol
 
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.simulation.operations import Operation
-from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.debug_agent import DebugAgent
+from sailenv_ros.viewer.edit_history import Conversation, EditHistory
 from sailenv_ros.viewer.request_arguments import Arguments
 
-if TYPE_CHECKING:
-    from sailenv_ros.viewer.edit_history import EditHistory
-
-__all__ = ["Command", "CommandTable", "CommandContext"]
+__all__ = ["Command", "CommandContext", "CommandTable", "Run"]
 
 
-P = ParamSpec("P")
-R = TypeVar("R")
-
-
-class CommandContext(Protocol):
-    """What a command needs of the conversation that it came in."""
+class CommandContext(Conversation, Protocol):
+    """The conversation that a command came in."""
 
     debug_agent: DebugAgent
     history: EditHistory
     picture_pieces: bytearray
-
-    @property
-    def info(self) -> SceneInfo:
-        """The scene as it was announced last."""
 
     def frame(self, number: object) -> Frame:
         """Return a frame that this client was sent lately; None means the last one."""
 
     def select(self, instance_id: int) -> None:
         """Have an instance's outline told; 0 for none."""
-
-    async def run(self, operation: Operation[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R:
-        """Have the simulation do something; wait for its result."""
 
 
 Run = Callable[[CommandContext, Arguments], Awaitable[Any]]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import ParamSpec, Protocol, TypeAlias, TypeVar
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.simulation.editing.edit_records import (
@@ -17,9 +17,10 @@ from sailenv_ros.simulation.editing.edit_records import (
     SurroundingsRecord,
 )
 from sailenv_ros.simulation.editing.room_edits import RoomOperations, RoomRecord
-from sailenv_ros.viewer.command_context import CommandContext
+from sailenv_ros.simulation.operations import Operation
+from sailenv_ros.types.scene_info import SceneInfo
 
-__all__ = ["EditHistory", "EditStep", "Record"]
+__all__ = ["Conversation", "EditHistory", "EditStep", "Record"]
 
 Record: TypeAlias = ObjectRecord | SurroundingsRecord | RoomRecord | None
 """What was changed, as it was before or after; None for an object that was not there."""
@@ -28,6 +29,21 @@ MOST_STEPS = 200
 
 MERGED_S = 1.0
 """Changes of one thing that follow as fast are one step, as those of a slider are [s]."""
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Conversation(Protocol):
+    """A simulation that carries operations out for a page."""
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last."""
+
+    async def run(self, operation: Operation[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Have the simulation do something; wait for its result."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,12 +73,19 @@ class EditStep:
 
 
 class EditHistory:
-    """What was done and can be undone, and what was undone and can be done again."""
+    """What was done and can be undone, and what was undone and can be done again.
+
+    Attributes
+    ----------
+    busy : asyncio.Lock
+        Held while a change is made or undone, so that an undo that is asked for right after a
+        change waits until that has been taken down.
+    """
 
     def __init__(self) -> None:
         self._done: list[EditStep] = []
         self._undone: list[EditStep] = []
-        self._busy = asyncio.Lock()
+        self.busy = asyncio.Lock()
 
     @property
     def undo_what(self) -> str:
@@ -92,7 +115,7 @@ class EditHistory:
             self._done[:] = [*self._done[1 - MOST_STEPS :], step]
         self._undone.clear()
 
-    async def undo(self, context: CommandContext) -> tuple[str, int]:
+    async def undo(self, context: Conversation) -> tuple[str, int]:
         """Undo the last change; return what it was, and the object's id or 0.
 
         Raises
@@ -104,12 +127,12 @@ class EditHistory:
         """
         return await self._step(context, backwards=True)
 
-    async def redo(self, context: CommandContext) -> tuple[str, int]:
+    async def redo(self, context: Conversation) -> tuple[str, int]:
         """Do again what was undone last; as `undo`."""
         return await self._step(context, backwards=False)
 
-    async def _step(self, context: CommandContext, *, backwards: bool) -> tuple[str, int]:
-        async with self._busy:
+    async def _step(self, context: Conversation, *, backwards: bool) -> tuple[str, int]:
+        async with self.busy:
             self.forget_other_scenes(context.info.epoch)
             taken, put = (self._done, self._undone)[:: 1 if backwards else -1]
             if not taken:
@@ -121,7 +144,7 @@ class EditHistory:
             return step.what, number
 
 
-async def _restored(context: CommandContext, now: Record, then: Record) -> int:
+async def _restored(context: Conversation, now: Record, then: Record) -> int:
     if isinstance(now, SurroundingsRecord) and isinstance(then, SurroundingsRecord):
         await context.run(EditOperations.restore_surroundings, now, then)
         return 0

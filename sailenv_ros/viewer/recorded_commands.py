@@ -15,20 +15,28 @@ from sailenv_ros.viewer.request_arguments import Arguments
 __all__ = ["edits_object", "edits_surroundings", "take_down"]
 
 
+def _one_at_a_time(run: Run) -> Run:
+    async def alone(context: CommandContext, given: Arguments) -> Any:
+        async with context.history.busy:
+            return await run(context, given)
+
+    return alone
+
+
 def edits_object(words: str) -> Callable[[Run], Run]:
     """Have a command that changes one object be undoable.
 
-    The object is named by the argument ``object``, or by ``id`` in the answer where the command
-    adds it. `words` say what was done, before the object's name.
+    The object is named by the argument ``obj``, or by ``id`` in the answer where the command adds
+    it. `words` say what was done, before the object's name.
     """
 
     def declare(run: Run) -> Run:
         @wraps(run)
+        @_one_at_a_time
         async def recorded(context: CommandContext, given: Arguments) -> Any:
             before: ObjectRecord | None = None
-            number = None if given.get("object") is None else given.integer("object")
-            if number is not None:
-                before = await context.run(EditOperations.object_record, number)
+            if given.get("obj") is not None:
+                before = await context.run(EditOperations.object_record, given.get("obj"))
             epoch = context.info.epoch
             result = await run(context, given)
             after: ObjectRecord | None = None
@@ -48,12 +56,13 @@ def edits_surroundings(words: str) -> Callable[[Run], Run]:
 
     def declare(run: Run) -> Run:
         @wraps(run)
+        @_one_at_a_time
         async def recorded(context: CommandContext, given: Arguments) -> Any:
             before = await context.run(EditOperations.surroundings_record)
             epoch = context.info.epoch
             result = await run(context, given)
             after = await context.run(EditOperations.surroundings_record)
-            name = given.optional_text("light") or ""
+            name = given.optional_text("light_name") or ""
             keys = tuple(sorted(given.mapping("changes")))
             what = f"{words} {name}".strip()
             take_down(context, what, (words, name, *keys), epoch, before, after)

@@ -5,17 +5,24 @@ Whatever is sent, the only error is `InvalidRequest`, whose sentence is the answ
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
-from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
+import math
+from collections.abc import Mapping
+from typing import Any
 
-from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.simulation.operations import argument_checks as check
+from sailenv_ros.types.validation import Bounds, checked_flag
 
 __all__ = ["Arguments", "arguments_of_text"]
 
-MAX_TEXT = 4096
+_INTEGER = Bounds(whole=True)
+_LARGEST = 2**63
 
-T = TypeVar("T", bound=str)
+_OF_SOCKET = ("do", "id")
+"""What the socket itself takes of a message: the name of the command and the number of the call."""
 
 
 def arguments_of_text(text: str) -> Arguments:
@@ -24,10 +31,13 @@ def arguments_of_text(text: str) -> Arguments:
     Raises
     ------
     InvalidRequest
-        If it is no JSON object, or has a number that is none (NaN, infinite).
+        If it is no JSON object, or has a number that no simulator can hold (NaN, infinite, an
+        integer of more than 64 bits).
     """
     try:
-        value = json.loads(text, parse_constant=_refuse)
+        value = json.loads(
+            text, parse_constant=_refused, parse_float=_finite, parse_int=_representable
+        )
     except (ValueError, RecursionError) as error:
         raise InvalidRequest("message", text[:200], f"JSON ({str(error)[:200]})") from None
     return Arguments(value, "message")
@@ -54,54 +64,34 @@ class Arguments:
             raise InvalidRequest(what, values, "a JSON object")
         self._values = values
 
+    @property
+    def values(self) -> dict[str, Any]:
+        """All but the name of the command and the number of the call."""
+        return {name: value for name, value in self._values.items() if name not in _OF_SOCKET}
+
     def get(self, name: str) -> Any:
         """Return a value as it is; None if it is missing."""
         return self._values.get(name)
 
     def text(self, name: str) -> str:
         """Return a text."""
-        value = self.get(name)
-        # A lone surrogate is valid in JSON and in no file or message.
-        if not isinstance(value, str) or len(value) > MAX_TEXT or not _encodes(value):
-            raise InvalidRequest(name, value, f"a text of at most {MAX_TEXT} characters")
-        return value
+        return check.text(name, self.get(name))
 
     def optional_text(self, name: str) -> str | None:
         """Return a text; None if there is none."""
         return None if self.get(name) is None else self.text(name)
 
-    def choice(self, name: str, accepted: Sequence[T]) -> T:
-        """Return one of several texts."""
-        value = self.text(name)
-        for item in accepted:
-            if item == value:
-                return item
-        raise UnknownName(name, value, map(str, accepted))
-
     def integer(self, name: str) -> int:
         """Return an integer."""
-        value = self.get(name)
-        if isinstance(value, bool) or not isinstance(value, int) or abs(value) >= 2**63:
-            raise InvalidRequest(name, value, "an integer")
-        return value
+        return _INTEGER.integer(name, self.get(name))
 
     def number(self, name: str) -> float:
         """Return a number."""
-        return _number(name, self.get(name))
-
-    def numbers(self, name: str, count: int) -> tuple[float, ...]:
-        """Return a list of so many numbers."""
-        value = self.get(name)
-        if not isinstance(value, list) or len(value) != count:
-            raise InvalidRequest(name, value, f"a list of {count} numbers")
-        return tuple(_number(name, item) for item in value)
+        return check.number(name, self.get(name))
 
     def flag(self, name: str) -> bool:
         """Return true or false; false if it is missing."""
-        value = self._values.get(name, False)
-        if not isinstance(value, bool):
-            raise InvalidRequest(name, value, "true or false")
-        return value
+        return checked_flag(name, self._values.get(name, False))
 
     def mapping(self, name: str) -> dict[str, Any]:
         """Return a JSON object; an empty one if it is missing."""
@@ -117,20 +107,28 @@ class Arguments:
             raise InvalidRequest(name, value, "a list")
         return value
 
-
-def _number(name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e12:
-        raise InvalidRequest(name, value, "a number")
-    return float(value)
-
-
-def _encodes(text: str) -> bool:
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
+    def data(self, name: str) -> bytes:
+        """Return the bytes of a text in base 64."""
+        value = self.get(name)
+        try:
+            return base64.b64decode(value if isinstance(value, str) else "!", validate=True)
+        except (binascii.Error, ValueError):
+            raise InvalidRequest(name, str(value)[:40], "a piece of a file in base 64") from None
 
 
-def _refuse(constant: str) -> None:
+def _refused(constant: str) -> None:
     raise ValueError(f"{constant} is no number")
+
+
+def _finite(written: str) -> float:
+    value = float(written)
+    if not math.isfinite(value):
+        raise ValueError(f"{written} is no finite number")
+    return value
+
+
+def _representable(written: str) -> int:
+    value = int(written)
+    if not -_LARGEST <= value < _LARGEST:
+        raise ValueError(f"{written[:40]} has more than 64 bits")
+    return value

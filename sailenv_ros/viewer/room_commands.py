@@ -1,6 +1,6 @@
 """What a client may ask for about the room: its floor plan, another size, a new one from a seed.
 
-Arguments as JSON has them in, requests to a `Simulation` out. Part of the table of `commands.py`.
+Arguments as JSON has them in, requests to a `Simulation` out. Part of `commands`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from sailenv_ros.authoring.generation.rule_files import rules_of
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.simulation.editing.room_edits import RoomOperations
 from sailenv_ros.simulation.operations.operations import Operations
-from sailenv_ros.types.validation import checked_integer
+from sailenv_ros.types.validation import checked_integer, vector
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import take_down
 from sailenv_ros.viewer.request_arguments import Arguments
@@ -42,11 +42,12 @@ async def floor_plan(context: CommandContext, given: Arguments) -> Any:
 @ROOM_COMMANDS.changes
 async def set_room(context: CommandContext, given: Arguments) -> Any:
     """Resize the room, or make one; tell the objects whose places it has taken."""
-    x, y, height = given.numbers("size", 3)
-    epoch = context.info.epoch
-    before, after = await context.run(RoomOperations.set_room_size, (x, y, height))
-    words = "making the room" if before.room is None else "resizing the room"
-    take_down(context, words, (words,), epoch, before, after)
+    x, y, height = vector("size", given.get("size"))
+    async with context.history.busy:
+        epoch = context.info.epoch
+        before, after = await context.run(RoomOperations.set_room_size, (x, y, height))
+        words = "making the room" if before.room is None else "resizing the room"
+        take_down(context, words, (words,), epoch, before, after)
     return {"replaced": [record.name for record in before.objects]}
 
 

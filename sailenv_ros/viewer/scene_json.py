@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from dataclasses import asdict
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields, is_dataclass
 from functools import cache
 from typing import Any, get_args, get_type_hints
 
@@ -22,6 +23,7 @@ from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.types.picture_settings import LIMITS, NAMES, PictureSettings
 from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
+from sailenv_ros.types.validation import Bounds
 
 __all__ = [
     "behaviours_to_json",
@@ -31,6 +33,7 @@ __all__ = [
     "pose_to_json",
     "scene_to_json",
     "skies_to_json",
+    "to_json",
 ]
 
 _LIGHT_NUMBERS = ("intensity", "indirect_multiplier", "range_m")
@@ -113,7 +116,7 @@ def object_to_json(state: ObjectState) -> dict[str, Any]:
         "size": list(state.size_m),
         "static": state.static,
         "mass_kg": state.mass_kg,
-        "behaviours": [_plain(dict(behaviour)) for behaviour in state.behaviours],
+        "behaviours": to_json(state.behaviours),
     }
 
 
@@ -130,17 +133,19 @@ def behaviours_to_json() -> list[dict[str, Any]]:
 
 def picture_settings_to_json() -> list[dict[str, Any]]:
     """Return which settings a picture has: defaults, choices, limits and units."""
-    usual, types = PictureSettings(), get_type_hints(PictureSettings)
-    unlimited = (None, None, "")
+    usual, types, unbounded = PictureSettings(), get_type_hints(PictureSettings), Bounds()
     return [
         {
             "name": name,
             "default": getattr(usual, name),
             "choices": list(get_args(types[name])),
-            "whole": types[name] is int,
-            **dict(zip(("least", "most", "unit"), LIMITS.get(name, unlimited), strict=True)),
+            "whole": bounds.whole,
+            "least": bounds.least,
+            "most": bounds.most,
+            "unit": bounds.unit,
         }
         for name in NAMES
+        for bounds in [LIMITS.get(name, unbounded)]
     ]
 
 
@@ -160,7 +165,7 @@ def _behaviour(kind: BehaviourKind) -> dict[str, Any]:
             "name": name,
             "about": field.description or "",
             "needed": field.is_required(),
-            "default": None if field.is_required() else _plain(field.default),
+            "default": None if field.is_required() else to_json(field.default),
         }
         for name, field in kind.parameters.model_fields.items()
     ]
@@ -195,10 +200,16 @@ def _look_at(faced: LookAt | None) -> dict[str, Any] | None:
     return None if faced is None else {"object": faced.obj, "point": list(faced.point_m)}
 
 
-def _plain(value: Any) -> Any:
-    """Turn tuples into lists, all the way down."""
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
+def to_json(value: Any) -> Any:
+    """Return the result of an operation: data classes and mappings as objects, poses by angles."""
+    if isinstance(value, ObjectState):
+        return object_to_json(value)
+    if isinstance(value, Pose):
+        return pose_to_json(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): to_json(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return value
+        return [to_json(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -265,7 +265,9 @@ def test_bloom_moves_light_and_makes_none() -> None:
 @pytest.mark.parametrize("name", LIMITS)
 def test_numbers_out_of_range_are_refused(name: str) -> None:
     """Each number's limits are accepted, what is beyond them is not."""
-    low, high, _ = LIMITS[name]
+    low, high = LIMITS[name].least, LIMITS[name].most
+    assert low is not None
+    assert high is not None
     for accepted in (low, high):
         assert getattr(PictureSettings(**{name: accepted}), name) == accepted
     for refused in (low - 0.1, high * 1.1, float("nan"), "1", True):

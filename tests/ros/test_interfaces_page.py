@@ -80,10 +80,10 @@ def test_the_page_has_every_topic_and_service(probe: Probe) -> None:
 def shown_range(entry: Any) -> str:
     if entry.choices and not isinstance(entry.default, list):
         return ", ".join(f"`{choice}`" for choice in entry.choices)
-    if entry.low is None:
+    if entry.bounds is None:
         return ""
-    high = "2⁶³ − 1" if entry.high == 2**63 - 1 else f"{entry.high:g}"
-    return f"{entry.low:g} … {high}"
+    low, high = entry.bounds.least, entry.bounds.most
+    return f"{low:g} … {'2⁶³ − 1' if high == 2**63 - 1 else f'{high:g}'}"
 
 
 def shown_default(value: object) -> str:

@@ -96,7 +96,7 @@ def test_the_death_of_a_parent_ends_it() -> None:
     ("parameters", "sentence"),
     [
         ({"scene": "opticle"}, "scene must be one of: "),
-        ({"agent__width": 3}, "parameter agent.width must be from 8 to 4096"),
+        ({"agent__width": 3}, "parameter agent.width must be an integer from 8 to 4096"),
         ({"agent__near_m": 200.0}, "near_m must be less than far_m"),
         ({"agent__name": "No Name"}, "name of the agent must be"),
         ({"mode": "fast"}, "parameter mode must be one of: realtime, lockstep, got 'fast'"),

@@ -36,6 +36,7 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.scenario import scenario_entries
 from sailenv_ros.types.baked_light import BakedLight, LightLayer, ProbeGrid
 from sailenv_ros.types.lights import Light
+from sailenv_ros.types.validation import vector
 from sailenv_ros.viewer.request_arguments import arguments_of_text
 from tests.support.upload_files import box_zip
 
@@ -245,7 +246,7 @@ def _read_viewer(data: bytes, folder: Path) -> object:
             read("value")
         except SailenvError:
             continue
-    return given.numbers("numbers", 3)
+    return vector("numbers", given.get("numbers"))
 
 
 @cache

@@ -63,7 +63,7 @@ def test_who_shows_nothing_holds_nobody_up(server: ViewerServer, simulation: Sim
                 await two.frame()
             assert server.clients == 3
             # All that was sent lies before the answer.
-            await stalled.ask("select", object=0)
+            await stalled.ask("select", obj=0)
             assert len(stalled.heads) == IN_FLIGHT
             await stalled.socket.send_json({"do": "shown", "number": 1})
             head = await stalled.frame()
@@ -129,11 +129,11 @@ def test_a_paused_scene_is_drawn_again_when_it_changes(server: ViewerServer) -> 
             await client.ask("pause")
             try:
                 made = await client.ask("spawn", asset="cube", u=80, v=60)
-                await client.ask("select", object=made["id"])
+                await client.ask("select", obj=made["id"])
                 while not (head := await client.frame()).get("outline"):
                     pass
                 assert made["id"] in dict(head["visible"])
-                await client.ask("despawn", object=made["id"])
+                await client.ask("despawn_object", obj=made["id"])
                 while made["id"] in dict((await client.frame())["visible"]):
                     pass
             finally:
@@ -157,13 +157,16 @@ def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerServer) -
             fx, fy, cx, cy = head["lens"]
             assert fx * seen[0] / seen[2] + cx == pytest.approx(80, abs=1)
             assert fy * seen[1] / seen[2] + cy == pytest.approx(110, abs=1)
-            changed = await client.ask("change", object=made["id"], changes={"scale": 0.5})
+            changed = await client.ask("change_object", obj=made["id"], changes={"scale": 0.5})
             assert changed["scale"] == [0.5, 0.5, 0.5]
             moved = await client.ask(
-                "move", object=made["id"], position=[1, 2, 3], rpy_deg=[0, 0, 90]
+                "move_object",
+                obj=made["id"],
+                pose={"position": [1, 2, 3], "rotation": [0, 0, 90]},
+                teleport=True,
             )
             assert moved["position"][:2] == pytest.approx([1, 2], abs=0.01)
-            await client.ask("despawn", object=made["id"])
+            await client.ask("despawn_object", obj=made["id"])
             await client.ask("resume")
 
     asyncio.run(look())
@@ -197,23 +200,25 @@ def test_pictures_and_lights_are_changed(server: ViewerServer, simulation: Simul
                 for agent in message["agents"]
             ]:
                 await asyncio.wait_for(client.read(), DEADLINE_S)
-            await client.ask("set_controller", mover="", controller="rigidbody")
+            await client.ask("set_mover_controller", mover="", controller="rigidbody")
             # Frames that came between answers: only who has shown them gets more.
             last = client.heads[-1]["number"]
             await client.socket.send_json({"do": "shown", "number": last})
             for _ in range(IN_FLIGHT + 1):
                 head = await client.frame()  # the last one at the latest is of a camera at rest
-            await client.ask("add_light", light="lamp", type="spot", attributes={"intensity": 2.0})
+            await client.ask(
+                "add_light", light_name="lamp", light_type="spot", attributes={"intensity": 2.0}
+            )
             lamp = light_named("lamp", simulation.info.lights)
             assert (lamp.type, lamp.intensity) == ("spot", 2.0)
             assert lamp.position_m == pytest.approx(head["position"], abs=1e-6)
             ahead = Pose.from_rpy_deg((0.0, 0.0, 0.0), head["rpy_deg"]).matrix()[:3, 0]
             assert lamp.direction == pytest.approx(tuple(ahead), abs=1e-6)
-            words = await client.refusal("add_light", light="lamp", type="point")
+            words = await client.refusal("add_light", light_name="lamp", light_type="point")
             assert "lamp" in words
-            await client.ask("remove_light", light="lamp")
+            await client.ask("remove_light", light_name="lamp")
             assert "lamp" not in {light.name for light in simulation.info.lights}
-            await client.ask("set_controller", mover="", controller="waypoint")
+            await client.ask("set_mover_controller", mover="", controller="waypoint")
 
     async def look_again() -> None:
         async with connected(server) as client:
@@ -241,28 +246,37 @@ HOSTILE = [
     '{"do": "watch", "agent": "debug_agent", "views": [{}]}',
     '{"do": "watch", "agent": "debug_agent", "views": ["everything"]}',
     '{"do": "probe", "u": 1e999, "v": null}',
-    '{"do": "set_light", "light": "sun", "changes": {"name": "moon"}}',
-    '{"do": "set_light", "light": "sun", "changes": {"timeout_s": 1}}',
+    '{"do": "set_light", "light_name": "sun", "changes": {"name": "moon"}}',
+    '{"do": "set_light", "light_name": "sun", "changes": {"timeout_s": 1}}',
     '{"do": "set_picture", "agent": "nobody", "changes": {}}',
     '{"do": "set_picture", "agent": "debug_agent", "changes": {"agent": "debug_agent"}}',
     '{"do": "set_picture", "agent": "debug_agent", "changes": {"settings": {}}}',
     '{"do": "set_picture", "agent": "debug_agent", "changes": {"exposure": "bright"}}',
     '{"do": "set_picture", "agent": "debug_agent", "changes": [1]}',
-    '{"do": "add_light", "light": "", "type": "point"}',
-    '{"do": "add_light", "light": "lamp", "type": "candle"}',
-    '{"do": "add_light", "light": "lamp", "type": "spot", "attributes": {"name": "x"}}',
-    '{"do": "add_light", "light": "lamp", "type": "spot", "attributes": {"direction": null}}',
-    '{"do": "remove_light", "light": "nobody"}',
+    '{"do": "add_light", "light_name": "", "light_type": "point"}',
+    '{"do": "add_light", "light_name": "lamp", "light_type": "candle"}',
+    '{"do": "add_light", "light_name": "lamp", "light_type": "spot", "attributes": {"name": "x"}}',
+    '{"do": "add_light", "light_name": "x", "light_type": "spot", "attributes": {"colour": null}}',
+    '{"do": "remove_light", "light_name": "nobody"}',
     '{"do": "set_environment", "changes": {"sky_map": "../../etc/passwd"}}',
     '{"do": "change_scene", "scene": "/etc/passwd"}',
     '{"do": "save_scene", "name": "../evil"}',
-    '{"do": "change", "object": 1, "changes": {"asset": "x"}}',
-    '{"do": "attach", "object": 1, "behaviour": "os:system", "parameters": {}}',
+    '{"do": "change_object", "obj": 1, "changes": {"asset": "x"}}',
+    '{"do": "add_behaviour", "obj": 1, "behaviour": {"type": "os:system"}}',
     '{"do": "lens", "width": 4096, "height": 4096, "fov_deg": 60}',
     '{"do": "step", "count": 1000000}',
     '{"do": "set_waypoints", "waypoints": [3], "mover": "", "total_time_s": 1}',
     '{"do": "spawn", "asset": "\\ud800", "u": 1, "v": 1}',
-    '{"do": "drive", "mover": "", "linear": [1e11, 0, 0], "angular": [0, 0, 0]}',
+    '{"do": "drive_mover", "mover": "", "linear_m_s": [1e11, 0, 0]}',
+    '{"do": "drive_mover", "mover": "", "linear": [1, 0, 0]}',
+    '{"do": "turn_mover", "yaw_rad": 1e999}',
+    '{"do": "turn_mover", "yaw_rad": 99999999999999999999999}',
+    '{"do": "move_object"}',
+    '{"do": "move_object", "obj": 1, "teleport": "no"}',
+    '{"do": "move_object", "obj": 1, "pose": [0, 0, 0]}',
+    '{"do": "save_scene", "name": "mine", "overwrite": 0}',
+    '{"do": "set_look_at", "obj": {}}',
+    '{"do": "start_lessons", "lessons": [1]}',
 ]
 
 
@@ -378,7 +392,7 @@ def test_other_sites_and_too_many_are_refused(simulation: Simulation) -> None:
                     pass
             assert refused.value.status == 403
         async with connected(server) as client:
-            await client.ask("select", object=0)
+            await client.ask("select", obj=0)
             with pytest.raises(aiohttp.WSServerHandshakeError):
                 async with connected(server):
                     pass

@@ -67,13 +67,15 @@ async def test_every_change_of_an_object_is_undone_and_done_again(
         made = await page.ask("spawn", asset="cube", u=80, v=90)
         states.append(by_name(still))
         number = made["id"]
-        await page.ask("move", object=number, position=[1.0, 0.5, 0.7], rpy_deg=[0.0, 0.0, 30.0])
+        await page.ask(
+            "move_object", obj=number, position=[1.0, 0.5, 0.7], rotation=[0, 0, 30], teleport=True
+        )
         states.append(by_name(still))
-        await page.ask("change", object=number, changes={"name": "box", "scale": [2, 1, 1]})
+        await page.ask("change_object", obj=number, changes={"name": "box", "scale": [2, 1, 1]})
         states.append(by_name(still))
-        await page.ask("attach", object=number, behaviour="rotate_rigidbody", parameters={})
+        await page.ask("add_behaviour", obj=number, behaviour={"type": "rotate_rigidbody"})
         states.append(by_name(still))
-        await page.ask("despawn", object=number)
+        await page.ask("despawn_object", obj=number)
         states.append(by_name(still))
         assert states[-1].keys() == states[0].keys()
         for before in reversed(states[:-1]):
@@ -93,8 +95,8 @@ async def test_lights_and_surroundings_are_undone(server: ViewerServer, still: S
         lights, environment = still.info.lights, still.info.environment
         name = lights[0].name
         for intensity in (0.25, 0.5, 0.75):
-            await page.ask("set_light", light=name, changes={"intensity": intensity})
-        await page.ask("add_light", light="extra", type="point")
+            await page.ask("set_light", light_name=name, changes={"intensity": intensity})
+        await page.ask("add_light", light_name="extra", light_type="point")
         await page.ask("set_environment", changes={"exposure": 2.5})
         await page.ask("undo")
         assert still.info.environment == environment
@@ -130,7 +132,7 @@ async def test_what_others_have_taken_away_is_told(server: ViewerServer, still: 
     """Undoing a move of what is gone is refused in words and dropped; the step before is done."""
     async with page_of(server) as page:
         made = await page.ask("spawn", asset="cube", u=80, v=90)
-        await page.ask("change", object=made["id"], changes={"name": "box"})
+        await page.ask("change_object", obj=made["id"], changes={"name": "box"})
         still.despawn_object("box")
         assert "box" in await page.refusal("undo")
         before = by_name(still)

@@ -24,7 +24,7 @@ from sailenv_ros.ros.client.frame_client import FrameClient
 from sailenv_ros.ros.client.recorded import RecordedAgent
 from sailenv_ros.ros.client.remote import RemoteSimulator
 from sailenv_ros.simulation.operations import Operation, Operations
-from sailenv_ros.types.agents import AgentSpec, check_frame_rate
+from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.scene_info import SceneInfo
@@ -356,7 +356,7 @@ depth_frame_active : bool
         SimulatorLost, DeadlineExceeded
             If no frame came in time.
         """
-        check_frame_rate(rate_hz)
+        WAITED_RATE.number("rate_hz", rate_hz)
         if agent not in (None, self.id):
             raise InvalidRequest("agent", agent, f"{self.id!r}: an Agent receives its own frames")
         limit_s = self._timeout_s if timeout_s is None else timeout_s

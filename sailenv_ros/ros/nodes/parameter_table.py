@@ -16,9 +16,10 @@ from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT
 from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.render.contract import BACKEND_NAMES, BackendName
-from sailenv_ros.types.agents import MAX_RATE_HZ, AgentSpec
-from sailenv_ros.types.camera import MAX_SIZE_PX, MIN_SIZE_PX, CameraIntrinsics
-from sailenv_ros.types.scene_info import TimeMode
+from sailenv_ros.types.agents import RATE, AgentSpec
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
+from sailenv_ros.types.scene_info import REAL_TIME_FACTOR, TimeMode
+from sailenv_ros.types.validation import SEED, Bounds
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
 from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
@@ -79,12 +80,11 @@ class SimParameters:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One parameter of a node: default, description, range or choices."""
+    """One parameter of a node: default, description, bounds or choices."""
 
     default: Any
     description: str
-    low: float | None = None
-    high: float | None = None
+    bounds: Bounds | None = None
     choices: tuple[str, ...] = ()
 
     def of_wrong_type(self, name: str, given: object) -> InvalidRequest:
@@ -93,9 +93,8 @@ class Parameter:
 
     def out_of_range(self, name: str, given: object) -> InvalidRequest:
         """Return the error that names the range."""
-        unit = self.description.rstrip(".")
-        wanted = f"from {self.low:g} to {self.high:g} ({unit})"
-        return InvalidRequest(f"parameter {name}", given, wanted)
+        accepted = "" if self.bounds is None else self.bounds.accepted
+        return InvalidRequest(f"parameter {name}", given, accepted)
 
     def check_choice(self, name: str, value: object) -> None:
         """Refuse a text that is none of the choices."""
@@ -105,6 +104,9 @@ class Parameter:
 
 LIVE = ("real_time_factor", "agent.rate_hz")
 """Parameters that take effect while the node runs."""
+
+_PORT = Bounds(least=0, most=65535, whole=True)
+_DEVICE = Bounds(least=-1, most=15, whole=True)
 
 PARAMETERS: dict[str, Parameter] = {
     "scene": Parameter(
@@ -123,10 +125,10 @@ PARAMETERS: dict[str, Parameter] = {
         choices=("realtime", "lockstep"),
     ),
     "real_time_factor": Parameter(
-        1.0, "Simulated seconds per wall second, in realtime mode.", 0.1, 10.0
+        1.0, "Simulated seconds per wall second, in realtime mode.", REAL_TIME_FACTOR
     ),
     "seed": Parameter(
-        0, "Seed of every random number of the scene; later: the service reset.", 0, 2**63 - 1
+        0, "Seed of every random number of the scene; later: the service reset.", SEED
     ),
     "paused": Parameter(
         False,
@@ -138,7 +140,7 @@ PARAMETERS: dict[str, Parameter] = {
         "graphics hardware, else native.",
         choices=BACKEND_NAMES,
     ),
-    "render_device": Parameter(-1, "Number of the EGL device; -1: the best there is.", -1, 15),
+    "render_device": Parameter(-1, "Number of the EGL device; -1: the best there is.", _DEVICE),
     "build_missing": Parameter(
         "nothing",
         "What is built in the background: furniture and light that the first scene lacks, or all.",
@@ -151,7 +153,7 @@ PARAMETERS: dict[str, Parameter] = {
         False, "True: every published frame tells the poses of all objects on /tf (object/<name>)."
     ),
     "gateway.port": Parameter(
-        DEFAULT_PORT, "TCP port for SAILenv clients; 0: none.", 0, 65535
+        DEFAULT_PORT, "TCP port for SAILenv clients; 0: none.", _PORT
     ),
     "gateway.host": Parameter(
         DEFAULT_HOST, "Address that port listens on; 0.0.0.0: all, without any password."
@@ -160,7 +162,7 @@ PARAMETERS: dict[str, Parameter] = {
         "0.5", "Revision of those clients: 0.5 is that of PyPI.", choices=get_args(Protocol)
     ),
     "viewer.port": Parameter(
-        VIEWER_PORT, "TCP port of the web viewer; 0: none.", 0, 65535
+        VIEWER_PORT, "TCP port of the web viewer; 0: none.", _PORT
     ),
     "viewer.host": Parameter(
         VIEWER_HOST, "Address that port listens on; 0.0.0.0: all, with a token in the URL."
@@ -169,16 +171,18 @@ PARAMETERS: dict[str, Parameter] = {
         False, "True: those from other machines may change things there, not only watch."
     ),
     "agent.name": Parameter("agent", "Name of the first agent; empty: start without one."),
-    "agent.width": Parameter(640, "Width of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
-    "agent.height": Parameter(480, "Height of its pictures [px].", MIN_SIZE_PX, MAX_SIZE_PX),
-    "agent.vertical_fov_deg": Parameter(60.0, "Full vertical angle of view [deg].", 1.0, 170.0),
-    "agent.near_m": Parameter(0.05, "Nearest depth that is seen [m].", 1e-3, 1e4),
-    "agent.far_m": Parameter(100.0, "Farthest depth that is seen [m].", 1e-3, 1e4),
+    "agent.width": Parameter(640, "Width of its pictures [px].", INTRINSICS_LIMITS["width"]),
+    "agent.height": Parameter(480, "Height of its pictures [px].", INTRINSICS_LIMITS["height"]),
+    "agent.vertical_fov_deg": Parameter(
+        60.0, "Full vertical angle of view [deg].", INTRINSICS_LIMITS["vertical_fov_deg"]
+    ),
+    "agent.near_m": Parameter(0.05, "Nearest depth that is seen [m].", INTRINSICS_LIMITS["near_m"]),
+    "agent.far_m": Parameter(100.0, "Farthest depth that is seen [m].", INTRINSICS_LIMITS["far_m"]),
     "agent.depth_range_m": Parameter(
-        10.0, "Depth that the 8-bit depth picture shows as black [m].", 1e-3, 1e4
+        10.0, "Depth that the 8-bit depth picture shows as black [m].", INTRINSICS_LIMITS["far_m"]
     ),
     "agent.rate_hz": Parameter(
-        30.0, "Frames per simulated second; 0: on request only [Hz].", 0.0, MAX_RATE_HZ
+        30.0, "Frames per simulated second; 0: on request only [Hz].", RATE
     ),
     "agent.views": Parameter(
         list(FIVE_VIEWS), "Views of a captured frame unless the request names others.",

@@ -76,11 +76,14 @@ def _descriptor(entry: Parameter, *, live: bool) -> ParameterDescriptor:
     result = ParameterDescriptor(description=entry.description, read_only=not live)
     if entry.choices:
         result.additional_constraints = "one of: " + ", ".join(entry.choices)
-    if entry.low is not None and entry.high is not None:
-        if isinstance(entry.default, int):
-            span = IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)
+    if entry.bounds is not None:
+        low, high = entry.bounds.least, entry.bounds.most
+        assert low is not None
+        assert high is not None
+        if entry.bounds.whole:
+            span = IntegerRange(from_value=int(low), to_value=int(high), step=1)
             result.integer_range = [span]
         else:
-            bounds = FloatingPointRange(from_value=float(entry.low), to_value=float(entry.high))
-            result.floating_point_range = [bounds]
+            reach = FloatingPointRange(from_value=float(low), to_value=float(high))
+            result.floating_point_range = [reach]
     return result

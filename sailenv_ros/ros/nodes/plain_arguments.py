@@ -82,7 +82,7 @@ def _checked(name: str, entry: Parameter, written: str) -> Any:
         value, fits = "", True
     if not fits:
         raise entry.of_wrong_type(name, value)
-    if entry.low is not None and entry.high is not None and not entry.low <= value <= entry.high:
+    if entry.bounds is not None and entry.bounds.refused(value):
         raise entry.out_of_range(name, value)
     entry.check_choice(name, value)
     return value

@@ -32,6 +32,7 @@ from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.parameters import declare_table
 from sailenv_ros.ros.nodes.qos import clock_qos, no_events
 from sailenv_ros.ros.nodes.running import run_node
+from sailenv_ros.types.validation import Bounds
 
 __all__ = ["PARAMETERS", "Player", "main"]
 
@@ -47,12 +48,16 @@ _CLOCK_NAME = "/clock"
 PARAMETERS = {
     "input": Parameter("", "The bag's folder, or one MCAP file."),
     "topics": Parameter([""], "Names of the topics that are played; empty: all."),
-    "rate": Parameter(1.0, "Recorded seconds per second.", 1e-3, 1000.0),
+    "rate": Parameter(1.0, "Recorded seconds per second.", Bounds(least=1e-3, most=1000.0)),
     "loop": Parameter(False, "True: begin anew at the end."),
-    "start_s": Parameter(0.0, "Where to start, from the beginning [s].", 0.0, 1e9),
+    "start_s": Parameter(
+        0.0, "Where to start, from the beginning [s].", Bounds(least=0.0, most=1e9)
+    ),
     "paused": Parameter(False, "True: wait for the service resume."),
     "clock": Parameter(True, "True: publish /clock."),
-    "delay_s": Parameter(0.5, "Time for subscribers to be found before it begins [s].", 0.0, 60.0),
+    "delay_s": Parameter(
+        0.5, "Time for subscribers to be found before it begins [s].", Bounds(least=0.0, most=60.0)
+    ),
 }
 """Every parameter of the node by its name."""
 

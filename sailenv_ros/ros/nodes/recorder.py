@@ -36,6 +36,7 @@ from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.parameters import declare_table
 from sailenv_ros.ros.nodes.running import run_node
+from sailenv_ros.types.validation import Bounds
 from sailenv_ros.types.views import FIVE_VIEWS, checked_views
 
 __all__ = ["PARAMETERS", "main"]
@@ -55,23 +56,29 @@ PARAMETERS = {
     "compression": Parameter(
         "zstd", "Of the file's chunks.", choices=("zstd", "lz4", "none")
     ),
-    "split_bytes": Parameter(0, "A new file begins at this size; 0: one file [B].", 0, 2**62),
-    "split_s": Parameter(0.0, "A new file begins after this time; 0: one file [s].", 0.0, 1e9),
+    "split_bytes": Parameter(
+        0,
+        "A new file begins at this size; 0: one file [B].",
+        Bounds(least=0, most=2**62, whole=True),
+    ),
+    "split_s": Parameter(
+        0.0, "A new file begins after this time; 0: one file [s].", Bounds(least=0.0, most=1e9)
+    ),
     "queue_bytes": Parameter(
         512 * 2**20,
         "How much may wait for the disk before it is dropped, or is kept for a snapshot [B].",
-        2**20,
-        2**40,
+        Bounds(least=2**20, most=2**40, whole=True),
     ),
     "snapshot_s": Parameter(
         0.0,
         "Keep the last so many seconds in memory and write them when ~/snapshot is called; 0: "
         "write everything at once [s].",
-        0.0,
-        1e6,
+        Bounds(least=0.0, most=1e6),
     ),
     "progress": Parameter(True, "True: log a line of progress every few seconds."),
-    "progress_interval_s": Parameter(2.0, "Time between two such lines [s].", 0.1, 3600.0),
+    "progress_interval_s": Parameter(
+        2.0, "Time between two such lines [s].", Bounds(least=0.1, most=3600.0)
+    ),
 }  # fmt: skip
 """Every parameter of the node by its name."""
 

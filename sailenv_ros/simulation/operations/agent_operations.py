@@ -17,11 +17,11 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
-from sailenv_ros.types.agents import AgentPose, AgentSpec, checked_rate
+from sailenv_ros.types.agents import RATE, AgentPose, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.validation import checked_integer, vector
+from sailenv_ros.types.validation import Bounds, vector
 from sailenv_ros.types.views import FIVE_VIEWS
 
 if TYPE_CHECKING:
@@ -40,14 +40,6 @@ def _intrinsics(what: str, value: object) -> CameraIntrinsics:
     if not isinstance(value, CameraIntrinsics):
         raise InvalidRequest(what, value, "a sailenv_ros.types.camera.CameraIntrinsics")
     return value
-
-
-def _seed(what: str, value: object) -> int:
-    return checked_integer(what, value, 0, 2**63 - 1)
-
-
-def _frame_number(what: str, value: object) -> int:
-    return checked_integer(what, value, 0, 2**63 - 1)
 
 
 def _put(core: SimulationCore, pose: Pose, agent: str | None, *, teleport: bool) -> None:
@@ -84,7 +76,7 @@ class AgentOperations(Caller):
         """Return where an agent is, when, and whether it follows a mover."""
         return core.agents.pose(agent, core.world)
 
-    @operation(pose=check.pose, teleport=check.flag)
+    @operation(pose=check.pose)
     @staticmethod
     def set_pose(
         core: SimulationCore, pose: Pose, *, teleport: bool = False, agent: str | None = None
@@ -99,7 +91,7 @@ class AgentOperations(Caller):
         if ended:
             core.announce()
 
-    @operation(position=vector, teleport=check.flag)
+    @operation(position=vector)
     @staticmethod
     def set_position(
         core: SimulationCore,
@@ -116,7 +108,7 @@ class AgentOperations(Caller):
         moved = Pose(vector("position", position), here.orientation_xyzw)
         _put(core, moved, agent, teleport=teleport)
 
-    @operation(rotation=vector, teleport=check.flag)
+    @operation(rotation=vector)
     @staticmethod
     def set_rotation(
         core: SimulationCore,
@@ -142,7 +134,7 @@ class AgentOperations(Caller):
         """Return an agent's roll, pitch, yaw about fixed axes [deg]."""
         return self.get_pose(agent=agent).rpy_deg
 
-    @operation(following=check.flag)
+    @operation()
     @staticmethod
     def set_follow(core: SimulationCore, following: bool, *, agent: str | None = None) -> bool:
         """Follow the mover or stop following it; return the new state."""
@@ -158,7 +150,7 @@ class AgentOperations(Caller):
 
     # -- camera ----------------------------------------------------------------------------
 
-    @operation(rate_hz=checked_rate)
+    @operation(rate_hz=RATE.number)
     @staticmethod
     def set_rate(core: SimulationCore, rate_hz: float, *, agent: str | None = None) -> None:
         """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
@@ -243,7 +235,7 @@ class AgentOperations(Caller):
         record = core.agents[agent]
         return core.render(record, record.spec.views if views is None else views)
 
-    @operation(sequence=_frame_number)
+    @operation(sequence=Bounds(least=0, most=2**63 - 1, whole=True).integer)
     @staticmethod
     def get_amodal_masks(
         core: SimulationCore, sequence: int = 0, *, agent: str | None = None
@@ -307,7 +299,7 @@ class AgentOperations(Caller):
         deadline_s=300.0,
         rule=check.text,
         name=check.text,
-        seed=check.optional(_seed),
+        seed=check.optional(check.seed),
         agent=check.optional(check.text),
     )
     @staticmethod

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -9,12 +11,13 @@ from numpy.typing import ArrayLike
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.validation import is_integer, is_number, vector
+from sailenv_ros.types.lights import MAX_RADIANCE
+from sailenv_ros.types.validation import SEED, Bounds, checked_flag, is_integer, is_number, vector
 from sailenv_ros.types.views import checked_views
 
 __all__ = [
     "behaviour",
-    "flag",
+    "flags_of",
     "force",
     "number",
     "object_reference",
@@ -23,6 +26,7 @@ __all__ = [
     "pose_of",
     "radiance",
     "scale",
+    "seed",
     "text",
     "texts",
     "track",
@@ -39,9 +43,13 @@ def optional(check: Callable[[str, Any], T]) -> Callable[[str, Any], T | None]:
 
 def text(what: str, value: object) -> str:
     """Check a text that can be written to a file and sent over ROS."""
-    if not isinstance(value, str) or "\0" in value:
-        raise InvalidRequest(what, value, "a text without a NUL")
+    if not isinstance(value, str) or "\0" in value or _HALF.search(value):
+        raise InvalidRequest(what, value, "a text without a NUL or half a character")
     return value
+
+
+_HALF = re.compile("[\ud800-\udfff]")
+"""Half of a character, which JSON can tell and no file has."""
 
 
 def texts(what: str, value: object) -> tuple[str, ...]:
@@ -51,16 +59,21 @@ def texts(what: str, value: object) -> tuple[str, ...]:
     return tuple(text(what, item) for item in value)
 
 
-def number(what: str, value: object) -> float:
-    """Check a number; truth values are none."""
-    if not is_number(value):
-        raise InvalidRequest(what, value, "a number")
-    return float(value)
+number = Bounds().number
+"""Checks a finite number; truth values are none."""
+
+seed = SEED.integer
+"""Checks the seed of a random draw."""
 
 
-def flag(what: str, value: object) -> bool:
-    """Return the truth of a value."""
-    return bool(value)
+def flags_of(signature: inspect.Signature) -> dict[str, Callable[[str, Any], Any]]:
+    """Return the checks of all arguments that are declared as ``bool``."""
+    checks = {"bool": checked_flag, "bool | None": optional(checked_flag)}
+    return {
+        parameter.name: checks[parameter.annotation]
+        for parameter in signature.parameters.values()
+        if parameter.annotation in checks
+    }
 
 
 def pose(what: str, value: object) -> Pose:
@@ -86,7 +99,7 @@ def scale(what: str, value: Any) -> tuple[float, float, float]:
 
 def radiance(what: str, value: ArrayLike) -> tuple[float, float, float]:
     """Check a linear colour."""
-    return vector(what, value, limit=1e6)
+    return vector(what, value, limit=MAX_RADIANCE)
 
 
 def force(what: str, value: ArrayLike) -> tuple[float, float, float]:

@@ -7,20 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.entries import read_document
+from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["ChanceOperations"]
-
-
-def _count(what: str, value: object) -> int | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 2**63:
-        raise InvalidRequest(what, value, "an integer from 0 to 2^63 - 1")
-    return value
 
 
 def _things(what: str, value: object) -> Any:
@@ -34,7 +27,12 @@ def _things(what: str, value: object) -> Any:
 class ChanceOperations(Caller):
     """What is drawn at random; see `randomise` in scene files."""
 
-    @operation(deadline_s=120.0, seed=_count, index=_count, things=_things)
+    @operation(
+        deadline_s=120.0,
+        seed=check.optional(check.seed),
+        index=check.optional(check.seed),
+        things=_things,
+    )
     @staticmethod
     def randomise(
         core: SimulationCore,

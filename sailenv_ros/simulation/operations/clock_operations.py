@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.errors import InvalidState
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.types.validation import checked_integer
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -15,6 +16,10 @@ __all__ = ["MAX_STEPS", "ClockOperations"]
 
 MAX_STEPS = 1_000_000
 """Most steps that one call of `step` may ask for (over an hour of simulated time)."""
+
+
+def _steps(what: str, value: object) -> int:
+    return checked_integer("steps", value, 1, MAX_STEPS)
 
 
 class ClockOperations(Caller):
@@ -26,7 +31,7 @@ class ClockOperations(Caller):
         """Leave the present world for another scene of `scenes`, at simulated time 0."""
         core.begin(scene, core.seed, as_registered=False)
 
-    @operation(deadline_s=120.0)
+    @operation(deadline_s=120.0, seed=check.optional(check.seed))
     @staticmethod
     def reset(core: SimulationCore, seed: int | None = None) -> int:
         """Begin the present scene anew, as it was at its start; return the new epoch.
@@ -38,8 +43,6 @@ class ClockOperations(Caller):
             was drawn at random. With a seed that is drawn anew.
         """
         chosen = core.seed if seed is None else seed
-        if isinstance(chosen, bool) or not isinstance(chosen, int) or not 0 <= chosen < 2**63:
-            raise InvalidRequest("seed", seed, "an integer from 0 to 2^63 - 1")
         core.begin(
             core.world.scene,
             chosen,
@@ -70,7 +73,7 @@ class ClockOperations(Caller):
         core.clock.set_real_time_factor(factor)
         core.announce()
 
-    @operation(deadline_s=600.0)
+    @operation(deadline_s=600.0, count=_steps)
     @staticmethod
     def step(core: SimulationCore, count: int = 1) -> int:
         """Advance a paused or lockstep simulation, with every streamed frame that falls due.
@@ -85,8 +88,6 @@ class ClockOperations(Caller):
         sim_time_ns : int
             Simulated time afterwards [ns].
         """
-        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_STEPS:
-            raise InvalidRequest("steps", count, f"an integer from 1 to {MAX_STEPS}")
         if core.clock.runs_by_itself:
             raise InvalidState("the simulation is running; pause it first, then step")
         core.advance_to(core.world.step_count + count, every_frame=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.types.joints import JointState
-from sailenv_ros.types.validation import checked_number
+from sailenv_ros.types.validation import Bounds
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -15,18 +15,14 @@ if TYPE_CHECKING:
 __all__ = ["JointOperations"]
 
 
-def _position(what: str, value: Any) -> float:
-    return checked_number(what, value, -1e4, 1e4)
-
-
-def _seconds(what: str, value: Any) -> float:
-    return checked_number(what, value, 0.0, 1e4, unit="s")
-
-
 class JointOperations(Caller):
     """What moves on hinges and slides. A joint is named by the object that moves on it."""
 
-    @operation(obj=check.object_reference, position=_position, seconds=_seconds)
+    @operation(
+        obj=check.object_reference,
+        position=Bounds(least=-1e4, most=1e4).number,
+        seconds=Bounds(least=0.0, most=1e4, unit="s").number,
+    )
     @staticmethod
     def set_joint_position(
         core: SimulationCore, obj: int | str, position: float, seconds: float = 0.0

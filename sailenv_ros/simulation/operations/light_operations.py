@@ -6,7 +6,7 @@ red, green, blue from 0 to 255 (sRGB).
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -15,14 +15,12 @@ from sailenv_ros.errors import NameTaken, UnknownName
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.types.colour import linear_from_srgb8, srgb8_from_linear
-from sailenv_ros.types.lights import Light, LightType, light_named
+from sailenv_ros.types.lights import LIGHT_ATTRIBUTES, Light, LightType, light_named
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["LightOperations"]
-
-_ATTRIBUTES = tuple(field.name for field in fields(Light) if field.name != "name")
 
 Vector3 = tuple[float, float, float]
 
@@ -56,8 +54,8 @@ class LightOperations(Caller):
         lights = core.world.contents.lights
         present = light_named(light_name, lights)
         for key in changes:
-            if key not in _ATTRIBUTES:
-                raise UnknownName("attribute of a light", key, _ATTRIBUTES)
+            if key not in LIGHT_ATTRIBUTES:
+                raise UnknownName("attribute of a light", key, LIGHT_ATTRIBUTES)
         changed = replace(present, **changes)
         if changes:
             core.world.set_lights([changed if light is present else light for light in lights])
@@ -88,8 +86,8 @@ class LightOperations(Caller):
         """
         lights = core.world.contents.lights
         for key in attributes:
-            if key not in _ATTRIBUTES or key == "type":
-                raise UnknownName("attribute of a light", key, _ATTRIBUTES)
+            if key not in LIGHT_ATTRIBUTES or key == "type":
+                raise UnknownName("attribute of a light", key, LIGHT_ATTRIBUTES)
         if any(light.name == light_name for light in lights):
             raise NameTaken("light", light_name)
         added = Light(name=light_name, type=light_type, **attributes)

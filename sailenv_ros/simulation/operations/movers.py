@@ -13,7 +13,7 @@ from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.scene_info import MoverInfo
-from sailenv_ros.types.validation import vector
+from sailenv_ros.types.validation import Bounds, vector
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -35,11 +35,7 @@ def _telling_what_is_faced(core: SimulationCore, name: str) -> Iterator[Mover]:
         core.announce()
 
 
-def _track_time(what: str, value: object) -> float:
-    seconds = check.number(what, value)
-    if not 0.0 < seconds <= MAX_TIME_S:
-        raise InvalidRequest(what, value, f"a number above 0 and at most {MAX_TIME_S:g} [s]")
-    return seconds
+_TRACK_TIME = Bounds(above=0.0, most=MAX_TIME_S, unit="s")
 
 
 class MoverOperations(Caller):
@@ -102,7 +98,9 @@ class MoverOperations(Caller):
         with _telling_what_is_faced(core, mover) as found:
             found.turn(pitch_rad, yaw_rad)
 
-    @operation(waypoints=check.track, mover=check.text, total_time_s=check.optional(_track_time))
+    @operation(
+        waypoints=check.track, mover=check.text, total_time_s=check.optional(_TRACK_TIME.number)
+    )
     @staticmethod
     def set_waypoints(
         core: SimulationCore,
@@ -140,7 +138,7 @@ class MoverOperations(Caller):
         found.lead(
             poses,
             total_time_s=found.total_time_s if total_time_s is None else total_time_s,
-            loop=found.loop if loop is None else bool(loop),
+            loop=found.loop if loop is None else loop,
             time_ns=core.world.sim_time_ns,
         )
         core.announce()

@@ -15,7 +15,7 @@ from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.objects import ObjectState
-from sailenv_ros.types.validation import checked_flag, checked_number, vector
+from sailenv_ros.types.validation import Bounds, vector
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -27,14 +27,6 @@ def _behaviours(what: str, value: Any) -> tuple[Mapping[str, Any], ...]:
     if isinstance(value, str | Mapping) or not hasattr(value, "__iter__"):
         raise InvalidRequest(what, value, "a list of behaviours, as in a scene file")
     return tuple(check.behaviour("behaviour", item) for item in value)
-
-
-def _wrench_time(what: str, value: Any) -> float:
-    return checked_number(what, value, 0.0, 1e6, unit="s")
-
-
-def _contact_time(what: str, value: Any) -> float:
-    return checked_number(what, value, 0.0, 1.0, unit="s")
 
 
 def _scenario(what: str, value: Any) -> str | Mapping[str, Any]:
@@ -63,7 +55,6 @@ class ObjectOperations(Caller):
         name=check.text,
         position=vector,
         rotation=vector,
-        remove_dynamics=check.optional(checked_flag),
         scale=check.scale,
         pose=check.optional(check.pose),
         object_name=check.text,
@@ -148,7 +139,6 @@ class ObjectOperations(Caller):
         position=check.optional(vector),
         rotation=check.optional(vector),
         pose=check.optional(check.pose),
-        teleport=check.flag,
     )
     @staticmethod
     def move_object(
@@ -242,7 +232,7 @@ class ObjectOperations(Caller):
         force_n=check.force,
         torque_nm=check.force,
         point_m=check.optional(vector),
-        duration_s=_wrench_time,
+        duration_s=Bounds(least=0.0, most=1e6, unit="s").number,
     )
     @staticmethod
     def apply_wrench(
@@ -284,7 +274,7 @@ class ObjectOperations(Caller):
             parameters["point"] = point_m
         core.editor.apply_wrench(obj, parameters)
 
-    @operation(seconds=_contact_time)
+    @operation(seconds=Bounds(least=0.0, most=1.0, unit="s").number)
     @staticmethod
     def contacts(core: SimulationCore, seconds: float = 0.0) -> tuple[Contact, ...]:
         """Return what touched what in the last physics step, or in some time before now.

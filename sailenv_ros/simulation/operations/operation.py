@@ -14,7 +14,8 @@ from concurrent.futures import Future
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar, overload
 
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.simulation.operations.argument_checks import flags_of
 from sailenv_ros.system.futures import wait_for
 
 if TYPE_CHECKING:
@@ -72,7 +73,8 @@ class Operation(Generic[P, R]):
     deadline_s : float
         How long a caller waits unless told otherwise [s].
     checks : mapping of str to Check
-        Of arguments by their names, made before anything is sent.
+        Of arguments by their names, made before anything is sent. What is declared as ``bool``
+        is checked anyway.
     background : bool
         True if it is done beside the simulation's loop; `run` returns a future then.
 
@@ -98,7 +100,7 @@ class Operation(Generic[P, R]):
         self.background = background
         whole = inspect.signature(function)
         self.signature = whole.replace(parameters=list(whole.parameters.values())[1:])
-        self.checks = MappingProxyType(dict(checks))
+        self.checks = MappingProxyType({**flags_of(self.signature), **checks})
         self.__doc__ = function.__doc__
         self.__name__ = self.name
         self.__signature__ = self.signature
@@ -125,6 +127,48 @@ class Operation(Generic[P, R]):
     def submit_to(self, caller: Caller, /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
         """Begin it for a caller; the future has its result, or the error that it raised."""
         return caller.submit_operation(self, self.bind(caller, args, kwargs))
+
+    @property
+    def variable(self) -> str:
+        """Name of the parameter ``**changes``; empty if there is none."""
+        kind = inspect.Parameter.VAR_KEYWORD
+        return next((p.name for p in self.signature.parameters.values() if p.kind is kind), "")
+
+    def arguments(self, given: Mapping[str, Any]) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """Return positional and named arguments for values by the names of the parameters.
+
+        Parameters
+        ----------
+        given : mapping of str to object
+            As a message has them: those of ``**changes`` are a mapping under that name.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            If there is no such parameter, one that is needed is missing, or one of the changes
+            has the name of another parameter.
+        """
+        values, parameters = dict(given), self.signature.parameters
+        for name in values:
+            if name not in parameters:
+                raise UnknownName(f"argument of {self.name}", name, parameters)
+        for name, parameter in parameters.items():
+            if (
+                name not in values
+                and name != self.variable
+                and parameter.default is parameter.empty
+            ):
+                raise InvalidRequest(name, None, f"given to {self.name}")
+        changes = values.pop(self.variable, None) or {}
+        if not isinstance(changes, Mapping):
+            raise InvalidRequest(self.variable, changes, "values by their names")
+        clash = sorted(set(changes) & set(parameters))
+        if clash:
+            raise InvalidRequest(self.variable, clash, "names of what can be changed")
+        args = tuple(
+            values.pop(name) for name in parameters if name in self._positional & set(values)
+        )
+        return args, {**values, **changes}
 
     def bind(
         self, caller: Caller, args: tuple[Any, ...], kwargs: dict[str, Any]

@@ -27,10 +27,8 @@ class SavingOperations(Caller):
 
     @operation(
         deadline_s=60.0,
-        overwrite=check.flag,
         title=check.optional(check.text),
         cameras=check.texts,
-        keep_models=check.flag,
     )
     @staticmethod
     def save_scene(

@@ -14,7 +14,7 @@ from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.space import FreeSpace, RayCast
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.validation import checked_integer, vector
+from sailenv_ros.types.validation import vector
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["SpaceOperations"]
 
 MOST_RAYS = 1_000_000
-MAX_SEED = 2**63 - 1
 
 _BODY: dict[str, Any] = {
     name: check.number for name in ("height_m", "radius_m", "resolution_m", "floor_m", "step_m")
@@ -56,10 +55,6 @@ def _place(what: str, value: Any) -> tuple[float, float, float]:
     """Check x, y, and z, which may be left out [m]."""
     flat = isinstance(value, list | tuple | np.ndarray) and len(value) == 2
     return vector(what, (*value, 0.0) if flat else value)
-
-
-def _seed(what: str, value: Any) -> int:
-    return checked_integer(what, value, 0, MAX_SEED)
 
 
 def _reach(what: str, value: Any) -> float:
@@ -160,7 +155,7 @@ class SpaceOperations(Caller):
 
     @operation(
         name=check.text,
-        seed=check.optional(_seed),
+        seed=check.optional(check.seed),
         reachable_from=check.optional(_place),
         **_BODY,
     )

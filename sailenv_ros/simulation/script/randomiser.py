@@ -24,6 +24,7 @@ from sailenv_ros.simulation.editing.material_edits import set_material
 from sailenv_ros.simulation.script.rule_places import agent_specs, placed_by_rules
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.lights import light_named
+from sailenv_ros.types.validation import SEED
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.core import SimulationCore
@@ -364,7 +365,7 @@ def _record(given: object) -> Mapping[str, Any]:
     if not isinstance(record, Mapping) or set(record) != set(_RECORD):
         raise InvalidRequest("record", given, accepted)
     numbers = [record[key] for key in ("seed", "index", "step")]
-    if any(isinstance(n, bool) or not isinstance(n, int) or not 0 <= n < 2**63 for n in numbers):
+    if any(map(SEED.refused, numbers)):
         raise InvalidRequest("record", given, accepted)
     if not all(isinstance(record[key], Mapping) for key in ("epoch", "frame")):
         raise InvalidRequest("record", given, accepted)

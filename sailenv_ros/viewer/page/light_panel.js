@@ -70,7 +70,7 @@ export class LightPanel {
     const name = el("input", { type: "text", id: "light-name", placeholder: "made of the type", spellcheck: false });
     const add = async () => {
       const typed = name.value;
-      const values = { light: typed.trim() || this.#freeName(type.value), type: type.value };
+      const values = { light_name: typed.trim() || this.#freeName(type.value), light_type: type.value };
       const attributes = { intensity: INTENSITIES[type.value] };
       const added = (await this.app.try("add_light", { ...values, attributes })) !== undefined;
       // The next name may have been typed meanwhile.
@@ -91,7 +91,7 @@ export class LightPanel {
   }
 
   #light({ name, type, intensity }) {
-    const send = latest((changes) => this.app.ask("set_light", { light: name, changes }));
+    const send = latest((changes) => this.app.ask("set_light", { light_name: name, changes }));
     const most = Math.max(1, 4 * intensity);
     const strength = slider("intensity", 0, most, most / 200, (value) => send({ intensity: value }));
     const colour = el("input", {
@@ -100,7 +100,7 @@ export class LightPanel {
     });
     const root = el("div", { class: "light", data: { light: name } },
       el("div", { class: "line" }, el("strong", {}, name), el("span", { class: "kind" }, type), colour,
-        button("", () => this.app.try("remove_light", { light: name }), {
+        button("", () => this.app.try("remove_light", { light_name: name }), {
           glyph: "trash", title: `Remove ${name}`, kind: "icon quiet danger",
         })),
       strength.root);

@@ -47,7 +47,7 @@ export class LookSelect {
   }
 
   async choose(value) {
-    await this.app.try("look_at", { agent: this.app.agent, object: Number(value) });
+    await this.app.try("set_look_at", { agent: this.app.agent, obj: Number(value) || null });
     this.update();
   }
 }

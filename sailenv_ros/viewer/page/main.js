@@ -267,7 +267,7 @@ class App {
     const id = instance?.is_part ? instance.parent : chosen;  // a part is edited with its body
     this.selected = id;
     document.body.dataset.selected = id;
-    this.try("select", { object: id });
+    this.try("select", { obj: id });
     this.object.show(id);
     if (id) this.open(this.object);
   }
@@ -286,7 +286,7 @@ class App {
     const id = this.selected;
     if (!id) return;
     this.select(0);
-    await this.try("despawn", { object: id });
+    await this.try("despawn_object", { obj: id });
   }
 
   /** Undo the last change, or do it again; what has come back is selected. */
@@ -380,7 +380,7 @@ class App {
   async #click({ view, frame, u, v }) {
     if (this.#placing && this.selected) {
       this.#endPlacing();
-      const placed = await this.try("place", { object: this.selected, frame, u, v });
+      const placed = await this.try("place", { obj: this.selected, frame, u, v });
       if (placed) this.#tellHeld(placed);
       this.object.show(this.selected);
       return;

@@ -73,11 +73,11 @@ export class MaterialEditor {
   }
 
   #ask(changes) {
-    return this.app.ask("set_material", { object: this.id, part: this.part.value, changes });
+    return this.app.ask("set_material", { obj: this.id, part: this.part.value, changes });
   }
 
   async #send(changes) {
-    await this.app.try("set_material", { object: this.id, part: this.part.value, changes });
+    await this.app.try("set_material", { obj: this.id, part: this.part.value, changes });
     document.activeElement?.blur();
   }
 

@@ -35,7 +35,7 @@ export class ObjectPanel {
   /** Show another object; null for none. */
   async show(id) {
     try {
-      this.#edit(id ? await this.app.ask("get_object", { object: id }) : null);
+      this.#edit(id ? await this.app.ask("get_object", { obj: id }) : null);
     } catch {
       this.#edit(null);
     }
@@ -46,7 +46,7 @@ export class ObjectPanel {
     if (!this.state || !this.root.isConnected || document.hidden) return;
     const { id } = this.state;
     try {
-      const state = await this.app.ask("get_object", { object: id });
+      const state = await this.app.ask("get_object", { obj: id });
       if (this.state?.id === id) this.#fill(state);
       if (this.opening) await this.#askJoint(id);
     } catch {
@@ -148,11 +148,11 @@ export class ObjectPanel {
 
   /** Show the joint that the object moves on as a slider, if it is on one. */
   async #askJoint(id) {
-    const joint = await this.app.ask("get_joint", { object: id });
+    const joint = await this.app.ask("get_joint", { obj: id });
     if (this.state?.id !== id || !joint) return;
     if (!this.opening) {
       const words = joint.type === "hinge" ? "open [rad]" : "open [m]";
-      const send = latest((position) => this.app.ask("set_joint", { object: id, position }));
+      const send = latest((position) => this.app.ask("set_joint_position", { obj: id, position }));
       this.opening = slider(words, joint.low, joint.high, (joint.high - joint.low) / 200, send);
       this.joint.replaceChildren(this.opening.root);
     }
@@ -179,7 +179,7 @@ export class ObjectPanel {
       ...state.behaviours.map((behaviour) => el("div", { class: "row flat", title: JSON.stringify(behaviour) },
         el("span", { class: "name" }, behaviour.type))),
       state.behaviours.length
-        ? button("Stop all", () => this.#do("detach", {}), { kind: "quiet" })
+        ? button("Stop all", () => this.#do("remove_behaviours", {}), { kind: "quiet" })
         : el("p", { class: "advice" }, state.static ? "Nothing: it is static." : "Nothing but physics."),
     );
   }
@@ -209,11 +209,11 @@ export class ObjectPanel {
     };
     show();
     const attach = () => {
-      const parameters = {};
+      const behaviour = { type: choose.value };
       for (const input of fields.querySelectorAll("input")) {
-        if (input.value.trim()) parameters[input.dataset.name] = valueOf(input.value.trim());
+        if (input.value.trim()) behaviour[input.dataset.name] = valueOf(input.value.trim());
       }
-      this.#do("attach", { behaviour: choose.value, parameters });
+      this.#do("add_behaviour", { behaviour });
     };
     return el("details", {}, el("summary", {}, "Add a behaviour"), choose, about, fields,
       button("Attach", attach, { glyph: "plus", kind: "primary" }));
@@ -230,25 +230,29 @@ export class ObjectPanel {
     }
     const pose = { position: [...this.state.position], rpy_deg: [...this.state.rpy_deg] };
     pose[key][at] = value;
-    this.#do("move", pose);
+    this.#move(pose.position, pose.rpy_deg);
   }
 
   #nudge(by) {
     const position = this.state.position.map((x, at) => x + by[at]);
-    this.#do("move", { position, rpy_deg: this.state.rpy_deg });
+    this.#move(position, this.state.rpy_deg);
   }
 
   #turn(by) {
     const [roll, pitch, yaw] = this.state.rpy_deg;
-    this.#do("move", { position: this.state.position, rpy_deg: [roll, pitch, yaw + by] });
+    this.#move(this.state.position, [roll, pitch, yaw + by]);
+  }
+
+  #move(position, rotation) {
+    this.#do("move_object", { position, rotation, teleport: true });
   }
 
   #change(changes) {
-    this.#do("change", { changes });
+    this.#do("change_object", { changes });
   }
 
   async #do(what, values) {
-    const state = await this.app.try(what, { object: this.state.id, ...values });
+    const state = await this.app.try(what, { obj: this.state.id, ...values });
     document.activeElement?.blur();
     if (state) this.#fill(state);
     else this.#refresh();

@@ -62,6 +62,8 @@ export class PathPanel {
 
   #send(changes) {
     const { name, waypoints, total_time_s, loop } = this.app.mover;
-    this.app.try("set_waypoints", { mover: name, waypoints, total_time_s, loop, ...changes });
+    const wanted = { waypoints, total_time_s, loop, ...changes };
+    const pairs = wanted.waypoints.map(({ position, rpy_deg }) => [position, rpy_deg]);
+    this.app.try("set_waypoints", { mover: name, ...wanted, waypoints: pairs });
   }
 }

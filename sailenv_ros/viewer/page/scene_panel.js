@@ -146,7 +146,7 @@ export class ScenePanel {
       toast("Make a room first.");
       return;
     }
-    const path = await this.app.try("save_scene", { name: this.kept, overwrite: false });
+    const path = await this.app.try("save_scene", { name: this.kept, keep_models: true });
     if (path === undefined) return;
     this.made.textContent = `Kept: ${path}`;
     toast("Kept. It is in the list of scenes now.");
@@ -154,7 +154,7 @@ export class ScenePanel {
 
   async #save() {
     const path = await this.app.try("save_scene", {
-      name: this.name.value.trim(), overwrite: this.overwrite.checked,
+      name: this.name.value.trim(), overwrite: this.overwrite.checked, keep_models: true,
       ...(this.sceneTitle.value.trim() ? { title: this.sceneTitle.value.trim() } : {}),
     });
     if (path === undefined) return;

@@ -6,6 +6,7 @@ const SPEED_M_S = 1.4;
 const FAST = 2.5;
 const REPEAT_MS = 66;
 const DEG_PER_PX = 0.12;
+const RAD = Math.PI / 180;
 
 // Forward, left, up.
 const KEYS = {
@@ -28,7 +29,9 @@ export class Walker {
       const [yaw, pitch] = this.turnBy;
       this.turnBy = [0, 0];
       if (yaw || pitch) {
-        await app.ask("turn", { mover: this.mover, yaw_deg: within(yaw), pitch_deg: within(pitch) });
+        await app.ask("turn_mover", {
+          mover: this.mover, yaw_rad: within(yaw) * RAD, pitch_rad: within(pitch) * RAD,
+        });
       }
     });
     this.sendLens = latest((lens) => app.ask("lens", lens));
@@ -67,7 +70,7 @@ export class Walker {
     // Known at once, so that another Tab before the scene's news gives it back.
     mover.controller = before === "waypoint" ? "rigidbody" : "waypoint";
     try {
-      await this.app.ask("set_controller", { mover: mover.name, controller: mover.controller });
+      await this.app.ask("set_mover_controller", { mover: mover.name, controller: mover.controller });
     } catch (error) {
       mover.controller = before;
       toast(error.message, "error");
@@ -133,11 +136,7 @@ export class Walker {
     const length = Math.hypot(...sum) || 1;
     const speed = (SPEED_M_S * (this.fast ? FAST : 1)) / length;
     if (this.drives) {
-      this.app.try("drive", {
-        mover: this.mover,
-        linear: sum.map((part) => part * speed),
-        angular: [0, 0, 0],
-      });
+      this.app.try("drive_mover", { mover: this.mover, linear_m_s: sum.map((part) => part * speed) });
     }
     if (this.held.size) this.timer = setTimeout(() => this.#move(), REPEAT_MS);
   }

@@ -124,8 +124,10 @@ LIGHTS = st.builds(
     position_m=TRIPLES,
     direction=TRIPLES.filter(lambda xyz: np.linalg.norm(xyz) > 1e-3),
     **{
-        name: st.floats(low, high, width=32)
-        for name, (low, high, _) in LIGHT_LIMITS.items()
+        name: st.floats(
+            bounds.least or 0.0, bounds.most, width=32, exclude_min=bounds.above is not None
+        )
+        for name, bounds in LIGHT_LIMITS.items()
         if not name.endswith("_cone_deg")
     },
 )
@@ -141,7 +143,7 @@ LOOK_ATS = st.builds(LookAt, obj=TEXTS, point_m=TRIPLES)
 RIGID_BODIES = st.builds(
     RigidBody,
     gravity=st.booleans(),
-    **{name: st.floats(low, high) for name, (low, high, _) in RIGID_BODY_LIMITS.items()},
+    **{name: st.floats(at.least, at.most) for name, at in RIGID_BODY_LIMITS.items()},
 )
 MOVERS = st.builds(
     MoverInfo,
@@ -159,9 +161,7 @@ PICTURES = st.builds(
     smooth_edges=st.booleans(),
     supersampling=st.integers(1, 4),
     **{
-        name: st.floats(low, high)
-        for name, (low, high, _) in LIMITS.items()
-        if name != "supersampling"
+        name: st.floats(at.least, at.most) for name, at in LIMITS.items() if name != "supersampling"
     },
 )
 INTRINSICS = st.builds(

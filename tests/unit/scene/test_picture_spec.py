@@ -50,7 +50,9 @@ def test_every_setting_can_be_written() -> None:
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits_are_those_of_the_settings(name: str) -> None:
     """What the data type would refuse is refused in the file already."""
-    low, high, _ = LIMITS[name]
+    low, high = LIMITS[name].least, LIMITS[name].most
+    assert low is not None
+    assert high is not None
     key = name.removesuffix("_m")
     for accepted in (low, high):
         assert getattr(settings_of(**{key: accepted}), name) == accepted

@@ -11,15 +11,16 @@ from sailenv_ros.scene.fields import Position, Rotation, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
 from sailenv_ros.scene.rules import at_most_one, only_beside
+from sailenv_ros.types.camera import INTRINSICS_LIMITS
 from sailenv_ros.types.picture_settings import LIMITS
 
 __all__ = ["RandomCamera"]
 
-_Angle = Annotated[float, Number(least=1.0, most=170.0, unit="deg")]
-_Stops = Annotated[float, Number(least=-16.0, most=16.0, unit="stops")]
+_Angle = Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])]
+_Stops = Annotated[float, Number.within(LIMITS["exposure"])]
 _RuleName = Annotated[str, Text(r"[a-z][a-z0-9_]{0,62}", "the name of a camera rule")]
 _Seed = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
-_Well = Annotated[float, Number(least=0.0, most=LIMITS["full_well"][1], unit="electrons")]
+_Well = Annotated[float, Number.within(LIMITS["full_well"])]
 
 
 class RandomCamera(Thing):

@@ -7,13 +7,15 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Number, Text
-from sailenv_ros.scene.fields import Fraction, Radiance
+from sailenv_ros.scene.fields import Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values
+from sailenv_ros.types.lights import ENVIRONMENT_LIMITS
 
 __all__ = ["RandomEnvironment"]
 
-_Stops = Annotated[float, Number(least=-20.0, most=20.0, unit="stops")]
+_Stops = Annotated[float, Number.within(ENVIRONMENT_LIMITS["exposure"])]
+_Share = Annotated[float, Number.within(ENVIRONMENT_LIMITS["sky_share"])]
 _Sky = Annotated[str, Text(r"[^\x00-\x1f]{0,200}", "the name of a sky, or an empty text")]
 
 
@@ -29,7 +31,7 @@ class RandomEnvironment(Thing):
     exposure: Annotated[Draw, Drawn(_Stops)] | None = Field(
         default=None, description="the picture is brightened by 2 to the power of it [stops]"
     )
-    sky_share: Annotated[Draw, Drawn(Fraction)] | None = Field(
+    sky_share: Annotated[Draw, Drawn(_Share)] | None = Field(
         default=None, description="share of the sky's light that reaches the objects"
     )
     ambient: Annotated[Draw, Drawn(Radiance)] | None = Field(

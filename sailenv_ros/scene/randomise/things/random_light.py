@@ -10,10 +10,12 @@ from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Direction, Position, Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
+from sailenv_ros.types.lights import LIGHT_LIMITS
 
 __all__ = ["RandomLight"]
 
-_Strength = Annotated[float, Number(least=0.0, most=1e6)]
+_Intensity = Annotated[float, Number.within(LIGHT_LIMITS["intensity"])]
+_Indirect = Annotated[float, Number.within(LIGHT_LIMITS["indirect_multiplier"])]
 
 
 class RandomLight(Thing):
@@ -23,13 +25,13 @@ class RandomLight(Thing):
 
     type: Literal["light"]
     of: Which = Field(description="names of lights; * and ?")
-    intensity: Annotated[Draw, Drawn(_Strength)] | None = Field(
+    intensity: Annotated[Draw, Drawn(_Intensity)] | None = Field(
         default=None, description="as of a light"
     )
     colour: Annotated[Draw, Drawn(Radiance)] | None = Field(
         default=None, description="drawn in linear numbers"
     )
-    indirect_multiplier: Annotated[Draw, Drawn(_Strength)] | None = Field(
+    indirect_multiplier: Annotated[Draw, Drawn(_Indirect)] | None = Field(
         default=None, description="scales only the light that bounces"
     )
     offset: Annotated[Draw, Drawn(Position)] | None = Field(

@@ -1,32 +1,15 @@
-"""What a client may ask for about chance: the scene drawn anew; a part of `commands.py`."""
+"""Random values for scenes that say nothing of chance: materials, lights, exposure."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from sailenv_ros.errors import InvalidState
-from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.types.scene_info import SceneInfo
-from sailenv_ros.viewer.command_context import CommandContext, CommandTable
-from sailenv_ros.viewer.request_arguments import Arguments
 
-__all__ = ["CHANCE_COMMANDS", "things_of_any_scene"]
-
-CHANCE_COMMANDS = CommandTable()
+__all__ = ["things_of_any_scene"]
 
 _WALLS = ["plaster", "roughcast", "wallpaper_stripes", "wallpaper_damask"]
 _FLOORS = ["oak_planks", "walnut_planks", "oak_parquet", "walnut_parquet", "stone_tiles", "carpet"]
-
-
-@CHANCE_COMMANDS.changes
-async def randomise(context: CommandContext, given: Arguments) -> Any:
-    """Draw the next epoch, by what the scene draws or by what suits any scene; tell its index."""
-    try:
-        record = await context.run(Operations.randomise)
-    except InvalidState:
-        things = things_of_any_scene(context.info)
-        record = await context.run(Operations.randomise, index=0, things=things)
-    return record["index"]
 
 
 def things_of_any_scene(info: SceneInfo) -> list[dict[str, Any]]:
