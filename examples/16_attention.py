@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros import Simulation
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet
-from sailenv_ros.streams.stream_table import stream_named
+from sailenv_ros.streams.table import stream_named
 
 FRAMES, CROP_PX, CELL_PX, SUBSTEPS = 400, 64, 8, 20
 GRAVITY, SOFTENING_PX, FRICTION = 600.0, 10.0, 0.25  # [px^2 / frame^2], [px], [1 / frame]

@@ -15,7 +15,7 @@ from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.shard_writer import PICTURES_FOLDER
-from sailenv_ros.dataset.stores import Store
+from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.pictures.contact_sheet import contact_sheet
 from sailenv_ros.recording.export.data_files import write_bytes
 
@@ -27,7 +27,7 @@ MOST_PICTURES = 24
 SHEET_COLUMNS = 4
 
 
-def write_card(job: Job, store: Store, shards: Mapping[int, ShardSummary], folder: Path) -> None:
+def write_card(job: Job, store: Storage, shards: Mapping[int, ShardSummary], folder: Path) -> None:
     """Write the card of a data set whose shards are whole."""
     found = content_counts(frame_records(store, shards))
     sheet = _sheet(_pictures(store, shards))
@@ -79,7 +79,7 @@ def _text(
     return "\n".join(lines)
 
 
-def _pictures(store: Store, shards: Mapping[int, ShardSummary]) -> dict[str, NDArray[np.uint8]]:
+def _pictures(store: Storage, shards: Mapping[int, ShardSummary]) -> dict[str, NDArray[np.uint8]]:
     """Return small pictures of frames, from all over the data set, by their labels."""
     paths = [
         (f"{one.split} {Path(path).stem}", path)

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.shard_maker import ShardMaker
 from sailenv_ros.dataset.shard_plan import ShardPlan, clip_groups
-from sailenv_ros.dataset.stores import FolderStore
+from sailenv_ros.dataset.storage import FolderStorage
 
 __all__ = ["Estimate", "estimate"]
 
@@ -63,7 +63,7 @@ def estimate(job: Job) -> Estimate:
     clips = min(clips, recipe.clips.by_name[split], recipe.clip.per_scene)
     one_clip = {name: 0 for name in recipe.clips.by_name} | {split: clips}
     with TemporaryDirectory(prefix="sailenv-estimate-") as folder:
-        store = FolderStore(Path(folder))
+        store = FolderStorage(Path(folder))
         # Once to warm everything up, once to measure.
         started_s, _, _ = _made(job, store, one_clip | {split: 1}, frames=1)
         measured_s, made, size = _made(job, store, one_clip, frames=frames)
@@ -81,7 +81,7 @@ def estimate(job: Job) -> Estimate:
 
 
 def _made(
-    job: Job, store: FolderStore, clips: dict[str, int], *, frames: int
+    job: Job, store: FolderStorage, clips: dict[str, int], *, frames: int
 ) -> tuple[float, int, int]:
     """Make one shard of a smaller recipe; return seconds, frames and bytes."""
     recipe = job.recipe

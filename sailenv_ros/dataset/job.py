@@ -14,7 +14,7 @@ from sailenv_ros import __version__
 from sailenv_ros.assets.pack import PACK_FILE
 from sailenv_ros.assets.sources import installed_packs
 from sailenv_ros.bake.settings import BAKE_VERSION
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.errors import RecordingError, SceneDiagnostic, SceneError
 from sailenv_ros.scene.documents import load_document
 from sailenv_ros.scene.scene_catalogue import SUFFIXES

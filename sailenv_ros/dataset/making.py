@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.dataset.card import write_card
-from sailenv_ros.dataset.engines import Engine
+from sailenv_ros.dataset.engine import Engine
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import (
     MANIFEST,
@@ -23,7 +23,7 @@ from sailenv_ros.dataset.manifest import (
 )
 from sailenv_ros.dataset.merging import finish_formats
 from sailenv_ros.dataset.shard_plan import ShardPlan
-from sailenv_ros.dataset.stores import FolderStore, Store, open_store
+from sailenv_ros.dataset.storage import FolderStorage, Storage, open_storage
 from sailenv_ros.errors import RecordingError
 
 __all__ = ["JOB_FILE", "RECIPE_FILE", "MadeDataset", "Progress", "job_of", "make_dataset"]
@@ -106,7 +106,7 @@ def make_dataset(
     SailenvError
         If a scene cannot be built.
     """
-    store = open_store(where)
+    store = open_storage(where)
     _begin(job, store)
     plan = ShardPlan(job.recipe)
     done = done_shards(store)
@@ -133,7 +133,7 @@ def make_dataset(
     return _finish(job, store, dict(sorted(done.items())))
 
 
-def job_of(store: Store) -> Job:
+def job_of(store: Storage) -> Job:
     """Return the job of a data set, whole or not.
 
     Raises
@@ -147,10 +147,10 @@ def job_of(store: Store) -> Job:
     return Job.from_json(data, f"{store.shown}/{JOB_FILE}")
 
 
-def _begin(job: Job, store: Store) -> None:
+def _begin(job: Job, store: Storage) -> None:
     """Write down what is made, or compare it with what was begun."""
     if store.read(JOB_FILE) is None:
-        if isinstance(store, FolderStore) and any(store.folder.iterdir()):
+        if isinstance(store, FolderStorage) and any(store.folder.iterdir()):
             raise RecordingError(f"{store.shown} is not empty; nothing is overwritten")
         store.write(RECIPE_FILE, job.recipe_text.encode())
         store.write(JOB_FILE, job.to_json())
@@ -164,7 +164,7 @@ def _begin(job: Job, store: Store) -> None:
         )
 
 
-def _finish(job: Job, store: Store, shards: Mapping[int, ShardSummary]) -> MadeDataset:
+def _finish(job: Job, store: Storage, shards: Mapping[int, ShardSummary]) -> MadeDataset:
     known = store.read(MANIFEST)
     if known is not None:
         return _made(json.loads(known))
@@ -173,7 +173,7 @@ def _finish(job: Job, store: Store, shards: Mapping[int, ShardSummary]) -> MadeD
         write_card(job, store, shards, folder)
         files = summaries_of_files(folder)
         store.publish(folder, list(files))
-    if isinstance(store, FolderStore):
+    if isinstance(store, FolderStorage):
         store.remove_staging()
     manifest = _manifest(job, shards, files)
     store.write(MANIFEST, (json.dumps(manifest, indent=1) + "\n").encode())

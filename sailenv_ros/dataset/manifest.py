@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.dataset.stores import Store
+from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.errors import RecordingError
 
 __all__ = [
@@ -109,7 +109,7 @@ def file_hash(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def done_shards(store: Store) -> dict[int, ShardSummary]:
+def done_shards(store: Storage) -> dict[int, ShardSummary]:
     """Return the summaries of the shards that are whole, by their numbers."""
     found = {}
     for name in store.names(SHARDS_FOLDER):
@@ -121,7 +121,7 @@ def done_shards(store: Store) -> dict[int, ShardSummary]:
     return dict(sorted(found.items()))
 
 
-def whole_files(store: Store) -> dict[str, FileHash]:
+def whole_files(store: Storage) -> dict[str, FileHash]:
     """Return the files that belong to the whole data set; none while it is not finished.
 
     Raises

@@ -9,9 +9,9 @@ from itertools import accumulate, islice
 from pathlib import Path
 from typing import Any, overload
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.dataset.manifest import ShardSummary
-from sailenv_ros.dataset.stores import Store
+from sailenv_ros.dataset.recipe import DatasetRecipe
+from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record
 from sailenv_ros.recording.export.formats import format_class
@@ -28,7 +28,7 @@ def merges(kind: type[DatasetFormat]) -> bool:
     return not kind.is_sequence and (not kind.is_shard or kind.needs_records)
 
 
-def frame_records(store: Store, shards: Iterable[int]) -> Iterator[dict[str, Any]]:
+def frame_records(store: Storage, shards: Iterable[int]) -> Iterator[dict[str, Any]]:
     """Yield what is known of each frame, in the order of the shards.
 
     Raises
@@ -52,13 +52,13 @@ class ShardRecords(Sequence[Record]):
 
     Parameters
     ----------
-    store : Store
+    store : Storage
     shards : mapping of int to ShardSummary
     name : str
         Of the format.
     """
 
-    def __init__(self, store: Store, shards: Mapping[int, ShardSummary], name: str) -> None:
+    def __init__(self, store: Storage, shards: Mapping[int, ShardSummary], name: str) -> None:
         self._store = store
         self._name = name
         self._numbers = list(shards)
@@ -91,7 +91,7 @@ class ShardRecords(Sequence[Record]):
 
 
 def finish_formats(
-    recipe: DatasetRecipe, store: Store, shards: Mapping[int, ShardSummary], folder: Path
+    recipe: DatasetRecipe, store: Storage, shards: Mapping[int, ShardSummary], folder: Path
 ) -> None:
     """Write into a folder what the formats of a recipe write at their end."""
     for name in recipe.formats:

@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
-from sailenv_ros.dataset.dataset_reader import Dataset, DatasetFrame, open_dataset
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
+from sailenv_ros.dataset.reader import Dataset, DatasetFrame, open_dataset
 from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
-from sailenv_ros.dataset.stores import FolderStore
+from sailenv_ros.dataset.storage import FolderStorage
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
@@ -86,7 +86,7 @@ def save_preview(folder: str | Path, path: str | Path, *, split: str = "", frame
 
 def preview_html(dataset: Dataset, numbers: list[int]) -> str:
     """Return the page that shows these frames of a data set."""
-    store = FolderStore(dataset.folder)
+    store = FolderStorage(dataset.folder)
     shards = done_shards(store)
     counts = content_counts(frame_records(store, shards))
     table = load_categories()

@@ -23,14 +23,14 @@ from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.cpu_render.mesh_store import MeshStore
 from sailenv_ros.cpu_render.part_table import PartTable
 from sailenv_ros.cpu_render.texture_store import TextureStore
-from sailenv_ros.dataset.camera_tracks import NoPlace, Track, track_of, turning
+from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
 from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
 from sailenv_ros.dataset.shard_writer import ShardWriter
-from sailenv_ros.dataset.stores import Store
-from sailenv_ros.errors import UnknownName
+from sailenv_ros.dataset.storage import Storage
+from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame import Frame
 from sailenv_ros.generation.names import PREFIX
 from sailenv_ros.geometry import Pose
@@ -51,7 +51,7 @@ class ShardMaker:
     Parameters
     ----------
     job : Job
-    store : Store
+    store : Storage
     on_frame : callable
         Called after each frame.
     scratch : Path or None
@@ -61,7 +61,7 @@ class ShardMaker:
     def __init__(
         self,
         job: Job,
-        store: Store,
+        store: Storage,
         on_frame: Callable[[], None] = lambda: None,
         *,
         scratch: Path | None = None,
@@ -161,7 +161,7 @@ class ShardMaker:
                         one.name: self._track(one, clip, core, chosen.get(one.name, []))
                         for one in recipe.cameras
                     }
-                except NoPlace as problem:
+                except NoFreeSpace as problem:
                     skipped[f"{clip.scene}: {problem}"] += 1
                     continue
                 writer.begin_clip(clip)
@@ -231,7 +231,7 @@ class ShardMaker:
         if not isinstance(camera, RuleCamera):
             return track_of(camera, core, times_s, random)
         if not chosen:
-            raise NoPlace(f"no more places for the camera {camera.name} by {camera.rule}")
+            raise NoFreeSpace(f"no more places for the camera {camera.name} by {camera.rule}")
         return turning(chosen.pop(0), camera, times_s, random)
 
     def _agent(self, camera: AnyCamera, core: SimulationCore) -> AgentSpec:

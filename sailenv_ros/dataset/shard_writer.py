@@ -15,13 +15,13 @@ from typing import Any
 import cv2
 import numpy as np
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.dataset.merging import RECORDS_FOLDER, merges
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import Clip, Shard
 from sailenv_ros.frame import Frame
 from sailenv_ros.recording.export.annotated_objects import NO_CATEGORY
 from sailenv_ros.recording.export.data_files import write_bytes
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.recording.export.formats import format_class
 
 __all__ = ["PICTURES_FOLDER", "ShardWriter"]
@@ -149,7 +149,7 @@ class ShardWriter:
         for name, made in sequence.formats.items():
             own = name in self._own
             in_clip = replace(sample, number=sequence.count, split="")
-            result: Made = made.add(in_clip if type(made).is_sequence else sample)
+            result: WriteResult = made.add(in_clip if type(made).is_sequence else sample)
             self.written[name].update(result.written)
             self.left_out[name].update(result.left_out)
             if not own:

@@ -13,7 +13,7 @@ import numpy as np
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import FileHash, done_shards, file_hash, whole_files
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.dataset.stores import FolderStore, Store, open_store
+from sailenv_ros.dataset.storage import FolderStorage, Storage, open_storage
 
 __all__ = ["Difference", "verify_dataset"]
 
@@ -55,7 +55,7 @@ def verify_dataset(
     RecordingError
         If there is no data set, or this machine would make another one.
     """
-    store = open_store(where)
+    store = open_storage(where)
     job = job_of(store)
     if sample:
         job.check_machine()
@@ -84,7 +84,7 @@ def verify_dataset(
     return found
 
 
-def _changed(store: Store, files: Mapping[str, FileHash]) -> Iterator[Difference]:
+def _changed(store: Storage, files: Mapping[str, FileHash]) -> Iterator[Difference]:
     """Yield the files that are not as they were written."""
     for path, known in files.items():
         digest = _hash(store, path)
@@ -94,8 +94,8 @@ def _changed(store: Store, files: Mapping[str, FileHash]) -> Iterator[Difference
             yield Difference(path, "has another content than was written")
 
 
-def _hash(store: Store, path: str) -> str | None:
-    if isinstance(store, FolderStore):
+def _hash(store: Storage, path: str) -> str | None:
+    if isinstance(store, FolderStorage):
         file = store.folder / path
         return file_hash(file) if file.is_file() else None
     data = store.read(path)

@@ -15,9 +15,9 @@ from sailenv_ros.recording.export.data_files import finish, make_folder, write_j
 from sailenv_ros.recording.export.dataset_format import (
     DatasetFormat,
     FlowDirection,
-    Made,
     Record,
     Sample,
+    WriteResult,
 )
 from sailenv_ros.recording.export.formats import FORMATS, check_views, format_class
 from sailenv_ros.recording.export.journal import JOURNAL, Journal
@@ -224,7 +224,7 @@ class DatasetWriter:
             self.close()
 
 
-def _totals(made: Sequence[Made]) -> FormatSummary:
+def _totals(made: Sequence[WriteResult]) -> FormatSummary:
     written: Counter[str] = Counter()
     left_out: Counter[str] = Counter()
     for one in made:

@@ -14,7 +14,7 @@ from typing import Any
 
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.export.data_files import finish, write_errors
-from sailenv_ros.recording.export.dataset_format import Made
+from sailenv_ros.recording.export.dataset_format import WriteResult
 
 __all__ = ["JOURNAL", "Entry", "Journal"]
 
@@ -23,7 +23,7 @@ JOURNAL = "unfinished.jsonl"
 
 FRAMES_PER_SYNC = 32
 
-Entry = Mapping[str, Made]
+Entry = Mapping[str, WriteResult]
 """What each format made of one frame."""
 
 
@@ -105,7 +105,7 @@ class Journal:
         for line in lines[1:]:
             value = json.loads(line)
             self.splits.append(value["split"])
-            self.entries.append({name: Made(**made) for name, made in value["made"].items()})
+            self.entries.append({name: WriteResult(**made) for name, made in value["made"].items()})
         if len(whole) != len(data):
             os.truncate(self._path, len(whole))
         if not lines:

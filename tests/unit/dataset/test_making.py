@@ -20,7 +20,7 @@ from pycocotools.coco import COCO
 from rosbags.highlevel import AnyReader
 
 from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset, verify_dataset
-from sailenv_ros.dataset.engines import HereEngine
+from sailenv_ros.dataset.engines import SerialEngine
 from sailenv_ros.dataset.manifest import summaries_of_files
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.motion import motion
@@ -191,7 +191,7 @@ def test_ctrl_c_is_quick_and_leaves_nothing_among_temporary_files(
     assert not (folder / "manifest.json").exists()
 
 
-class DyingEngine(HereEngine):
+class DyingEngine(SerialEngine):
     """Stops after two shards, as Ctrl-C does."""
 
     def run(self, job, where, shards, on_frames):  # type: ignore[no-untyped-def]

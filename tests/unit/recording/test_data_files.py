@@ -16,8 +16,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
-from sailenv_ros.recording.export.bop_export import BopExport
-from sailenv_ros.recording.export.coco_export import CocoExport
+from sailenv_ros.recording.export.bop import BopExport
+from sailenv_ros.recording.export.coco import CocoExport
 from sailenv_ros.recording.export.data_files import (
     discard_drafts,
     json_pieces,

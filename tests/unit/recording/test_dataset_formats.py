@@ -23,7 +23,7 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame
 from sailenv_ros.recording.export import DatasetWriter, Splits, export
-from sailenv_ros.recording.export.bop_export import DEPTH_STEP_MM
+from sailenv_ros.recording.export.bop import DEPTH_STEP_MM
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.recording.flow_formats import (
+from sailenv_ros.recording.export.flow_files import (
     backward_from_flo,
     backward_from_kitti,
     backward_px,

@@ -20,7 +20,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame
 from sailenv_ros.geometry import look_at
 from sailenv_ros.recording.export.dataset_writer import DatasetWriter
-from sailenv_ros.recording.export.lve_export import lve_motion
+from sailenv_ros.recording.export.lve import lve_motion
 
 SIZE = 96
 

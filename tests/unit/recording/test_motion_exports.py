@@ -18,7 +18,7 @@ from sailenv_ros.frame import Frame
 from sailenv_ros.motion import SceneGeometry, motion, track
 from sailenv_ros.recording.export import export
 from sailenv_ros.recording.export.dataset_writer import DatasetWriter
-from sailenv_ros.recording.export.movi_export import load_movi_frame
+from sailenv_ros.recording.export.movi import load_movi_frame
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.reader import RecordingReader

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.export.tar_files import WRITE_BACK_BYTES, TarWriter
-from sailenv_ros.recording.export.webdataset_export import encoded
+from sailenv_ros.recording.export.webdataset import encoded
 
 NAMES = st.text("abcdefghij0123456789._-", min_size=1, max_size=90)
 

@@ -29,7 +29,7 @@ from sailenv_ros.streams import (
     StreamJob,
     StreamKind,
     make_stream,
-    stream_making,
+    making,
     stream_named,
 )
 from sailenv_ros.system.futures import wait_for
@@ -110,7 +110,7 @@ def test_flow_is_zero_on_all_but_the_one_that_moves(tmp_path: Path) -> None:
 def test_a_broken_stream_goes_on_with_the_same_messages(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stream_making, "PART_FRAMES", 5)
+    monkeypatch.setattr(making, "PART_FRAMES", 5)
     whole = make_stream(job(), tmp_path / "a" / "solid")
 
     def break_off(done: int) -> None:
@@ -168,7 +168,7 @@ objects:
 def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> StreamJob:
     """A stream in a room of its own, with a cache of its own, in which bakes are coarse."""
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(stream_making, "PART_FRAMES", 3)
+    monkeypatch.setattr(making, "PART_FRAMES", 3)
     monkeypatch.setattr(finished_light, "bake", coarse_bake)
     scene = tmp_path / "cell.yaml"
     scene.write_text(CELL_SCENE)
@@ -201,7 +201,7 @@ def test_the_deadline_of_a_long_way_is_one_frames(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Frames that are passed over are not waited for all at once; what is late says so itself."""
-    monkeypatch.setattr(stream_making, "PART_FRAMES", 2)
+    monkeypatch.setattr(making, "PART_FRAMES", 2)
     waited: list[str] = []
 
     def count(future: Any, what: str, timeout_s: float) -> Any:
@@ -217,7 +217,7 @@ def test_the_deadline_of_a_long_way_is_one_frames(
     bag = tmp_path / "solid"
     with pytest.raises(Broken):
         make_stream(job(14), bag, on_frame=break_off)
-    monkeypatch.setattr(stream_making, "wait_for", count)
+    monkeypatch.setattr(making, "wait_for", count)
     with pytest.raises(DeadlineExceeded, match="while waiting for physics to step to a frame"):
         make_stream(job(14), bag)
 

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
 from sailenv_ros.recording.export.data_files import discard_drafts, open_draft, png_bytes
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.recording.export.image_formats import frame_record
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.recording.export.images import frame_record
 from sailenv_ros.recording.export.object_records import object_record
 from sailenv_ros.recording.export.tar_files import Content, TarWriter
 
@@ -40,7 +40,7 @@ class WebDatasetExport(DatasetFormat):
         self._open = ExitStack()
         self._tars: dict[str, TarWriter] = {}
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
         tar = self._tar(sample.split or "train")
         frame = sample.frame
@@ -66,7 +66,7 @@ class WebDatasetExport(DatasetFormat):
             record["objects"] = [object_record(found.table, row) for row in range(len(found.table))]
             left_out = dict(found.left_out)
         tar.append(f"{name}.json", [json.dumps(record).encode()])
-        return Made(written={"samples": 1}, left_out=left_out)
+        return WriteResult(written={"samples": 1}, left_out=left_out)
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the files."""

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from sailenv_ros.extras import need
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
 from sailenv_ros.recording.export.data_files import discard_drafts, png_bytes
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.recording.export.image_formats import frame_record
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.recording.export.images import frame_record
 from sailenv_ros.recording.export.object_records import object_record
 from sailenv_ros.recording.export.row_tables import RowTable
 
@@ -38,7 +38,7 @@ class ParquetExport(DatasetFormat):
         self._open = ExitStack()
         self._tables: dict[str, RowTable] = {}
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
         frame = sample.frame
         told = frame_record(sample.number, frame)
@@ -53,7 +53,7 @@ class ParquetExport(DatasetFormat):
             **{view: _cell(values) for view, values in frame.views.items()},
         }
         self._table(sample.split or "train", frame.views).append(row)
-        return Made(written={"rows": 1}, left_out=found.left_out)
+        return WriteResult(written={"rows": 1}, left_out=found.left_out)
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write what is left and close the files."""

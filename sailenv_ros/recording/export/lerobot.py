@@ -27,7 +27,7 @@ from sailenv_ros.recording.export.data_files import (
     write_bytes,
     write_json,
 )
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.recording.export.row_tables import RowTable
 
 __all__ = ["LeRobotExport"]
@@ -63,7 +63,7 @@ class LeRobotExport(DatasetFormat):
         self._table: RowTable | None = None
         self._epochs: list[int] = []
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
         frame = sample.frame
         episode = self._episode(sample)
@@ -88,7 +88,7 @@ class LeRobotExport(DatasetFormat):
         if self._table is None:
             self._table = self._begun(frame)
         self._table.append(row)
-        return Made(record=self._record(sample, episode, now, then), written={"frames": 1})
+        return WriteResult(record=self._record(sample, episode, now, then), written={"frames": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the table, and write what is known of all episodes."""

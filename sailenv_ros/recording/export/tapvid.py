@@ -22,7 +22,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame
 from sailenv_ros.motion import SceneGeometry, Tracks, track
 from sailenv_ros.recording.export.data_files import write_bytes, write_png
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.simulation.recorded_geometry import recorded_geometry
 
 __all__ = ["TapVidExport", "tapvid_entry"]
@@ -49,7 +49,7 @@ class TapVidExport(DatasetFormat):
         super().__init__(folder)
         self._frames: list[Frame] = []
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's picture and keep where everything was."""
         frame = sample.frame
         if frame.states is None:
@@ -57,7 +57,7 @@ class TapVidExport(DatasetFormat):
         sample.scene_info("TAP-Vid")
         write_png(self._picture(sample.number), frame["rgb"])
         self._frames.append(replace(frame, views={}))
-        return Made(written={"pictures": 1})
+        return WriteResult(written={"pictures": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Follow the points and write the pickle."""

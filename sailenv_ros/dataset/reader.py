@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import ShardPlan
-from sailenv_ros.dataset.stores import FolderStore
+from sailenv_ros.dataset.storage import FolderStorage
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.geometry import Pose
@@ -99,7 +99,7 @@ class Dataset(Sequence[DatasetFrame]):
         self.split = split
         if not folder.is_dir():
             raise RecordingError(f"{folder} holds no data set: there is no such folder")
-        store = FolderStore(folder)
+        store = FolderStorage(folder)
         self.recipe: DatasetRecipe = job_of(store).recipe
         if split and split not in self.recipe.clips.by_name:
             raise UnknownName("split", split, self.recipe.clips.by_name)

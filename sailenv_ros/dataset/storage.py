@@ -19,13 +19,13 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.extras import need
 from sailenv_ros.system.files import UNFINISHED, make_folder, sync_file_system, write_file
 
-__all__ = ["FolderStore", "RemoteStore", "Store", "open_store"]
+__all__ = ["FolderStorage", "RemoteStorage", "Storage", "open_storage"]
 
 STAGING = f"making{UNFINISHED}"
 """Folder in a data set in which shards grow until they are whole."""
 
 
-class Store(ABC):
+class Storage(ABC):
     """A data set's place; paths are relative to it, with ``/``."""
 
     @property
@@ -63,7 +63,7 @@ class Store(ABC):
         """Return the names of the files in a folder, sorted; none if there is no such folder."""
 
 
-def open_store(where: str | Path) -> Store:
+def open_storage(where: str | Path) -> Storage:
     """Return the store of a folder or a URL.
 
     Raises
@@ -75,11 +75,11 @@ def open_store(where: str | Path) -> Store:
     """
     text = str(where)
     if "://" in text and not text.startswith("file://"):
-        return RemoteStore(text)
-    return FolderStore(Path(text.removeprefix("file://")))
+        return RemoteStorage(text)
+    return FolderStorage(Path(text.removeprefix("file://")))
 
 
-class FolderStore(Store):
+class FolderStorage(Storage):
     """A folder of this machine."""
 
     def __init__(self, folder: Path) -> None:
@@ -144,7 +144,7 @@ class FolderStore(Store):
         return sorted(one.name for one in place.iterdir() if UNFINISHED not in one.name)
 
 
-class RemoteStore(Store):
+class RemoteStorage(Storage):
     """A place that `fsspec` reaches; credentials are its own matter (environment, files)."""
 
     def __init__(self, url: str) -> None:

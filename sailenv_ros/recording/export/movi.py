@@ -20,7 +20,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.motion import motion, object_coordinates
 from sailenv_ros.recording.export.data_files import write_bytes
-from sailenv_ros.recording.export.dataset_format import DatasetFormat, Made, Sample
+from sailenv_ros.recording.export.dataset_format import DatasetFormat, Sample, WriteResult
 
 __all__ = ["MoviExport", "load_movi_frame"]
 
@@ -53,7 +53,7 @@ class MoviExport(DatasetFormat):
     views: ClassVar[tuple[str, ...]] = ("depth", "instance")
     needs_neighbours: ClassVar[bool] = True
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's file."""
         frame, states = sample.frame, sample.frame.states
         if states is None:
@@ -77,7 +77,7 @@ class MoviExport(DatasetFormat):
         data = io.BytesIO()
         np.savez_compressed(data, **arrays)
         write_bytes(self.folder / sample.split / f"{sample.stem}.npz", data.getvalue())
-        return Made(written={"frames": 1, "flow fields": fields})
+        return WriteResult(written={"frames": 1, "flow fields": fields})
 
 
 def load_movi_frame(path: str | Path) -> Frame:
