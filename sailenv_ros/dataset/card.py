@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +15,7 @@ from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.shard_writer import PICTURES_FOLDER
 from sailenv_ros.dataset.storage import Storage
+from sailenv_ros.pictures.codecs import decode_picture, encode_jpeg
 from sailenv_ros.pictures.contact_sheet import contact_sheet
 from sailenv_ros.recording.export.data_files import write_bytes
 
@@ -93,9 +93,8 @@ def _pictures(store: Storage, shards: Mapping[int, ShardSummary]) -> dict[str, N
     for index in np.unique(np.linspace(0, len(paths) - 1, MOST_PICTURES).astype(int)):
         label, path = paths[index]
         data = store.read(path)
-        picture = None if data is None else cv2.imdecode(np.frombuffer(data, np.uint8), 1)
-        if picture is not None:
-            found[label] = np.asarray(picture[..., ::-1], np.uint8)
+        if data is not None:
+            found[label] = decode_picture(data)
     return found
 
 
@@ -103,6 +102,4 @@ def _sheet(pictures: Mapping[str, NDArray[np.uint8]]) -> bytes | None:
     """Return the pictures beside and below each other as one JPEG; None if there are none."""
     if not pictures:
         return None
-    sheet = contact_sheet(pictures, columns=SHEET_COLUMNS)
-    _, data = cv2.imencode(".jpg", sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])
-    return bytes(data)
+    return encode_jpeg(contact_sheet(pictures, columns=SHEET_COLUMNS), quality=88)

@@ -28,6 +28,7 @@ from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
 from sailenv_ros.dataset.storage import FolderStorage
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import CategoryTable
+from sailenv_ros.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.recording.export.annotated_objects import NO_CATEGORY
 from sailenv_ros.recording.export.object_records import object_record
@@ -187,9 +188,10 @@ def _picture(view: str, values: NDArray[Any], table: CategoryTable) -> str:
         method = cv2.INTER_NEAREST if labels else cv2.INTER_AREA
         size = most, max(1, round(height * most / width))
         colours = np.asarray(cv2.resize(colours, size, interpolation=method), np.uint8)
-    kind, options = ("png", []) if labels else ("jpeg", [cv2.IMWRITE_JPEG_QUALITY, 85])
-    _, data = cv2.imencode(f".{kind}", np.ascontiguousarray(colours[..., ::-1]), options)
-    return f"data:image/{kind};base64,{base64.b64encode(data.tobytes()).decode()}"
+    kind, data = (
+        ("png", encode_png(colours)) if labels else ("jpeg", encode_jpeg(colours, quality=85))
+    )
+    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
 
 
 @lru_cache(maxsize=4096)

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +24,7 @@ from sailenv_ros.dataset.storage import FolderStorage
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.geometry import Pose
+from sailenv_ros.pictures.codecs import decode_picture
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 
@@ -253,11 +253,7 @@ def _read(tar: tarfile.TarFile, member: tarfile.TarInfo) -> bytes:
 
 
 def _from_png(view: str, data: bytes) -> NDArray[Any]:
-    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    if picture is None:
-        raise ValueError(f"{view} is no PNG file")
-    if picture.ndim > 2:
-        picture = np.ascontiguousarray(picture[..., ::-1])
+    picture = decode_picture(data)
     if VIEWS[view].dtype == np.bool_:
         return np.asarray(picture > 0)
     return picture

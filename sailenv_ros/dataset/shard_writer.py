@@ -19,6 +19,7 @@ from sailenv_ros.dataset.merging import RECORDS_FOLDER, merges
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import Clip, Shard
 from sailenv_ros.frame import Frame
+from sailenv_ros.pictures.codecs import encode_jpeg
 from sailenv_ros.recording.export.annotated_objects import NO_CATEGORY
 from sailenv_ros.recording.export.data_files import write_bytes
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
@@ -207,5 +208,4 @@ def _small_picture(frame: Frame) -> bytes:
     height, width = frame["rgb"].shape[:2]
     size = PICTURE_WIDTH, max(1, round(PICTURE_WIDTH * height / width))
     small = cv2.resize(frame["rgb"], size, interpolation=cv2.INTER_AREA)
-    _, data = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 85])
-    return bytes(data)
+    return encode_jpeg(np.asarray(small, np.uint8), quality=85)

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.extras import need
 from sailenv_ros.frame import Frame
+from sailenv_ros.pictures.codecs import encode_png
 from sailenv_ros.recording.export.data_files import (
     discard_drafts,
-    png_bytes,
     write_bytes,
     write_json,
 )
@@ -72,7 +72,7 @@ class LeRobotExport(DatasetFormat):
         goes_on = following is not None and _of_one_episode(frame, following)
         now, then = _pose(frame), _pose(following if goes_on and following else frame)
         row = {
-            IMAGE: {"bytes": png_bytes(frame["rgb"]), "path": None},
+            IMAGE: {"bytes": encode_png(frame["rgb"], "fastest"), "path": None},
             STATE: now.tolist(),
             ACTION: then.tolist(),
             "episode_index": episode,

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.extras import need
+from sailenv_ros.pictures.codecs import encode_png
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
-from sailenv_ros.recording.export.data_files import discard_drafts, png_bytes
+from sailenv_ros.recording.export.data_files import discard_drafts
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.recording.export.images import frame_record
 from sailenv_ros.recording.export.object_records import object_record
@@ -80,7 +81,7 @@ def _is_image(values: NDArray[Any]) -> bool:
 
 def _cell(values: NDArray[Any]) -> Any:
     if _is_image(values):
-        return {"bytes": png_bytes(values), "path": None}
+        return {"bytes": encode_png(values, "fastest"), "path": None}
     return [row if row.ndim == 1 else list(row) for row in values]
 
 

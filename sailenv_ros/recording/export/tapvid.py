@@ -14,13 +14,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RecordingError
+from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame import Frame
 from sailenv_ros.motion import SceneGeometry, Tracks, track
+from sailenv_ros.pictures.codecs import decode_picture
 from sailenv_ros.recording.export.data_files import write_bytes, write_png
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.simulation.recorded_geometry import recorded_geometry
@@ -75,10 +75,11 @@ class TapVidExport(DatasetFormat):
         return self.folder / "frames" / f"{number:06d}.png"
 
     def _read(self, number: int) -> NDArray[np.uint8]:
-        picture = cv2.imread(str(self._picture(number)), cv2.IMREAD_COLOR)
-        if picture is None:
-            raise RecordingError(f"{self._picture(number)} cannot be read")
-        return np.asarray(picture[..., ::-1], np.uint8)
+        path = self._picture(number)
+        try:
+            return decode_picture(path.read_bytes())
+        except (OSError, InvalidRequest) as problem:
+            raise RecordingError(f"{path} cannot be read: {problem}") from None
 
 
 def tapvid_entry(

@@ -19,8 +19,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.pictures.codecs import encode_png
 from sailenv_ros.recording.export.annotated_objects import annotated_objects
-from sailenv_ros.recording.export.data_files import discard_drafts, open_draft, png_bytes
+from sailenv_ros.recording.export.data_files import discard_drafts, open_draft
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.recording.export.images import frame_record
 from sailenv_ros.recording.export.object_records import object_record
@@ -90,7 +91,7 @@ class WebDatasetExport(DatasetFormat):
 def encoded(values: NDArray[Any]) -> tuple[str, Sequence[Content]]:
     """Return the ending and the content of the member that keeps a view's values exactly."""
     if values.dtype in (np.bool_, np.uint8, np.uint16):
-        return "png", [png_bytes(values)]
+        return "png", [encode_png(values, "fastest")]
     values = np.ascontiguousarray(values)
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, np.lib.format.header_data_from_array_1_0(values))
