@@ -27,10 +27,12 @@ MOST_PICTURES = 24
 SHEET_COLUMNS = 4
 
 
-def write_card(job: Job, store: Storage, shards: Mapping[int, ShardSummary], folder: Path) -> None:
+def write_card(
+    job: Job, storage: Storage, shards: Mapping[int, ShardSummary], folder: Path
+) -> None:
     """Write the card of a data set whose shards are whole."""
-    found = content_counts(frame_records(store, shards))
-    sheet = _sheet(_pictures(store, shards))
+    found = content_counts(frame_records(storage, shards))
+    sheet = _sheet(_pictures(storage, shards))
     if sheet is not None:
         write_bytes(folder / SHEET_FILE, sheet)
     for name, drawing in found.histograms().items():
@@ -79,7 +81,7 @@ def _text(
     return "\n".join(lines)
 
 
-def _pictures(store: Storage, shards: Mapping[int, ShardSummary]) -> dict[str, NDArray[np.uint8]]:
+def _pictures(storage: Storage, shards: Mapping[int, ShardSummary]) -> dict[str, NDArray[np.uint8]]:
     """Return small pictures of frames, from all over the data set, by their labels."""
     paths = [
         (f"{one.split} {Path(path).stem}", path)
@@ -92,7 +94,7 @@ def _pictures(store: Storage, shards: Mapping[int, ShardSummary]) -> dict[str, N
         return found
     for index in np.unique(np.linspace(0, len(paths) - 1, MOST_PICTURES).astype(int)):
         label, path = paths[index]
-        data = store.read(path)
+        data = storage.read(path)
         if data is not None:
             found[label] = decode_picture(data)
     return found

@@ -18,8 +18,8 @@ from typing import Any
 from sailenv_ros.dataset.engine import ATTEMPTS, Engine, OnFrames, interleave_shards
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.dataset.storage import open_storage
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory

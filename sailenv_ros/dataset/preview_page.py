@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.reader import Dataset, DatasetFrame, open_dataset
 from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
-from sailenv_ros.dataset.storage import FolderStorage
 from sailenv_ros.frame import VIEWS
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.codecs import encode_jpeg, encode_png
@@ -87,9 +87,9 @@ def save_preview(folder: str | Path, path: str | Path, *, split: str = "", frame
 
 def preview_html(dataset: Dataset, numbers: list[int]) -> str:
     """Return the page that shows these frames of a data set."""
-    store = FolderStorage(dataset.folder)
-    shards = done_shards(store)
-    counts = content_counts(frame_records(store, shards))
+    storage = FolderStorage(dataset.folder)
+    shards = done_shards(storage)
+    counts = content_counts(frame_records(storage, shards))
     table = load_categories()
     views = shown_views(dataset, VIEWS)
     total_bytes = sum(file.bytes for one in shards.values() for file in one.files.values())

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import ShardPlan
-from sailenv_ros.dataset.storage import FolderStorage
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.geometry import Pose
@@ -99,13 +99,13 @@ class Dataset(Sequence[DatasetFrame]):
         self.split = split
         if not folder.is_dir():
             raise RecordingError(f"{folder} holds no data set: there is no such folder")
-        store = FolderStorage(folder)
-        self.recipe: DatasetRecipe = job_of(store).recipe
+        storage = FolderStorage(folder)
+        self.recipe: DatasetRecipe = job_of(storage).recipe
         if split and split not in self.recipe.clips.by_name:
             raise UnknownName("split", split, self.recipe.clips.by_name)
         self._records = [
             record
-            for record in frame_records(store, done_shards(store))
+            for record in frame_records(storage, done_shards(storage))
             if split in ("", record["split"])
         ]
         self._source = self._opened()

@@ -30,6 +30,7 @@ from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamer
 from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
 from sailenv_ros.dataset.shard_writer import ShardWriter
 from sailenv_ros.dataset.storage import Storage
+from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame import Frame
 from sailenv_ros.generation.names import PREFIX
@@ -51,7 +52,7 @@ class ShardMaker:
     Parameters
     ----------
     job : Job
-    store : Storage
+    storage : Storage
     on_frame : callable
         Called after each frame.
     scratch : Path or None
@@ -61,7 +62,7 @@ class ShardMaker:
     def __init__(
         self,
         job: Job,
-        store: Storage,
+        storage: Storage,
         on_frame: Callable[[], None] = lambda: None,
         *,
         scratch: Path | None = None,
@@ -69,7 +70,7 @@ class ShardMaker:
         self._job = job
         self._recipe = job.recipe
         self._plan = ShardPlan(job.recipe)
-        self._store = store
+        self._store = ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
@@ -102,10 +103,9 @@ class ShardMaker:
         SailenvError
             If a scene cannot be built or a file not be written.
         """
-        with self._store.staging(Path(self._folder.name)) as folder:
-            summary = self.make_into(number, folder)
-            self._store.publish(folder, list(summary.files))
-        self._store.write(summary.path, summary.to_json())
+        with self._store.part(Path(self._folder.name)) as part:
+            summary = self.make_into(number, part.folder)
+            part.note = summary.path, summary.to_json()
         return summary
 
     def make_into(self, number: int, folder: Path) -> ShardSummary:

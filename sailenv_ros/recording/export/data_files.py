@@ -11,54 +11,22 @@ from typing import Any, BinaryIO
 
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RecordingError, WriteFailed
 from sailenv_ros.pictures.codecs import encode_png
-from sailenv_ros.system.files import make_folder as make_folder_of_files
-from sailenv_ros.system.files import sync_file_system, write_file, written_file
+from sailenv_ros.system.files import make_folder, write_errors, write_file, written_file
 
 __all__ = [
     "discard_drafts",
-    "finish",
-    "make_folder",
     "open_draft",
     "write_bytes",
-    "write_errors",
     "write_json",
     "write_png",
 ]
 
 
-def make_folder(folder: Path) -> None:
-    """Make the folder of a data set, which must not exist or be empty.
-
-    Raises
-    ------
-    RecordingError
-        If something is in it, or it cannot be made.
-    """
-    try:
-        make_folder_of_files(folder)
-        filled = any(folder.iterdir())
-    except (OSError, ValueError) as problem:  # a NUL in the name is no OSError
-        why = getattr(problem, "strerror", None) or str(problem)
-        raise RecordingError(f"{str(folder)!r} cannot be made: {why}") from None
-    if filled:
-        raise RecordingError(f"{folder} is not empty; nothing is overwritten, choose another")
-
-
-@contextlib.contextmanager
-def write_errors(path: Path) -> Iterator[None]:
-    """Turn an `OSError` of the block into a `WriteFailed` that names what was being written."""
-    try:
-        yield
-    except OSError as problem:
-        raise WriteFailed(path, problem) from None
-
-
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a file, whole or not at all, and the folder that it is in.
 
-    `finish` brings it to the disk.
+    Bringing it to the disk is left to the store that it belongs to.
 
     Raises
     ------
@@ -66,20 +34,8 @@ def write_bytes(path: Path, data: bytes) -> None:
         If it cannot be written.
     """
     with write_errors(path):
-        make_folder_of_files(path.parent)
+        make_folder(path.parent)
         write_file(path, data, durable=False)
-
-
-def finish(folder: Path) -> None:
-    """Bring all files of a data set to the disk.
-
-    Raises
-    ------
-    RecordingError
-        If the disk refuses it.
-    """
-    with write_errors(folder):
-        sync_file_system(folder)
 
 
 def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
@@ -93,7 +49,7 @@ def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
         If it cannot be written.
     """
     with write_errors(path):
-        make_folder_of_files(path.parent)
+        make_folder(path.parent)
         return drafts.enter_context(written_file(path, durable=False))
 
 

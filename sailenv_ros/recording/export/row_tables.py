@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.extras import need
-from sailenv_ros.recording.export.data_files import open_draft, write_errors
+from sailenv_ros.recording.export.data_files import open_draft
+from sailenv_ros.system.files import write_errors
 
 __all__ = ["ROWS_PER_GROUP", "RowTable"]
 

@@ -15,9 +15,8 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame import Frame, view_spec
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
-from sailenv_ros.recording.export.data_files import write_errors
 from sailenv_ros.recording.export.dataset_format import DatasetFormat, Record, Sample, WriteResult
-from sailenv_ros.system.files import make_folder
+from sailenv_ros.system.files import make_folder, write_errors
 
 __all__ = ["VideoExport"]
 

@@ -15,7 +15,7 @@ from ray.cluster_utils import Cluster
 
 from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.manifest import done_shards
-from sailenv_ros.dataset.storage import open_storage
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.errors import RecordingError
 from tests.unit.dataset.conftest import written_recipe
 from tests.unit.dataset.test_making import contents

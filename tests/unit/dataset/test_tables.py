@@ -11,9 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from sailenv_ros.dataset import RecipeError, engine_of, load_job, make_dataset, open_dataset
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import ShardRecords
-from sailenv_ros.dataset.storage import FolderStorage
 from tests.unit.dataset.conftest import SMALL, written_recipe
 
 CLIPS, FRAMES = {"train": 3, "val": 1}, 3

@@ -17,7 +17,13 @@ from sailenv_ros.bake.fingerprint import fingerprint
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.cli.main import main
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.errors import (
+    BegunOtherwise,
+    DeadlineExceeded,
+    InvalidRequest,
+    PlaceTaken,
+    UnknownName,
+)
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.scene.loader import load_scene
@@ -236,11 +242,11 @@ def test_a_broken_stream_keeps_its_light_and_models(
     bag = tmp_path / "cell"
     with pytest.raises(Broken):
         make_stream(job, bag, on_frame=break_off)
-    with pytest.raises(RecordingError, match=r"stream: light is '[0-9a-f]{32}', not 'plain'"):
+    with pytest.raises(BegunOtherwise, match=r"otherwise: light is '[0-9a-f]{32}', not 'plain'"):
         make_stream(cell, bag)
     with monkeypatch.context() as patch:
         patch.setattr(SceneLibrary, "asset_fingerprint", lambda self, name: f"other {name}")
-        with pytest.raises(RecordingError, match="another stream: models is"):
+        with pytest.raises(BegunOtherwise, match="begun otherwise: models is"):
             make_stream(job, bag)
     for path in (tmp_path / "cache/light").glob("*.light"):
         path.unlink()
@@ -251,15 +257,15 @@ def test_folders_of_others_are_refused_and_left_alone(tmp_path: Path) -> None:
     mine = tmp_path / "mine"
     mine.mkdir()
     (mine / "thesis.tex").write_text("text")
-    with pytest.raises(RecordingError, match="is there already and is no stream of ours"):
+    with pytest.raises(PlaceTaken, match="is not empty"):
         make_stream(job(), mine)
     file = tmp_path / "file"
     file.write_text("text")
-    with pytest.raises(RecordingError, match="no stream of ours"):
+    with pytest.raises(PlaceTaken, match="is no folder"):
         make_stream(job(), file)
     other = make_stream(job(2), tmp_path / "other")
     before = {path: path.read_bytes() for path in other.iterdir()}
-    with pytest.raises(RecordingError, match="seed is 0, not 1"):
+    with pytest.raises(BegunOtherwise, match="seed is 0, not 1"):
         make_stream(job(2, seed=1), other)
     assert {path: path.read_bytes() for path in other.iterdir()} == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "mine", "other"]
