@@ -24,8 +24,8 @@ import yaml
 
 from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.job import Job
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.dataset.stores import open_store
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.views import RENDERED_VIEWS
@@ -98,7 +98,7 @@ def _tell_costs(folder: Path, views: Sequence[str], formats: Sequence[str]) -> N
     job = _job(folder, ["room_01"], 2 * CLIPS_OF_SHARD + few, views, formats)
     seconds = []
     try:
-        with ShardMaker(job, open_store(folder / "set")) as maker:
+        with ShardMaker(job, open_storage(folder / "set")) as maker:
             for shard in range(3):
                 began = time.process_time()
                 maker.make(shard)

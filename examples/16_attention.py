@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros import Simulation
-from sailenv_ros.dataset.streams.stream_table import stream_named
+from sailenv_ros.dataset.streams.table import stream_named
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 
 FRAMES, CROP_PX, CELL_PX, SUBSTEPS = 400, 64, 8, 20

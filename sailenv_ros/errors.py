@@ -8,6 +8,7 @@ Every sentence says what was wrong and what is accepted, with the names that the
     │   ├── NameTaken           a name that must be unique is in use
     │   └── InvalidEntry        something described by several values, some of them wrong
     ├── InvalidState            something that is not possible as things are now
+    │   └── NoFreeSpace         a place in a scene that was looked for, and is not there
     ├── AddressInUse            a port that another program listens on
     ├── InternalFault           an error of the simulator itself
     ├── SceneError              one or more errors in a scene file, each with file:line:column
@@ -20,7 +21,10 @@ Every sentence says what was wrong and what is accepted, with the names that the
     ├── DeadlineExceeded        something did not happen in time
     │   └── SimulatorLost       the simulator no longer answers
     ├── ProtocolError           bytes of a client that violate the protocol
-    ├── RecordingError          a recording that cannot be written or read
+    ├── RecordingError          a recording or data set that cannot be written or read
+    │   ├── WriteFailed         the disk refused it; once there is room the same call goes on
+    │   ├── PlaceTaken          something else is where it is to be written
+    │   └── BegunOtherwise      it was begun there with other settings
     ├── StorageError            a file that cannot be written, e.g. because the disk is full
     └── MissingPackage          an optional package that is not installed
 """
@@ -29,13 +33,14 @@ from __future__ import annotations
 
 import difflib
 import errno
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
 __all__ = [
     "AddressInUse",
     "AssetError",
+    "BegunOtherwise",
     "ContextError",
     "DeadlineExceeded",
     "InternalFault",
@@ -45,7 +50,9 @@ __all__ = [
     "MissingPackage",
     "NameTaken",
     "NativeLibraryError",
+    "NoFreeSpace",
     "PhysicsError",
+    "PlaceTaken",
     "ProtocolError",
     "RecordingError",
     "RenderError",
@@ -56,6 +63,7 @@ __all__ = [
     "SimulatorLost",
     "StorageError",
     "UnknownName",
+    "WriteFailed",
     "address_error",
 ]
 
@@ -161,6 +169,10 @@ class InvalidState(SailenvError):
     why : str
         A sentence: what stands against it, and what would make it possible.
     """
+
+
+class NoFreeSpace(InvalidState):
+    """A place in a scene that was looked for, and is not there; says why."""
 
 
 class AddressInUse(SailenvError, OSError):
@@ -337,7 +349,63 @@ class ProtocolError(SailenvError):
 
 
 class RecordingError(SailenvError):
-    """A recording that cannot be written or read."""
+    """A recording or a data set that cannot be written or read."""
+
+
+class WriteFailed(RecordingError):
+    """A file that the disk or a remote place refuses; once it does not, the same call goes on.
+
+    Parameters
+    ----------
+    path : object
+        The file or folder.
+    problem : Exception
+    """
+
+    def __init__(self, path: object, problem: Exception) -> None:
+        self.path = str(path)
+        self.errno = getattr(problem, "errno", None)
+        why = getattr(problem, "strerror", None) or str(problem)
+        super().__init__(f"{self.path} cannot be written: {why}")
+
+
+class PlaceTaken(RecordingError):
+    """A place where something else is; it was left as it is.
+
+    Parameters
+    ----------
+    place : str
+    why : str
+    """
+
+    def __init__(self, place: str, why: str = "is not empty") -> None:
+        self.place = place
+        super().__init__(f"{place} {why}; nothing is overwritten, choose another place")
+
+
+class BegunOtherwise(RecordingError):
+    """A place where the same kind of work was begun with other settings.
+
+    Parameters
+    ----------
+    place : str
+    differing : mapping of str to (object, object)
+        The settings that differ: as they are there, and as they were asked for. None is unset.
+    """
+
+    def __init__(self, place: str, differing: Mapping[str, tuple[object, object]]) -> None:
+        self.place = place
+        self.differing = dict(differing)
+        told = [
+            f"{name} is {_shown(known)}, not {_shown(wanted)}"
+            for name, (known, wanted) in list(self.differing.items())[:3]
+        ]
+        if len(self.differing) > len(told):
+            told.append(f"and {len(self.differing) - len(told)} more")
+        super().__init__(
+            f"{place} was begun otherwise: {', '.join(told)}; choose another place, or repeat "
+            "its settings"
+        )
 
 
 class StorageError(SailenvError):

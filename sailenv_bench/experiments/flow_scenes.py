@@ -15,6 +15,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.pictures.codecs import encode_png
+
 __all__ = ["BASE_SCENE", "SCENARIOS", "TEXTURED", "Scenario", "texture", "textured_cube_zip"]
 
 TEXTURED = "textured_cube"
@@ -145,12 +147,11 @@ def texture(size_px: int = 512, seed: int = 7) -> NDArray[np.uint8]:
 
 def textured_cube_zip() -> bytes:
     """Return a zip of a Wavefront cube with its texture, as `Simulation.upload_model` takes it."""
-    _, png = cv2.imencode(".png", texture())
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("cube.obj", _cube_obj())
         archive.writestr("cube.mtl", "newmtl skin\nKd 1 1 1\nNs 8\nmap_Kd skin.png\n")
-        archive.writestr("skin.png", png.tobytes())
+        archive.writestr("skin.png", encode_png(texture()[..., ::-1]))
     return file.getvalue()
 
 

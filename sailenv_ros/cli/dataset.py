@@ -137,7 +137,7 @@ def _show(args: argparse.Namespace) -> int:
 
 
 def _schema(args: argparse.Namespace) -> int:
-    from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+    from sailenv_ros.dataset.recipe import DatasetRecipe
 
     print(json.dumps(DatasetRecipe.model_json_schema(), indent=2))
     return 0

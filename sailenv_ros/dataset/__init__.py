@@ -1,11 +1,20 @@
-"""Data sets by recipe: what is seen how often, written by any number of machines, read again."""
+"""Data sets by recipe: what is seen how often, written by any number of machines, read again.
 
-from sailenv_ros.dataset.dataset_reader import Dataset, DatasetFrame, open_dataset
-from sailenv_ros.dataset.dataset_reader import open_dataset as open
-from sailenv_ros.dataset.engines import engine_of
-from sailenv_ros.dataset.job import Job, RecipeError, load_job, load_recipe
-from sailenv_ros.dataset.making import MadeDataset, Progress, make_dataset
-from sailenv_ros.dataset.verifying import Difference, verify_dataset
+What is named here is imported when it is first used: who writes files needs no simulation.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sailenv_ros.dataset.engines import engine_of
+    from sailenv_ros.dataset.job import Job, RecipeError, load_job, load_recipe
+    from sailenv_ros.dataset.making import MadeDataset, Progress, make_dataset
+    from sailenv_ros.dataset.reader import Dataset, DatasetFrame, open_dataset
+    from sailenv_ros.dataset.reader import open_dataset as open
+    from sailenv_ros.dataset.verifying import Difference, verify_dataset
 
 __all__ = [
     "Dataset",
@@ -23,3 +32,25 @@ __all__ = [
     "open_dataset",
     "verify_dataset",
 ]
+
+_HOMES = {
+    "engines": ("engine_of",),
+    "job": ("Job", "RecipeError", "load_job", "load_recipe"),
+    "making": ("MadeDataset", "Progress", "make_dataset"),
+    "reader": ("Dataset", "DatasetFrame", "open_dataset"),
+    "verifying": ("Difference", "verify_dataset"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    wanted = "open_dataset" if name == "open" else name
+    for module, names in _HOMES.items():
+        if wanted in names:
+            value = getattr(importlib.import_module(f"sailenv_ros.dataset.{module}"), wanted)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -22,12 +22,12 @@ from sailenv_ros.dataset.recipe_cameras import (
     RuleCamera,
     WalkCamera,
 )
-from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.errors import InvalidRequest, InvalidState, NoFreeSpace
 from sailenv_ros.simulation.operations import WorldOperations
 from sailenv_ros.space.free_space import FreeSpace
 from sailenv_ros.types.geometry import Pose, look_at
 
-__all__ = ["NoPlace", "Track", "track_of", "turning"]
+__all__ = ["Track", "track_of", "turning"]
 
 ATTEMPTS = 200
 """Places that are tried before a camera has none."""
@@ -47,10 +47,6 @@ Times: TypeAlias = NDArray[np.float64]
 Vector3: TypeAlias = NDArray[np.float64]
 
 
-class NoPlace(Exception):
-    """A camera finds no place in this scene; says why."""
-
-
 def track_of(
     camera: Any, scene: WorldOperations, times_s: Times, random: np.random.Generator
 ) -> Track:
@@ -67,7 +63,7 @@ def track_of(
 
     Raises
     ------
-    NoPlace
+    NoFreeSpace
         If there is none by the recipe's rules.
     """
     return TRACKS[type(camera)](camera, scene, times_s, random)
@@ -105,7 +101,7 @@ def _walk(
         length += float(np.linalg.norm(np.diff(way[:, :2], axis=0), axis=1).sum())
         corners += list(way[1:])
         if len(corners) > ATTEMPTS * 100:
-            raise NoPlace("no path of that length")
+            raise NoFreeSpace("no path of that length")
     path = np.array(corners)
     path[:, 2] = space.body.floor_m + height
     return _along(path, speed * times_s, pitch)
@@ -129,7 +125,7 @@ def _orbit(
         ways = np.stack([flat * np.cos(angles), flat * np.sin(angles), up], axis=1)
         if _in_sight(scene, middle, middle + ways, target):
             return [look_at(eye, middle) for eye in middle + ways]
-    raise NoPlace(f"no free sight of {camera.object or camera.point}")
+    raise NoFreeSpace(f"no free sight of {camera.object or camera.point}")
 
 
 TRACKS: Mapping[type, Callable[..., Track]] = MappingProxyType(
@@ -152,14 +148,14 @@ def _space(camera: WalkCamera, scene: WorldOperations) -> FreeSpace:
     try:
         return scene.free_space(camera.eye_height[1] + BODY_HEAD_M, camera.clearance)
     except InvalidState as problem:
-        raise NoPlace(str(problem)) from None
+        raise NoFreeSpace(str(problem)) from None
 
 
 def _random_eye(camera: WalkCamera, space: FreeSpace, random: np.random.Generator) -> Vector3:
     try:
         pose = space.random_pose(seed=int(random.integers(2**63)))
     except InvalidState as problem:
-        raise NoPlace(str(problem)) from None
+        raise NoFreeSpace(str(problem)) from None
     x, y, floor_m = pose.position_m
     return np.array([x, y, floor_m + _within(camera.eye_height, random)])
 
@@ -200,7 +196,7 @@ def _target(name: str | None, scene: WorldOperations, random: np.random.Generato
     named = [one for one in instances if one.name == name]
     chosen = named or [one for one in instances if one.category == name]
     if not chosen:
-        raise NoPlace(f"no object and no category {name!r} in the scene")
+        raise NoFreeSpace(f"no object and no category {name!r} in the scene")
     one = chosen[int(random.integers(len(chosen)))]
     try:
         body = scene.get_object(one.id)

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +15,8 @@ from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.shard_writer import PICTURES_FOLDER
-from sailenv_ros.dataset.stores import Store
+from sailenv_ros.dataset.storage import Storage
+from sailenv_ros.frame.pictures.codecs import decode_picture, encode_jpeg
 from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 
 __all__ = ["CARD_FILE", "write_card"]
@@ -27,10 +27,12 @@ MOST_PICTURES = 24
 SHEET_COLUMNS = 4
 
 
-def write_card(job: Job, store: Store, shards: Mapping[int, ShardSummary], folder: Path) -> None:
+def write_card(
+    job: Job, storage: Storage, shards: Mapping[int, ShardSummary], folder: Path
+) -> None:
     """Write the card of a data set whose shards are whole."""
-    found = content_counts(frame_records(store, shards))
-    sheet = _sheet(_pictures(store, shards))
+    found = content_counts(frame_records(storage, shards))
+    sheet = _sheet(_pictures(storage, shards))
     if sheet is not None:
         write_bytes(folder / SHEET_FILE, sheet)
     for name, drawing in found.histograms().items():
@@ -79,7 +81,7 @@ def _text(
     return "\n".join(lines)
 
 
-def _pictures(store: Store, shards: Mapping[int, ShardSummary]) -> dict[str, NDArray[np.uint8]]:
+def _pictures(storage: Storage, shards: Mapping[int, ShardSummary]) -> dict[str, NDArray[np.uint8]]:
     """Return small pictures of frames, from all over the data set, by their labels."""
     paths = [
         (f"{one.split} {Path(path).stem}", path)
@@ -92,10 +94,9 @@ def _pictures(store: Store, shards: Mapping[int, ShardSummary]) -> dict[str, NDA
         return found
     for index in np.unique(np.linspace(0, len(paths) - 1, MOST_PICTURES).astype(int)):
         label, path = paths[index]
-        data = store.read(path)
-        picture = None if data is None else cv2.imdecode(np.frombuffer(data, np.uint8), 1)
-        if picture is not None:
-            found[label] = np.asarray(picture[..., ::-1], np.uint8)
+        data = storage.read(path)
+        if data is not None:
+            found[label] = decode_picture(data)
     return found
 
 
@@ -103,6 +104,4 @@ def _sheet(pictures: Mapping[str, NDArray[np.uint8]]) -> bytes | None:
     """Return the pictures beside and below each other as one JPEG; None if there are none."""
     if not pictures:
         return None
-    sheet = contact_sheet(pictures, columns=SHEET_COLUMNS)
-    _, data = cv2.imencode(".jpg", sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])
-    return bytes(data)
+    return encode_jpeg(contact_sheet(pictures, columns=SHEET_COLUMNS), quality=88)

@@ -1,8 +1,4 @@
-"""Who makes the shards: this process, processes here, or a Ray cluster. Numbers in, summaries out.
-
-A shard whose worker dies is made by another one, up to `ATTEMPTS` times. Errors of the work itself
-(a scene that cannot be built, a full disk) end it: another worker would meet them, too.
-"""
+"""Engines of this machine: shards made in this process, or in several, and the choice of one."""
 
 from __future__ import annotations
 
@@ -10,45 +6,31 @@ import os
 import signal
 import threading
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Protocol
+from typing import Any
 
+from sailenv_ros.dataset.engine import ATTEMPTS, Engine, OnFrames, interleave_shards
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.dataset.stores import open_store
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_with_parent
 
-__all__ = ["Engine", "HereEngine", "ProcessEngine", "engine_of"]
-
-ATTEMPTS = 3
-"""How often a shard is tried whose worker dies."""
+__all__ = ["ProcessEngine", "SerialEngine", "engine_of"]
 
 LOOK_INTERVAL_S = 0.2
 
-OnFrames = Callable[[int], None]
-"""Told how many frames have been made since the start."""
 
-
-class Engine(Protocol):
-    """Makes shards."""
-
-    def run(
-        self, job: Job, where: str, shards: Sequence[int], on_frames: OnFrames
-    ) -> Iterator[ShardSummary]:
-        """Yield the summary of each shard as soon as it is in the data set."""
-
-
-class HereEngine:
+class SerialEngine:
     """Makes shards in this process, one after another."""
 
     def run(
@@ -62,7 +44,7 @@ class HereEngine:
             made += 1
             on_frames(made)
 
-        with ShardMaker(job, open_store(where), count) as maker:
+        with ShardMaker(job, open_storage(where), count) as maker:
             for shard in shards:
                 yield maker.make(shard)
 
@@ -79,7 +61,7 @@ class ProcessEngine:
         """Yield the summary of each shard."""
         # Ours, so that it goes however the workers end.
         with TemporaryDirectory(prefix="sailenv-dataset-") as scratch:
-            waiting = deque(dealt(shards, self.workers))
+            waiting = deque(interleave_shards(shards, self.workers))
             yield from self._run_pools(job, where, scratch, waiting, on_frames)
 
     def _run_pools(
@@ -143,17 +125,7 @@ def engine_of(workers: int, ray_address: str | None) -> Engine:
         from sailenv_ros.dataset.ray_engine import RayEngine
 
         return RayEngine(ray_address)
-    return ProcessEngine(workers) if workers > 1 else HereEngine()
-
-
-def dealt(shards: Sequence[int], workers: int) -> list[int]:
-    """Return shards in an order in which each of so many workers gets neighbours.
-
-    Neighbours are often of the same scene, which a worker has loaded then. Who is quick takes more.
-    """
-    length = -(-len(shards) // workers)
-    runs = [shards[begin : begin + length] for begin in range(0, len(shards), length or 1)]
-    return [run[place] for place in range(length) for run in runs if place < len(run)]
+    return ProcessEngine(workers) if workers > 1 else SerialEngine()
 
 
 _maker: ShardMaker | None = None
@@ -175,7 +147,7 @@ def _begin_worker(
         with frames.get_lock():
             frames.value += 1
 
-    _maker = ShardMaker(job, open_store(where), count, scratch=Path(scratch))
+    _maker = ShardMaker(job, open_storage(where), count, scratch=Path(scratch))
 
 
 def _make_shard(number: int) -> ShardSummary:

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.shard_maker import ShardMaker
 from sailenv_ros.dataset.shard_plan import ShardPlan, clip_groups
-from sailenv_ros.dataset.stores import FolderStore
 
 __all__ = ["Estimate", "estimate"]
 
@@ -63,11 +63,11 @@ def estimate(job: Job) -> Estimate:
     clips = min(clips, recipe.clips.by_name[split], recipe.clip.per_scene)
     one_clip = {name: 0 for name in recipe.clips.by_name} | {split: clips}
     with TemporaryDirectory(prefix="sailenv-estimate-") as folder:
-        store = FolderStore(Path(folder))
+        storage = FolderStorage(Path(folder))
         # Once to warm everything up, once to measure.
-        started_s, _, _ = _made(job, store, one_clip | {split: 1}, frames=1)
-        measured_s, made, size = _made(job, store, one_clip, frames=frames)
-        started_s, _, _ = _made(job, store, one_clip | {split: 1}, frames=1)
+        started_s, _, _ = _made(job, storage, one_clip | {split: 1}, frames=1)
+        measured_s, made, size = _made(job, storage, one_clip, frames=frames)
+        started_s, _, _ = _made(job, storage, one_clip | {split: 1}, frames=1)
     per_frame_s = max(0.0, measured_s - started_s) / max(1, made - 1)
     return Estimate(
         frames=plan.frames,
@@ -81,7 +81,7 @@ def estimate(job: Job) -> Estimate:
 
 
 def _made(
-    job: Job, store: FolderStore, clips: dict[str, int], *, frames: int
+    job: Job, storage: FolderStorage, clips: dict[str, int], *, frames: int
 ) -> tuple[float, int, int]:
     """Make one shard of a smaller recipe; return seconds, frames and bytes."""
     recipe = job.recipe
@@ -91,7 +91,7 @@ def _made(
             "clip": recipe.clip.model_copy(update={"frames": frames}),
         }
     )
-    with ShardMaker(replace(job, recipe=smaller), store) as maker, store.staging() as folder:
+    with ShardMaker(replace(job, recipe=smaller), storage) as maker, storage.staging() as folder:
         began = time.monotonic()
         summary = maker.make_into(0, folder)
         seconds = time.monotonic() - began

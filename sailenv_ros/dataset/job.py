@@ -12,7 +12,8 @@ from typing import Any
 
 from sailenv_ros.assets.pack import PACK_FILE
 from sailenv_ros.assets.sources import installed_packs
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.identity import WorkIdentity
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.errors import RecordingError, SceneDiagnostic, SceneError
 from sailenv_ros.light.bake.settings import BAKE_VERSION
 from sailenv_ros.scene.documents import load_document
@@ -21,7 +22,11 @@ from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.version import __version__
 
-__all__ = ["Job", "RecipeError", "load_job", "load_recipe"]
+__all__ = ["JOB_FILE", "Job", "RecipeError", "load_job", "load_recipe"]
+
+
+JOB_FILE = "job.json"
+"""What decides on every byte of a data set; written first."""
 
 
 class RecipeError(SceneError):
@@ -67,6 +72,11 @@ class Job:
             "numpy": importlib.metadata.version("numpy"),
             "opencv": importlib.metadata.version("opencv-python-headless"),
         }
+
+    @property
+    def identity(self) -> WorkIdentity:
+        """By which a data set that was broken off is gone on with."""
+        return WorkIdentity(file=JOB_FILE, settings=self.head, document=self.to_json(), key="head")
 
     @property
     def fingerprint(self) -> str:

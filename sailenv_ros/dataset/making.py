@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.dataset.card import write_card
-from sailenv_ros.dataset.engines import Engine
-from sailenv_ros.dataset.job import Job
+from sailenv_ros.dataset.engine import Engine
+from sailenv_ros.dataset.job import JOB_FILE, Job
 from sailenv_ros.dataset.manifest import (
     MANIFEST,
     FileHash,
@@ -22,14 +22,13 @@ from sailenv_ros.dataset.manifest import (
     summaries_of_files,
 )
 from sailenv_ros.dataset.merging import finish_formats
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_plan import ShardPlan
-from sailenv_ros.dataset.stores import FolderStore, Store, open_store
+from sailenv_ros.dataset.storage import Storage
+from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import RecordingError
 
-__all__ = ["JOB_FILE", "RECIPE_FILE", "MadeDataset", "Progress", "job_of", "make_dataset"]
-
-JOB_FILE = "job.json"
-"""What decides on every byte; written first."""
+__all__ = ["RECIPE_FILE", "MadeDataset", "Progress", "job_of", "make_dataset"]
 
 RECIPE_FILE = "recipe.yaml"
 
@@ -101,15 +100,39 @@ def make_dataset(
 
     Raises
     ------
-    RecordingError
-        If another data set was begun there, or a file cannot be written.
+    PlaceTaken, BegunOtherwise
+        If something else is there, or a data set of other settings was begun there.
+    DeadlineExceeded
+        If another process makes it.
+    WriteFailed
+        If a file cannot be written.
     SailenvError
         If a scene cannot be built.
     """
-    store = open_store(where)
-    _begin(job, store)
+    storage = open_storage(where)
+    store = ResumableStore(storage, job.identity)
+    if store.check() and (known := storage.read(MANIFEST)) is not None:
+        storage.release()
+        return _made(json.loads(known))
+    with store.opened():
+        if storage.read(RECIPE_FILE) is None:
+            storage.write(RECIPE_FILE, job.recipe_text.encode())
+        done = _make_shards(job, storage, str(where), engine, on_progress)
+        manifest = _finish(job, store, done)
+        store.finish()
+    return _made(manifest)
+
+
+def _make_shards(
+    job: Job,
+    storage: Storage,
+    where: str,
+    engine: Engine,
+    on_progress: Callable[[Progress], None],
+) -> Mapping[int, ShardSummary]:
+    """Make the shards that are missing; return the summaries of all, by their numbers."""
     plan = ShardPlan(job.recipe)
-    done = done_shards(store)
+    done = done_shards(storage)
     began = time.monotonic()
     before = sum(summary.frames for summary in done.values())
 
@@ -128,12 +151,12 @@ def make_dataset(
     missing = [number for number in range(plan.shards) if number not in done]
     tell(0)
     if missing:
-        for summary in engine.run(job, str(where), missing, tell):
+        for summary in engine.run(job, where, missing, tell):
             done[summary.shard] = summary
-    return _finish(job, store, dict(sorted(done.items())))
+    return dict(sorted(done.items()))
 
 
-def job_of(store: Store) -> Job:
+def job_of(storage: Storage) -> Job:
     """Return the job of a data set, whole or not.
 
     Raises
@@ -141,43 +164,22 @@ def job_of(store: Store) -> Job:
     RecordingError
         If there is none.
     """
-    data = store.read(JOB_FILE)
+    data = storage.read(JOB_FILE)
     if data is None:
-        raise RecordingError(f"{store.shown} holds no data set: it has no {JOB_FILE}")
-    return Job.from_json(data, f"{store.shown}/{JOB_FILE}")
+        raise RecordingError(f"{storage.shown} holds no data set: it has no {JOB_FILE}")
+    return Job.from_json(data, f"{storage.shown}/{JOB_FILE}")
 
 
-def _begin(job: Job, store: Store) -> None:
-    """Write down what is made, or compare it with what was begun."""
-    if store.read(JOB_FILE) is None:
-        if isinstance(store, FolderStore) and any(store.folder.iterdir()):
-            raise RecordingError(f"{store.shown} is not empty; nothing is overwritten")
-        store.write(RECIPE_FILE, job.recipe_text.encode())
-        store.write(JOB_FILE, job.to_json())
-        return
-    other, head = job_of(store).head, job.head
-    differing = [key for key in head if other.get(key) != head[key]]
-    if differing:
-        raise RecordingError(
-            f"{store.shown} was begun otherwise ({', '.join(differing)} differ); choose another "
-            "place"
-        )
-
-
-def _finish(job: Job, store: Store, shards: Mapping[int, ShardSummary]) -> MadeDataset:
-    known = store.read(MANIFEST)
-    if known is not None:
-        return _made(json.loads(known))
-    with store.staging() as folder:
-        finish_formats(job.recipe, store, shards, folder)
-        write_card(job, store, shards, folder)
-        files = summaries_of_files(folder)
-        store.publish(folder, list(files))
-    if isinstance(store, FolderStore):
-        store.remove_staging()
-    manifest = _manifest(job, shards, files)
-    store.write(MANIFEST, (json.dumps(manifest, indent=1) + "\n").encode())
-    return _made(manifest)
+def _finish(
+    job: Job, store: ResumableStore, shards: Mapping[int, ShardSummary]
+) -> Mapping[str, Any]:
+    """Write what belongs to the whole, and the manifest last."""
+    with store.part() as part:
+        finish_formats(job.recipe, store.storage, shards, part.folder)
+        write_card(job, store.storage, shards, part.folder)
+        manifest = _manifest(job, shards, summaries_of_files(part.folder))
+        part.note = MANIFEST, (json.dumps(manifest, indent=1) + "\n").encode()
+    return manifest
 
 
 def _manifest(

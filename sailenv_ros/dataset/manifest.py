@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.dataset.stores import Store
+from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.errors import RecordingError
 
 __all__ = [
@@ -109,19 +109,19 @@ def file_hash(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def done_shards(store: Store) -> dict[int, ShardSummary]:
+def done_shards(storage: Storage) -> dict[int, ShardSummary]:
     """Return the summaries of the shards that are whole, by their numbers."""
     found = {}
-    for name in store.names(SHARDS_FOLDER):
+    for name in storage.names(SHARDS_FOLDER):
         path = f"{SHARDS_FOLDER}/{name}"
-        data = store.read(path)
+        data = storage.read(path)
         if data is not None:
             summary = ShardSummary.from_json(data, path)
             found[summary.shard] = summary
     return dict(sorted(found.items()))
 
 
-def whole_files(store: Store) -> dict[str, FileHash]:
+def whole_files(storage: Storage) -> dict[str, FileHash]:
     """Return the files that belong to the whole data set; none while it is not finished.
 
     Raises
@@ -129,13 +129,13 @@ def whole_files(store: Store) -> dict[str, FileHash]:
     RecordingError
         If the manifest cannot be read.
     """
-    data = store.read(MANIFEST)
+    data = storage.read(MANIFEST)
     if data is None:
         return {}
     try:
         return {name: FileHash(**one) for name, one in json.loads(data)["files"].items()}
     except (ValueError, TypeError, KeyError, AttributeError) as problem:
-        raise RecordingError(f"{MANIFEST} in {store.shown} cannot be read: {problem}") from None
+        raise RecordingError(f"{MANIFEST} in {storage.shown} cannot be read: {problem}") from None
 
 
 def dataset_hash(files: Iterable[tuple[str, FileHash]]) -> str:

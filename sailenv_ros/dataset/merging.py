@@ -9,11 +9,11 @@ from itertools import accumulate, islice
 from pathlib import Path
 from typing import Any, overload
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record
 from sailenv_ros.dataset.formats.formats import format_class
 from sailenv_ros.dataset.manifest import ShardSummary
-from sailenv_ros.dataset.stores import Store
+from sailenv_ros.dataset.recipe import DatasetRecipe
+from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.errors import RecordingError
 
 __all__ = ["RECORDS_FOLDER", "ShardRecords", "finish_formats", "frame_records", "merges"]
@@ -28,7 +28,7 @@ def merges(kind: type[DatasetFormat]) -> bool:
     return not kind.is_sequence and (not kind.is_shard or kind.needs_records)
 
 
-def frame_records(store: Store, shards: Iterable[int]) -> Iterator[dict[str, Any]]:
+def frame_records(storage: Storage, shards: Iterable[int]) -> Iterator[dict[str, Any]]:
     """Yield what is known of each frame, in the order of the shards.
 
     Raises
@@ -38,13 +38,13 @@ def frame_records(store: Store, shards: Iterable[int]) -> Iterator[dict[str, Any
     """
     for number in shards:
         path = f"{RECORDS_FOLDER}/{number:05d}.jsonl"
-        data = store.read(path)
+        data = storage.read(path)
         if data is None:
-            raise RecordingError(f"{store.shown} lacks {path}")
+            raise RecordingError(f"{storage.shown} lacks {path}")
         try:
             yield from (json.loads(line) for line in data.splitlines())
         except ValueError as problem:
-            raise RecordingError(f"{path} in {store.shown} cannot be read: {problem}") from None
+            raise RecordingError(f"{path} in {storage.shown} cannot be read: {problem}") from None
 
 
 class ShardRecords(Sequence[Record]):
@@ -52,14 +52,14 @@ class ShardRecords(Sequence[Record]):
 
     Parameters
     ----------
-    store : Store
+    storage : Storage
     shards : mapping of int to ShardSummary
     name : str
         Of the format.
     """
 
-    def __init__(self, store: Store, shards: Mapping[int, ShardSummary], name: str) -> None:
-        self._store = store
+    def __init__(self, storage: Storage, shards: Mapping[int, ShardSummary], name: str) -> None:
+        self._storage = storage
         self._name = name
         self._numbers = list(shards)
         self._ends = list(accumulate(shards[number].frames for number in self._numbers))
@@ -85,16 +85,16 @@ class ShardRecords(Sequence[Record]):
         return next(islice(self._of([self._numbers[shard]]), place - before, None))
 
     def _of(self, shards: Iterable[int]) -> Iterator[Record]:
-        for line in frame_records(self._store, shards):
+        for line in frame_records(self._storage, shards):
             value = line["records"].get(self._name)
             yield Record(number=line["number"], split=line["split"], value=value)
 
 
 def finish_formats(
-    recipe: DatasetRecipe, store: Store, shards: Mapping[int, ShardSummary], folder: Path
+    recipe: DatasetRecipe, storage: Storage, shards: Mapping[int, ShardSummary], folder: Path
 ) -> None:
     """Write into a folder what the formats of a recipe write at their end."""
     for name in recipe.formats:
         kind = format_class(name)
         if merges(kind):
-            kind(folder / name).finish(ShardRecords(store, shards, name))
+            kind(folder / name).finish(ShardRecords(storage, shards, name))

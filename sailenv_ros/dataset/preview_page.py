@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
-from sailenv_ros.dataset.dataset_reader import Dataset, DatasetFrame, open_dataset
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.formats.annotated_objects import NO_CATEGORY
 from sailenv_ros.dataset.formats.object_records import object_record
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
+from sailenv_ros.dataset.reader import Dataset, DatasetFrame, open_dataset
 from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
-from sailenv_ros.dataset.stores import FolderStore
+from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.system.files import storage_errors, write_file
 from sailenv_ros.types.labels import CategoryTable
@@ -86,9 +87,9 @@ def save_preview(folder: str | Path, path: str | Path, *, split: str = "", frame
 
 def preview_html(dataset: Dataset, numbers: list[int]) -> str:
     """Return the page that shows these frames of a data set."""
-    store = FolderStore(dataset.folder)
-    shards = done_shards(store)
-    counts = content_counts(frame_records(store, shards))
+    storage = FolderStorage(dataset.folder)
+    shards = done_shards(storage)
+    counts = content_counts(frame_records(storage, shards))
     table = load_categories()
     views = shown_views(dataset, VIEWS)
     total_bytes = sum(file.bytes for one in shards.values() for file in one.files.values())
@@ -187,9 +188,10 @@ def _picture(view: str, values: NDArray[Any], table: CategoryTable) -> str:
         method = cv2.INTER_NEAREST if labels else cv2.INTER_AREA
         size = most, max(1, round(height * most / width))
         colours = np.asarray(cv2.resize(colours, size, interpolation=method), np.uint8)
-    kind, options = ("png", []) if labels else ("jpeg", [cv2.IMWRITE_JPEG_QUALITY, 85])
-    _, data = cv2.imencode(f".{kind}", np.ascontiguousarray(colours[..., ::-1]), options)
-    return f"data:image/{kind};base64,{base64.b64encode(data.tobytes()).decode()}"
+    kind, data = (
+        ("png", encode_png(colours)) if labels else ("jpeg", encode_jpeg(colours, quality=85))
+    )
+    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
 
 
 @lru_cache(maxsize=4096)

@@ -7,11 +7,11 @@ import socket
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from sailenv_ros.dataset.engines import ATTEMPTS, OnFrames, dealt
+from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, interleave_shards
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.dataset.stores import open_store
 from sailenv_ros.errors import RecordingError, SailenvError
 from sailenv_ros.extras import need
 from sailenv_ros.native.library import THREADS_VARIABLE
@@ -55,7 +55,8 @@ class RayEngine:
             shared = ray.put(job)
             processors = max(1, int(ray.cluster_resources().get("CPU", 1)))
             running = {
-                task.remote(shared, where, shard): shard for shard in dealt(shards, processors)
+                task.remote(shared, where, shard): shard
+                for shard in interleave_shards(shards, processors)
             }
             while running:
                 done, _ = ray.wait(list(running), num_returns=1, timeout=LOOK_INTERVAL_S)
@@ -102,7 +103,7 @@ def _make_shard(job: Job, where: str, number: int) -> ShardSummary:
         # Each processor has a task of its own.
         os.environ.setdefault(THREADS_VARIABLE, "1")
         keep_freed_memory()
-        _makers[key] = ShardMaker(job, open_store(where))
+        _makers[key] = ShardMaker(job, open_storage(where))
     made: ShardSummary = _makers[key].make(number)
     return made
 

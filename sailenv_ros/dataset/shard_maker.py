@@ -20,14 +20,15 @@ import numpy as np
 
 from sailenv_ros.authoring.generation.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
-from sailenv_ros.dataset.camera_tracks import NoPlace, Track, track_of, turning
+from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
 from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
 from sailenv_ros.dataset.shard_writer import ShardWriter
-from sailenv_ros.dataset.stores import Store
-from sailenv_ros.errors import UnknownName
+from sailenv_ros.dataset.storage import Storage
+from sailenv_ros.dataset.store import ResumableStore
+from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import STEPS_PER_S, due_steps
 from sailenv_ros.render.cpu.mesh_store import MeshStore
@@ -51,7 +52,7 @@ class ShardMaker:
     Parameters
     ----------
     job : Job
-    store : Store
+    storage : Storage
     on_frame : callable
         Called after each frame.
     scratch : Path or None
@@ -61,7 +62,7 @@ class ShardMaker:
     def __init__(
         self,
         job: Job,
-        store: Store,
+        storage: Storage,
         on_frame: Callable[[], None] = lambda: None,
         *,
         scratch: Path | None = None,
@@ -69,7 +70,7 @@ class ShardMaker:
         self._job = job
         self._recipe = job.recipe
         self._plan = ShardPlan(job.recipe)
-        self._store = store
+        self._store = ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
@@ -102,10 +103,9 @@ class ShardMaker:
         SailenvError
             If a scene cannot be built or a file not be written.
         """
-        with self._store.staging(Path(self._folder.name)) as folder:
-            summary = self.make_into(number, folder)
-            self._store.publish(folder, list(summary.files))
-        self._store.write(summary.path, summary.to_json())
+        with self._store.part(Path(self._folder.name)) as part:
+            summary = self.make_into(number, part.folder)
+            part.note = summary.path, summary.to_json()
         return summary
 
     def make_into(self, number: int, folder: Path) -> ShardSummary:
@@ -161,7 +161,7 @@ class ShardMaker:
                         one.name: self._track(one, clip, core, chosen.get(one.name, []))
                         for one in recipe.cameras
                     }
-                except NoPlace as problem:
+                except NoFreeSpace as problem:
                     skipped[f"{clip.scene}: {problem}"] += 1
                     continue
                 writer.begin_clip(clip)
@@ -231,7 +231,7 @@ class ShardMaker:
         if not isinstance(camera, RuleCamera):
             return track_of(camera, core, times_s, random)
         if not chosen:
-            raise NoPlace(f"no more places for the camera {camera.name} by {camera.rule}")
+            raise NoFreeSpace(f"no more places for the camera {camera.name} by {camera.rule}")
         return turning(chosen.pop(0), camera, times_s, random)
 
     def _agent(self, camera: AnyCamera, core: SimulationCore) -> AgentSpec:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.recipe import DatasetRecipe
 
 __all__ = ["Clip", "ShardPlan", "SceneSource", "Shard", "clip_groups"]
 

@@ -15,14 +15,15 @@ from typing import Any
 import cv2
 import numpy as np
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
 from sailenv_ros.dataset.formats.annotated_objects import NO_CATEGORY
 from sailenv_ros.dataset.formats.data_files import write_bytes
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.formats import format_class
 from sailenv_ros.dataset.merging import RECORDS_FOLDER, merges
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import Clip, Shard
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.codecs import encode_jpeg
 
 __all__ = ["PICTURES_FOLDER", "ShardWriter"]
 
@@ -149,7 +150,7 @@ class ShardWriter:
         for name, made in sequence.formats.items():
             own = name in self._own
             in_clip = replace(sample, number=sequence.count, split="")
-            result: Made = made.add(in_clip if type(made).is_sequence else sample)
+            result: WriteResult = made.add(in_clip if type(made).is_sequence else sample)
             self.written[name].update(result.written)
             self.left_out[name].update(result.left_out)
             if not own:
@@ -207,5 +208,4 @@ def _small_picture(frame: Frame) -> bytes:
     height, width = frame["rgb"].shape[:2]
     size = PICTURE_WIDTH, max(1, round(PICTURE_WIDTH * height / width))
     small = cv2.resize(frame["rgb"], size, interpolation=cv2.INTER_AREA)
-    _, data = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 85])
-    return bytes(data)
+    return encode_jpeg(np.asarray(small, np.uint8), quality=85)

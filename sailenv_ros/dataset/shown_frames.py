@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from sailenv_ros.dataset.dataset_reader import Dataset
+from sailenv_ros.dataset.reader import Dataset
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.types.views import VIEWS
 

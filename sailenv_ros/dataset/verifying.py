@@ -10,10 +10,12 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import FileHash, done_shards, file_hash, whole_files
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.dataset.stores import FolderStore, Store, open_store
+from sailenv_ros.dataset.storage import Storage
 
 __all__ = ["Difference", "verify_dataset"]
 
@@ -55,11 +57,11 @@ def verify_dataset(
     RecordingError
         If there is no data set, or this machine would make another one.
     """
-    store = open_store(where)
-    job = job_of(store)
+    storage = open_storage(where)
+    job = job_of(storage)
     if sample:
         job.check_machine()
-    done = done_shards(store)
+    done = done_shards(storage)
     chosen: Sequence[int] = []
     if done and sample:
         numbers = np.array(list(done))
@@ -67,11 +69,11 @@ def verify_dataset(
         chosen = sorted(random.choice(numbers, min(sample, len(numbers)), replace=False).tolist())
     found: list[Difference] = []
     steps = len(done) + len(chosen)
-    found += _changed(store, whole_files(store))
+    found += _changed(storage, whole_files(storage))
     for index, summary in enumerate(done.values(), 1):
-        found += _changed(store, summary.files)
+        found += _changed(storage, summary.files)
         on_shard(index, steps)
-    with ShardMaker(job, store) as maker:
+    with ShardMaker(job, storage) as maker:
         for index, number in enumerate(chosen, 1):
             with TemporaryDirectory(prefix="sailenv-verify-") as folder:
                 again = maker.make_into(number, Path(folder))
@@ -84,19 +86,19 @@ def verify_dataset(
     return found
 
 
-def _changed(store: Store, files: Mapping[str, FileHash]) -> Iterator[Difference]:
+def _changed(storage: Storage, files: Mapping[str, FileHash]) -> Iterator[Difference]:
     """Yield the files that are not as they were written."""
     for path, known in files.items():
-        digest = _hash(store, path)
+        digest = _hash(storage, path)
         if digest is None:
             yield Difference(path, "is not there")
         elif digest != known.sha256:
             yield Difference(path, "has another content than was written")
 
 
-def _hash(store: Store, path: str) -> str | None:
-    if isinstance(store, FolderStore):
-        file = store.folder / path
+def _hash(storage: Storage, path: str) -> str | None:
+    if isinstance(storage, FolderStorage):
+        file = storage.folder / path
         return file_hash(file) if file.is_file() else None
-    data = store.read(path)
+    data = storage.read(path)
     return None if data is None else hashlib.sha256(data).hexdigest()

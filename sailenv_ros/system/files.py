@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from sailenv_ros.errors import DeadlineExceeded, StorageError
+from sailenv_ros.errors import DeadlineExceeded, StorageError, WriteFailed
 
 __all__ = [
     "UNFINISHED",
@@ -33,6 +33,7 @@ __all__ = [
     "storage_errors",
     "sync_file_system",
     "sync_folder",
+    "write_errors",
     "write_file",
     "written_file",
 ]
@@ -190,8 +191,7 @@ def sync_file_system(folder: Path) -> None:
     """
     fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        if _libc.syncfs(fd):
-            raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()), str(folder))
+        _syncfs(fd)
     finally:
         os.close(fd)
 
@@ -220,7 +220,7 @@ def file_lock(
     Parameters
     ----------
     path : Path
-        The lock's own file, which stays; its folder is made.
+        The lock's own file, which its holder may remove; its folder is made.
     what : str
         What is locked, as an error names it: ``"the own pack"``.
     timeout_s : float
@@ -236,17 +236,16 @@ def file_lock(
         If the lock's file cannot be opened.
     """
     make_folder(path.parent)
-    fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+    deadline = time.monotonic() + timeout_s
+    told = False
+    while (fd := _open_locked(path)) is None:
+        if not told:
+            waiting()
+            told = True
+        if time.monotonic() > deadline:
+            raise DeadlineExceeded(f"{what}, which another process writes to", timeout_s)
+        time.sleep(LOOK_AGAIN_S)
     try:
-        deadline = time.monotonic() + timeout_s
-        told = False
-        while not _try_lock(fd):
-            if not told:
-                waiting()
-                told = True
-            if time.monotonic() > deadline:
-                raise DeadlineExceeded(f"{what}, which another process writes to", timeout_s)
-            time.sleep(LOOK_AGAIN_S)
         yield
     finally:
         os.close(fd)
@@ -279,12 +278,36 @@ def storage_errors(what: str, path: Path) -> Iterator[None]:
         raise StorageError(what, str(path), problem) from problem
 
 
-def _try_lock(fd: int) -> bool:
+def _syncfs(fd: int) -> None:
+    if _libc.syncfs(fd):
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+
+
+@contextmanager
+def write_errors(path: Path) -> Iterator[None]:
+    """Turn an `OSError` of the block into a `WriteFailed` that names what was being written."""
+    try:
+        yield
+    except DeadlineExceeded:
+        raise
+    except OSError as problem:
+        raise WriteFailed(path, problem) from None
+
+
+def _open_locked(path: Path) -> int | None:
+    """Open the file of a lock and take it; None if another holds it."""
+    fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
+    taken = False
     try:
         fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
+        # Its last holder may have removed it: then another file is in its place, or none.
+        taken = os.path.samestat(os.fstat(fd), os.stat(path))
+        return fd if taken else None
+    except (BlockingIOError, FileNotFoundError):
+        return None
+    finally:
+        if not taken:
+            os.close(fd)
 
 
 def _mode_of(path: Path) -> int | None:

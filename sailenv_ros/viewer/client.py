@@ -23,6 +23,7 @@ from sailenv_ros.errors import (
     UnknownName,
 )
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.codecs import encode_png
 from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 from sailenv_ros.simulation import Simulation
@@ -33,7 +34,7 @@ from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
-from sailenv_ros.viewer.encoding import packed, picture_png, view_png
+from sailenv_ros.viewer.encoding import packed, view_png
 from sailenv_ros.viewer.outbox import Outbox
 from sailenv_ros.viewer.request_arguments import Arguments, arguments_of_text
 from sailenv_ros.viewer.scene_json import scene_to_json
@@ -301,7 +302,7 @@ class Client:
     def _sheet_of(self, frame: Frame) -> bytes:
         table, depth_range_m = self.info.categories, self._range(frame)
         near_m = frame.camera.intrinsics.near_m
-        return picture_png(
+        return encode_png(
             contact_sheet(
                 {
                     view: view_picture(

@@ -15,18 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
 
-__all__ = ["FrameMessages", "outline", "packed", "picture_png", "view_png", "views_to_json"]
+__all__ = ["FrameMessages", "outline", "packed", "view_png", "views_to_json"]
 
 JPEG_QUALITY = 85
 
 SPECK_PX = 6.0
 """Area of the smallest hole or island that an outline goes around [px²]."""
-
-_FAST_PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
 
 
 class FrameMessages:
@@ -155,12 +154,7 @@ def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:
 
 def view_png(frame: Frame, view: str, *, categories: CategoryTable, depth_range_m: float) -> bytes:
     """Return one view's picture as a PNG file."""
-    return picture_png(_picture(frame, view, categories, depth_range_m))
-
-
-def picture_png(picture: NDArray[np.uint8]) -> bytes:
-    """Return a picture (H, W, 3) as a PNG file."""
-    return _png(picture, ())
+    return encode_png(_picture(frame, view, categories, depth_range_m))
 
 
 def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:
@@ -193,12 +187,5 @@ def _encoded(
 ) -> tuple[str, bytes]:
     picture = _picture(frame, view, categories, depth_range_m)
     if view_spec(view).is_label:
-        return "image/png", _png(picture, _FAST_PNG)
-    settings = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY)
-    _, data = cv2.imencode(".jpg", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)
-    return "image/jpeg", data.tobytes()
-
-
-def _png(picture: NDArray[np.uint8], settings: Sequence[int]) -> bytes:
-    _, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), settings)
-    return bytes(data.tobytes())
+        return "image/png", encode_png(picture, "quick")
+    return "image/jpeg", encode_jpeg(picture, JPEG_QUALITY)

@@ -30,7 +30,9 @@ ERRNO = {"full": errno.ENOSPC, "broken": errno.EIO, "short": errno.ENOSPC}
 class Step:
     """One thing that was done: to a file's bytes, to a folder's names, or to the disk itself."""
 
-    what: Literal["create", "write", "cut", "sync", "rename", "link", "unlink", "mkdir", "rmdir"]
+    what: Literal[
+        "create", "write", "cut", "sync", "syncfs", "rename", "link", "unlink", "mkdir", "rmdir"
+    ]
     path: str
     other: str = ""
     offset: int = 0
@@ -106,6 +108,7 @@ class FaultyDisk:
         self._put(io, "FileIO", FileIO)
         self._put(mmap, "mmap", self._mmap)
         self._put(files, "_renameat2", self._renameat2)
+        self._put(files, "_syncfs", self._syncfs)
         self._put(shutil, "_USE_CP_SENDFILE", False)
         return self
 
@@ -184,6 +187,12 @@ class FaultyDisk:
         if done and self.watched(new):
             self.log.append(Step("rename", self.name(old), self.name(new)))
         return done
+
+    def _syncfs(self, fd: int) -> None:
+        if fd in self._paths:
+            self.check("syncfs", self._paths[fd])
+            self.log.append(Step("syncfs", self._paths[fd]))
+        self.real(files, "_syncfs")(fd)
 
     def _mmap(self, fd: int, *args: Any, **more: Any) -> Any:
         if fd in self._paths:
@@ -323,6 +332,11 @@ def _apply(
         now[step.other] = now[step.path]
     elif step.what == "unlink":
         now.pop(step.path, None)
+    elif step.what == "syncfs":
+        for inode in now.values():
+            inode.durable = bytes(inode.now)
+        durable.clear()
+        durable.update(now)
     elif step.what == "sync" and step.path in folders:
         for names in (durable, now):
             inside = [n for n in names if (os.path.dirname(n) or ".") == step.path]

@@ -9,74 +9,24 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, BinaryIO
 
-import cv2
-import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, RecordingError
-from sailenv_ros.system.files import make_folder as make_folder_of_files
-from sailenv_ros.system.files import sync_file_system, write_file, written_file
+from sailenv_ros.frame.pictures.codecs import encode_png
+from sailenv_ros.system.files import make_folder, write_errors, write_file, written_file
 
 __all__ = [
     "discard_drafts",
-    "finish",
-    "make_folder",
     "open_draft",
-    "png_bytes",
     "write_bytes",
-    "write_errors",
     "write_json",
     "write_png",
 ]
-
-_SMALL = [cv2.IMWRITE_PNG_COMPRESSION, 3]
-
-_FILTER: int | None = getattr(cv2, "IMWRITE_PNG_FILTER", None)
-"""None for versions of OpenCV that choose the filter of each row themselves."""
-
-
-def _fast(strategy: int, filter_name: str) -> list[int]:
-    options = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, strategy]
-    return options if _FILTER is None else [*options, _FILTER, getattr(cv2, filter_name)]
-
-
-# Of a picture nothing repeats: looking for repetitions takes half of the time and gains nothing.
-_FAST_PICTURE = _fast(cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY, "IMWRITE_PNG_FILTER_PAETH")
-# Labels are the same as those above: what is left is runs of zeros.
-_FAST_LABELS = _fast(cv2.IMWRITE_PNG_STRATEGY_RLE, "IMWRITE_PNG_FILTER_UP")
-
-
-def make_folder(folder: Path) -> None:
-    """Make the folder of a data set, which must not exist or be empty.
-
-    Raises
-    ------
-    RecordingError
-        If something is in it, or it cannot be made.
-    """
-    try:
-        make_folder_of_files(folder)
-        filled = any(folder.iterdir())
-    except (OSError, ValueError) as problem:  # a NUL in the name is no OSError
-        why = getattr(problem, "strerror", None) or str(problem)
-        raise RecordingError(f"{str(folder)!r} cannot be made: {why}") from None
-    if filled:
-        raise RecordingError(f"{folder} is not empty; nothing is overwritten, choose another")
-
-
-@contextlib.contextmanager
-def write_errors(path: Path) -> Iterator[None]:
-    """Turn an `OSError` of the block into a `RecordingError` that names what was being written."""
-    try:
-        yield
-    except OSError as problem:
-        raise RecordingError(f"{path} cannot be written: {problem.strerror or problem}") from None
 
 
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a file, whole or not at all, and the folder that it is in.
 
-    `finish` brings it to the disk.
+    Bringing it to the disk is left to the store that it belongs to.
 
     Raises
     ------
@@ -84,20 +34,8 @@ def write_bytes(path: Path, data: bytes) -> None:
         If it cannot be written.
     """
     with write_errors(path):
-        make_folder_of_files(path.parent)
+        make_folder(path.parent)
         write_file(path, data, durable=False)
-
-
-def finish(folder: Path) -> None:
-    """Bring all files of a data set to the disk.
-
-    Raises
-    ------
-    RecordingError
-        If the disk refuses it.
-    """
-    with write_errors(folder):
-        sync_file_system(folder)
 
 
 def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
@@ -111,7 +49,7 @@ def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
         If it cannot be written.
     """
     with write_errors(path):
-        make_folder_of_files(path.parent)
+        make_folder(path.parent)
         return drafts.enter_context(written_file(path, durable=False))
 
 
@@ -180,19 +118,4 @@ def write_png(path: Path, picture: NDArray[Any]) -> None:
     picture : (H, W) or (H, W, 3) uint8, uint16 or bool
         Truth values become 0 and 255.
     """
-    write_bytes(path, _encoded(picture, _SMALL))
-
-
-def png_bytes(picture: NDArray[Any]) -> bytes:
-    """Return the PNG of a picture as `write_png` takes it, made fast rather than small."""
-    return _encoded(picture, _FAST_LABELS if picture.ndim == 2 else _FAST_PICTURE)
-
-
-def _encoded(picture: NDArray[Any], options: list[int]) -> bytes:
-    if picture.dtype == np.bool_:
-        picture = picture.view(np.uint8) * np.uint8(255)
-    if picture.dtype not in (np.uint8, np.uint16):
-        raise InvalidRequest("picture", str(picture.dtype), "truth values, or 8 or 16 bits deep")
-    ordered = picture if picture.ndim == 2 else np.ascontiguousarray(picture[..., ::-1])
-    _, data = cv2.imencode(".png", ordered, options)
-    return bytes(data)
+    write_bytes(path, encode_png(picture, "small"))

@@ -15,7 +15,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.scene_info import SceneInfo
 
-__all__ = ["DatasetFormat", "FlowDirection", "Made", "Record", "Sample"]
+__all__ = ["DatasetFormat", "FlowDirection", "WriteResult", "Record", "Sample"]
 
 FlowDirection: TypeAlias = Literal["forward", "backward", "both"]
 
@@ -66,7 +66,7 @@ class Sample:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Made:
+class WriteResult:
     """What a format made of one frame.
 
     Attributes
@@ -144,7 +144,7 @@ class DatasetFormat(ABC):
         self.folder = folder
 
     @abstractmethod
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's files. The same frame may be given again: it writes the same files."""
 
     def finish(self, records: Sequence[Record]) -> None:  # noqa: B027 - often nothing is left

@@ -4,26 +4,33 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_args
 
-from sailenv_ros.dataset.formats.data_files import finish, make_folder, write_json
+from sailenv_ros.dataset.folder_storage import FolderStorage
+from sailenv_ros.dataset.formats.data_files import write_json
 from sailenv_ros.dataset.formats.dataset_format import (
     DatasetFormat,
     FlowDirection,
-    Made,
     Record,
     Sample,
+    WriteResult,
 )
 from sailenv_ros.dataset.formats.formats import FORMATS, check_views, format_class
-from sailenv_ros.dataset.formats.journal import JOURNAL, Journal
+from sailenv_ros.dataset.formats.journal import IDENTITY_FILE, FrameJournal
 from sailenv_ros.dataset.formats.splits import Splits
-from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.dataset.identity import WorkIdentity
+from sailenv_ros.dataset.store import ResumableStore
+from sailenv_ros.errors import InvalidRequest, InvalidState, PlaceTaken
 from sailenv_ros.frame.frame import Frame
 
 __all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "DatasetSummary"]
+
+OLD_JOURNAL = "unfinished.jsonl"
+"""Versions before 0.3 kept what was done in it."""
 
 SUMMARY_FILE = "export.json"
 """What was written and what was left out, in the folder of a finished data set."""
@@ -77,8 +84,12 @@ class DatasetWriter:
     ------
     UnknownName, InvalidRequest
         If a format is unknown, or one that is a sequence shall be split.
-    RecordingError
-        If the folder cannot be made or is not empty, or what is in it was begun otherwise.
+    PlaceTaken, BegunOtherwise
+        If the folder is not empty, or what is in it was begun with other settings.
+    WriteFailed
+        If the folder cannot be made.
+    DeadlineExceeded
+        If another process writes this data set.
     """
 
     def __init__(
@@ -109,9 +120,15 @@ class DatasetWriter:
             "flow": flow,
             "source": source,
         }
-        if not (resume and (self.folder / JOURNAL).is_file()):
-            make_folder(self.folder)
-        self._journal = Journal(self.folder, self._head)
+        if (self.folder / OLD_JOURNAL).is_file():
+            raise PlaceTaken(str(self.folder), "holds a data set that an older version began")
+        store = ResumableStore(
+            FolderStorage(self.folder), WorkIdentity(file=IDENTITY_FILE, settings=self._head)
+        )
+        with ExitStack() as stack:
+            stack.enter_context(store.opened(resume=resume))
+            self._journal = FrameJournal(store)
+            self._held_place = stack.pop_all()
         self._formats: dict[str, DatasetFormat] = {
             name: made(self.folder / name if len(names) > 1 else self.folder)
             for name, made in classes.items()
@@ -202,17 +219,18 @@ class DatasetWriter:
             ),
         )
         write_json(self.folder / SUMMARY_FILE, {**self._head, **_plain(summary)})
-        finish(self.folder)
-        self._journal.remove()
+        self._journal.finish()
+        self._held_place.close()
         self._summary = summary
         return summary
 
     def close(self) -> None:
         """Leave the data set unfinished, to go on with another time."""
         if self._summary is None:
-            self._journal.flush()
-            for made in self._formats.values():
-                made.close()
+            with self._held_place:
+                self._journal.flush()
+                for made in self._formats.values():
+                    made.close()
 
     def __enter__(self) -> DatasetWriter:
         return self
@@ -224,7 +242,7 @@ class DatasetWriter:
             self.close()
 
 
-def _totals(made: Sequence[Made]) -> FormatSummary:
+def _totals(made: Sequence[WriteResult]) -> FormatSummary:
     written: Counter[str] = Counter()
     left_out: Counter[str] = Counter()
     for one in made:

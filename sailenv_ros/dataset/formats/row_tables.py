@@ -7,8 +7,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.dataset.formats.data_files import open_draft, write_errors
+from sailenv_ros.dataset.formats.data_files import open_draft
 from sailenv_ros.extras import need
+from sailenv_ros.system.files import write_errors
 
 __all__ = ["ROWS_PER_GROUP", "RowTable"]
 

@@ -14,8 +14,7 @@ from typing import Any, BinaryIO, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.dataset.formats.data_files import write_errors
-from sailenv_ros.system.files import begin_write_back
+from sailenv_ros.system.files import begin_write_back, write_errors
 
 __all__ = ["Content", "TarWriter"]
 

@@ -11,12 +11,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.dataset.formats.data_files import write_errors
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.pictures.colours import view_picture
-from sailenv_ros.system.files import make_folder
+from sailenv_ros.system.files import make_folder, write_errors
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
 
@@ -42,7 +41,7 @@ class VideoExport(DatasetFormat):
         self._writer: cv2.VideoWriter | None = None
         self._shape: tuple[int, ...] = ()
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Add a picture."""
         frame, info = sample.frame, sample.frame.info
         picture = _sheet(frame, info.categories if info else CategoryTable([]))
@@ -53,7 +52,7 @@ class VideoExport(DatasetFormat):
             self._first_ns = frame.stamp_ns
         else:
             self._write(picture)
-        return Made(written={"pictures": 1})
+        return WriteResult(written={"pictures": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Finish the file."""

@@ -20,9 +20,9 @@ from pycocotools.coco import COCO
 from rosbags.highlevel import AnyReader
 
 from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset, verify_dataset
-from sailenv_ros.dataset.engines import HereEngine
+from sailenv_ros.dataset.engines import SerialEngine
 from sailenv_ros.dataset.manifest import summaries_of_files
-from sailenv_ros.errors import RecordingError, UnknownName
+from sailenv_ros.errors import BegunOtherwise, PlaceTaken, UnknownName
 from sailenv_ros.frame.motion import motion
 from sailenv_ros.system.resources import resource_path
 from tests.support.waiting import until
@@ -191,7 +191,7 @@ def test_ctrl_c_is_quick_and_leaves_nothing_among_temporary_files(
     assert not (folder / "manifest.json").exists()
 
 
-class DyingEngine(HereEngine):
+class DyingEngine(SerialEngine):
     """Stops after two shards, as Ctrl-C does."""
 
     def run(self, job, where, shards, on_frames):  # type: ignore[no-untyped-def]
@@ -215,14 +215,29 @@ def test_another_recipe_does_not_go_on(small: Path, tmp_path: Path) -> None:
     """A folder is of one recipe; one with other files is left alone."""
     other = load_job(written_recipe(tmp_path, seed=6))
     before = contents(small)
-    with pytest.raises(RecordingError, match=r"begun otherwise \(recipe differ\)"):
+    with pytest.raises(BegunOtherwise, match=r"begun otherwise: recipe\.seed is 5, not 6"):
         make_dataset(other, small, engine_of(1, None))
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "mine.txt").write_text("mine")
-    with pytest.raises(RecordingError, match="not empty"):
+    with pytest.raises(PlaceTaken, match="not empty"):
         make_dataset(other, tmp_path / "full", engine_of(1, None))
     assert contents(small) == before
     assert sorted(path.name for path in (tmp_path / "full").iterdir()) == ["mine.txt"]
+
+
+def test_what_another_version_began_does_not_go_on(small: Path, tmp_path: Path) -> None:
+    """What decides on the bytes is compared as it was when the data set was begun."""
+    broken = tmp_path / "broken"
+    shutil.copytree(small, broken)
+    told = json.loads((broken / "job.json").read_text())
+    told["head"]["opencv"], told["head"]["sailenv_ros"] = "4.0.0", "0.1.0"
+    (broken / "job.json").write_text(json.dumps(told))
+    before = contents(broken)
+    job = load_job(small.parent / "small.yaml")
+    with pytest.raises(BegunOtherwise) as problem:
+        make_dataset(job, broken, engine_of(1, None))
+    assert problem.value.differing.keys() == {"opencv", "sailenv_ros"}
+    assert contents(broken) == before
 
 
 def test_verifying_finds_what_was_changed(small: Path, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from ray.cluster_utils import Cluster
 
 from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.manifest import done_shards
-from sailenv_ros.dataset.stores import open_store
+from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.errors import RecordingError
 from tests.unit.dataset.conftest import written_recipe
 from tests.unit.dataset.test_making import contents
@@ -44,7 +44,7 @@ def test_the_same_files_are_at_a_remote_place(small: Path, bucket: str) -> None:
     made = make_dataset(job, bucket, engine_of(1, None))
     known = json.loads((small / "manifest.json").read_text())
     assert made.sha256 == known["sha256"]
-    store = open_store(bucket)
+    store = open_storage(bucket)
     assert store.read("README.md") == (small / "README.md").read_bytes()
     name = "webdataset/train-00001.tar"
     assert store.read(name) == (small / name).read_bytes()
@@ -59,7 +59,7 @@ def test_the_same_files_are_at_a_remote_place(small: Path, bucket: str) -> None:
 def test_unknown_places_are_refused() -> None:
     """A kind of URL that there is not."""
     with pytest.raises(RecordingError, match="nowhere://x/y cannot be reached"):
-        open_store("nowhere://x/y")
+        open_storage("nowhere://x/y")
 
 
 @pytest.mark.timeout(600)

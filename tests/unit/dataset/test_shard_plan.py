@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import ShardPlan, clip_groups
 from tests.unit.dataset.conftest import SMALL
 

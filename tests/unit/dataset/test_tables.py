@@ -11,9 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from sailenv_ros.dataset import RecipeError, engine_of, load_job, make_dataset, open_dataset
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import ShardRecords
-from sailenv_ros.dataset.stores import FolderStore
 from tests.unit.dataset.conftest import SMALL, written_recipe
 
 CLIPS, FRAMES = {"train": 3, "val": 1}, 3
@@ -101,7 +101,7 @@ def test_lerobot_takes_one_camera(tmp_path: Path) -> None:
 
 def test_records_are_read_shard_by_shard(folder: Path) -> None:
     """Each is found by its place, and all come in order as often as they are asked for."""
-    store = FolderStore(folder)
+    store = FolderStorage(folder)
     shards = done_shards(store)
     records = ShardRecords(store, shards, "lerobot")
     assert len(shards) > 1

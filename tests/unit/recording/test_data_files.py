@@ -9,54 +9,20 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import cv2
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.dataset.formats.bop_export import BopExport
-from sailenv_ros.dataset.formats.coco_export import CocoExport
+from sailenv_ros.dataset.formats.bop import BopExport
+from sailenv_ros.dataset.formats.coco import CocoExport
 from sailenv_ros.dataset.formats.data_files import (
     discard_drafts,
     json_pieces,
     open_draft,
-    png_bytes,
     write_json,
-    write_png,
 )
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record
-from sailenv_ros.errors import InvalidRequest, RecordingError
-
-RANDOM = np.random.default_rng(1)
-PICTURES = [
-    RANDOM.integers(256, size=(37, 53, 3), dtype=np.uint8),
-    RANDOM.integers(256, size=(37, 53), dtype=np.uint8),
-    RANDOM.integers(65536, size=(37, 53), dtype=np.uint16),
-    np.kron(RANDOM.integers(300, size=(5, 7)), np.ones((9, 11), int)).astype(np.uint16),
-    np.zeros((48, 64), np.uint8),
-    RANDOM.random((37, 53)) < 0.5,
-]
-
-
-@pytest.mark.parametrize("picture", PICTURES, ids=lambda one: f"{one.shape} {one.dtype}")
-def test_pictures_are_kept_exactly(picture: np.ndarray, tmp_path: Path) -> None:
-    path = tmp_path / "one.png"
-    write_png(path, picture)
-    for data in (png_bytes(picture), path.read_bytes()):
-        found = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-        wanted = picture.astype(np.uint8) * 255 if picture.dtype == np.bool_ else picture
-        assert np.array_equal(found[..., ::-1] if picture.ndim == 3 else found, wanted)
-
-
-def test_labels_are_small() -> None:
-    labels = np.kron(np.arange(48).reshape(6, 8), np.ones((80, 80), int)).astype(np.uint16)
-    assert len(png_bytes(labels)) < 0.01 * labels.nbytes
-
-
-def test_real_numbers_are_no_picture() -> None:
-    with pytest.raises(InvalidRequest, match="float32"):
-        png_bytes(np.zeros((4, 4), np.float32))
+from sailenv_ros.errors import RecordingError
 
 
 def test_drafts_take_their_places_together_or_not_at_all(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
 from sailenv_ros.dataset.formats import DatasetWriter, Splits, export
-from sailenv_ros.dataset.formats.bop_export import DEPTH_STEP_MM
+from sailenv_ros.dataset.formats.bop import DEPTH_STEP_MM
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import record_lockstep

@@ -8,10 +8,18 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.cli.main import main
+from sailenv_ros.dataset import folder_storage
 from sailenv_ros.dataset.formats import DatasetWriter, Splits, export
-from sailenv_ros.dataset.formats.journal import FRAMES_PER_SYNC, JOURNAL
-from sailenv_ros.errors import InvalidRequest, InvalidState, RecordingError
+from sailenv_ros.dataset.formats.journal import FRAMES_PER_NOTE, IDENTITY_FILE, NOTES_FOLDER
+from sailenv_ros.errors import (
+    DeadlineExceeded,
+    InvalidRequest,
+    InvalidState,
+    PlaceTaken,
+    RecordingError,
+)
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.system.files import UNFINISHED
 from tests.support.recordings import noise_frame, write_noise
 
 pytestmark = pytest.mark.ros
@@ -32,15 +40,15 @@ def break_off(folder: Path, formats: list[str], frames: list[Frame]) -> None:
 
 def test_a_broken_off_data_set_ends_as_one_that_was_not(tmp_path: Path) -> None:
     """Whatever was made of the frames that came before the break, each file is the same."""
-    count, formats = FRAMES_PER_SYNC + 5, ["coco", "flo", "mp4"]
+    count, formats = FRAMES_PER_NOTE + 5, ["coco", "flo", "mp4"]
     frames = [noise_frame(number) for number in range(1, count + 1)]
     with DatasetWriter(tmp_path / "whole", formats) as writer:
         for frame in frames:
             writer.add(frame)
     break_off(tmp_path / "broken", formats, frames[:7])
-    # As a machine that lost power leaves it: a line without an end.
-    journal = tmp_path / "broken" / JOURNAL
-    journal.write_bytes(journal.read_bytes()[:-9])
+    # As a machine that lost power leaves it: a note that has not taken its place.
+    (note,) = (tmp_path / "broken" / NOTES_FOLDER).iterdir()
+    note.rename(note.with_name(f".{note.name}.abc{UNFINISHED}"))
     with DatasetWriter(tmp_path / "broken", formats, resume=True) as writer:
         assert writer.done == 0, "a video has to begin anew"
         for frame in frames[writer.done :]:
@@ -84,7 +92,7 @@ def test_the_command_goes_on_where_it_was(
     assert main([*words, "coco"]) == 2
     assert "is not empty" in capsys.readouterr().err
     assert main([*words, "png", "--resume"]) == 2
-    assert "was begun with other options" in capsys.readouterr().err
+    assert "was begun otherwise: formats is ['coco'], not ['png']" in capsys.readouterr().err
     assert main([*words, "coco", "--resume"]) == 0
     assert files_of(tmp_path / "out") == files_of(whole)
     assert "5 frames as coco\n  coco: 5 images, 10 annotations" in capsys.readouterr().out
@@ -136,8 +144,34 @@ def test_a_frame_without_a_needed_view_is_refused_whole(tmp_path: Path) -> None:
 def test_an_unreadable_journal_is_named(tmp_path: Path) -> None:
     """What is no text is refused with the file's name."""
     break_off(tmp_path, ["png"], [noise_frame(1)])
-    head = (tmp_path / JOURNAL).read_bytes().splitlines(keepends=True)[0]
-    for content in (b"\xff\xfe\n", head + b"{\n", head + b"{}\n", head + b"3\n"):
-        (tmp_path / JOURNAL).write_bytes(content)
-        with pytest.raises(RecordingError, match=JOURNAL):
+    (note,) = (tmp_path / NOTES_FOLDER).iterdir()
+    for content in (b"\xff\xfe\n", b"{\n", b"{}\n", b"3\n"):
+        note.write_bytes(content)
+        with pytest.raises(RecordingError, match=note.name):
             DatasetWriter(tmp_path, ["png"], resume=True)
+    (tmp_path / IDENTITY_FILE).write_bytes(b"{")
+    with pytest.raises(PlaceTaken, match=IDENTITY_FILE):
+        DatasetWriter(tmp_path, ["png"], resume=True)
+
+
+def test_what_an_older_version_began_is_refused(tmp_path: Path) -> None:
+    """In a sentence that says so; nothing is changed."""
+    (tmp_path / "unfinished.jsonl").write_text('{"formats": ["png"]}\n')
+    with pytest.raises(PlaceTaken, match="that an older version began; nothing is overwritten"):
+        DatasetWriter(tmp_path, ["png"], resume=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["unfinished.jsonl"]
+
+
+def test_two_writers_do_not_share_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second is told who is in its way; when the first has ended it goes on."""
+    monkeypatch.setattr(folder_storage, "LOCK_TIMEOUT_S", 0.1)
+    with DatasetWriter(tmp_path, ["png"]) as writer:
+        writer.add(noise_frame(1))
+        with pytest.raises(DeadlineExceeded, match="which another process writes to"):
+            DatasetWriter(tmp_path, ["png"], resume=True)
+        writer.close()
+        with DatasetWriter(tmp_path, ["png"], resume=True) as other:
+            assert other.done == 1
+    assert sorted(files_of(tmp_path)) == sorted(
+        ["export.json", "frames.json", *(f"{view}/000000.png" for view in noise_frame(1).views)]
+    )

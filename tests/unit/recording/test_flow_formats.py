@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.recording.flow_formats import (
+from sailenv_ros.dataset.formats.flow_files import (
     backward_from_flo,
     backward_from_kitti,
     backward_px,
@@ -24,6 +23,7 @@ from sailenv_ros.recording.flow_formats import (
     kitti_from_backward,
     kubric_from_flow,
 )
+from sailenv_ros.errors import InvalidRequest
 
 number = st.floats(-500.0, 500.0, width=32) | st.just(float("nan"))
 flows = arrays.arrays(np.float32, st.tuples(st.integers(1, 4), st.integers(1, 5), st.just(2)),

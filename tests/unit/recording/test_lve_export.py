@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros import Simulation
 from sailenv_ros.dataset.formats.dataset_writer import DatasetWriter
-from sailenv_ros.dataset.formats.lve_export import lve_motion
+from sailenv_ros.dataset.formats.lve import lve_motion
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.agents import AgentSpec

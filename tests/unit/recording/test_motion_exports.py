@@ -13,7 +13,7 @@ import pytest
 
 from sailenv_ros.dataset.formats import export
 from sailenv_ros.dataset.formats.dataset_writer import DatasetWriter
-from sailenv_ros.dataset.formats.movi_export import load_movi_frame
+from sailenv_ros.dataset.formats.movi import load_movi_frame
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import SceneGeometry, motion, track

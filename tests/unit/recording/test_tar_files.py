@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sailenv_ros.dataset.formats.tar_files import WRITE_BACK_BYTES, TarWriter
-from sailenv_ros.dataset.formats.webdataset_export import encoded
+from sailenv_ros.dataset.formats.webdataset import encoded
 from sailenv_ros.errors import RecordingError
 
 NAMES = st.text("abcdefghij0123456789._-", min_size=1, max_size=90)

@@ -20,7 +20,10 @@ from sailenv_ros.assets.folders import own_pack_folder
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.dataset.formats.data_files import write_png
+from sailenv_ros.dataset.folder_storage import FolderStorage
+from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
+from sailenv_ros.dataset.identity import WorkIdentity
+from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import RecordingError, SailenvError
 from sailenv_ros.light.bake.light_files import load_baked, store_baked
 from sailenv_ros.recording.bag_recovery import recover
@@ -200,6 +203,64 @@ def check_upload(folder: Path, done: bool, _: object) -> None:
     assert not list((folder / "tmp").iterdir())
 
 
+# -- works that are gone on with -------------------------------------------------------------
+
+
+def work(folder: Path) -> ResumableStore:
+    identity = WorkIdentity(file="begun.json", settings={"seed": 1})
+    return ResumableStore(FolderStorage(folder / "set"), identity)
+
+
+def make_part(number: int) -> Callable[[Path], object]:
+    """Make a part of two files in a staging folder, and a note of it."""
+
+    def act(folder: Path) -> None:
+        store = work(folder)
+        with store.opened(), store.part() as part:
+            for name in (f"{number}.txt", f"deep/{number}.txt"):
+                write_bytes(part.folder / name, b"whole")
+            part.note = f"notes/{number}.json", b"noted"
+
+    return act
+
+
+def note_part(number: int) -> Callable[[Path], object]:
+    """Write two files to their places, and a note of them."""
+
+    def act(folder: Path) -> None:
+        store = work(folder)
+        with store.opened():
+            for name in (f"{number}.txt", f"deep/{number}.txt"):
+                write_bytes(folder / "set" / name, b"whole")
+            store.note(f"notes/{number}.json", b"noted")
+
+    return act
+
+
+def check_parts(folder: Path, done: bool, _: object) -> None:
+    """What is noted is whole, and its work is known; what was noted before still is."""
+    notes = work(folder).notes("notes")
+    assert {"0.json", "1.json"} >= set(notes) >= ({"0.json", "1.json"} if done else {"0.json"})
+    assert work(folder).check()
+    for name, data in notes.items():
+        assert data == b"noted"
+        for path in (f"{name[0]}.txt", f"deep/{name[0]}.txt"):
+            assert (folder / "set" / path).read_bytes() == b"whole"
+
+
+def finish_work(folder: Path) -> None:
+    store = work(folder)
+    if (folder / "set" / "begun.json").exists():
+        with store.opened():
+            store.finish(["notes/0.json", "begun.json"])
+
+
+def check_finished(folder: Path, done: bool, _: object) -> None:
+    """What was made stays; it is known as finished, or can be gone on with."""
+    assert (folder / "set" / "deep" / "0.txt").read_bytes() == b"whole"
+    assert not done or not (folder / "set" / "begun.json").exists()
+
+
 ACTIONS = {
     "a scene that is there": Action(
         scene("den", "old", overwrite=False), scene("den", "new", overwrite=True), check_scene
@@ -233,6 +294,9 @@ ACTIONS = {
         check_picture,
     ),
     "a recording": Action(lambda folder: None, record, check_recording),
+    "a part of a work": Action(make_part(0), make_part(1), check_parts),
+    "a note of a work": Action(make_part(0), note_part(1), check_parts),
+    "the end of a work": Action(make_part(0), finish_work, check_finished),
     "an upload": Action(lambda folder: None, upload, check_upload),
 }  # fmt: skip
 
@@ -292,7 +356,8 @@ def test_each_call_may_fail(folder: Path, tmp_path: Path, what: str, kind: Kind)
 
 @pytest.mark.parametrize(
     "what", ["a scene that is there", "a new scene", "an asset that is there", "baked light",
-             "a result", "a recording"],
+             "a result", "a recording", "a part of a work", "a note of a work",
+             "the end of a work"],
 )  # fmt: skip
 def test_power_may_be_lost_at_any_time(folder: Path, tmp_path: Path, what: str) -> None:
     """Whatever of the unsynced bytes and names is on the disk; what returned is there for good."""

@@ -19,10 +19,16 @@ from sailenv_ros.dataset.streams import (
     StreamJob,
     StreamKind,
     make_stream,
-    stream_making,
+    making,
     stream_named,
 )
-from sailenv_ros.errors import DeadlineExceeded, InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.errors import (
+    BegunOtherwise,
+    DeadlineExceeded,
+    InvalidRequest,
+    PlaceTaken,
+    UnknownName,
+)
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.recording.frames import RecordedFrames
@@ -110,7 +116,7 @@ def test_flow_is_zero_on_all_but_the_one_that_moves(tmp_path: Path) -> None:
 def test_a_broken_stream_goes_on_with_the_same_messages(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stream_making, "PART_FRAMES", 5)
+    monkeypatch.setattr(making, "PART_FRAMES", 5)
     whole = make_stream(job(), tmp_path / "a" / "solid")
 
     def break_off(done: int) -> None:
@@ -168,7 +174,7 @@ objects:
 def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> StreamJob:
     """A stream in a room of its own, with a cache of its own, in which bakes are coarse."""
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(stream_making, "PART_FRAMES", 3)
+    monkeypatch.setattr(making, "PART_FRAMES", 3)
     monkeypatch.setattr(finished_light, "bake", coarse_bake)
     scene = tmp_path / "cell.yaml"
     scene.write_text(CELL_SCENE)
@@ -201,7 +207,7 @@ def test_the_deadline_of_a_long_way_is_one_frames(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Frames that are passed over are not waited for all at once; what is late says so itself."""
-    monkeypatch.setattr(stream_making, "PART_FRAMES", 2)
+    monkeypatch.setattr(making, "PART_FRAMES", 2)
     waited: list[str] = []
 
     def count(future: Any, what: str, timeout_s: float) -> Any:
@@ -217,7 +223,7 @@ def test_the_deadline_of_a_long_way_is_one_frames(
     bag = tmp_path / "solid"
     with pytest.raises(Broken):
         make_stream(job(14), bag, on_frame=break_off)
-    monkeypatch.setattr(stream_making, "wait_for", count)
+    monkeypatch.setattr(making, "wait_for", count)
     with pytest.raises(DeadlineExceeded, match="while waiting for physics to step to a frame"):
         make_stream(job(14), bag)
 
@@ -236,11 +242,11 @@ def test_a_broken_stream_keeps_its_light_and_models(
     bag = tmp_path / "cell"
     with pytest.raises(Broken):
         make_stream(job, bag, on_frame=break_off)
-    with pytest.raises(RecordingError, match=r"stream: light is '[0-9a-f]{32}', not 'plain'"):
+    with pytest.raises(BegunOtherwise, match=r"otherwise: light is '[0-9a-f]{32}', not 'plain'"):
         make_stream(cell, bag)
     with monkeypatch.context() as patch:
         patch.setattr(SceneLibrary, "asset_fingerprint", lambda self, name: f"other {name}")
-        with pytest.raises(RecordingError, match="another stream: models is"):
+        with pytest.raises(BegunOtherwise, match="begun otherwise: models is"):
             make_stream(job, bag)
     for path in (tmp_path / "cache/light").glob("*.light"):
         path.unlink()
@@ -251,15 +257,15 @@ def test_folders_of_others_are_refused_and_left_alone(tmp_path: Path) -> None:
     mine = tmp_path / "mine"
     mine.mkdir()
     (mine / "thesis.tex").write_text("text")
-    with pytest.raises(RecordingError, match="is there already and is no stream of ours"):
+    with pytest.raises(PlaceTaken, match="is not empty"):
         make_stream(job(), mine)
     file = tmp_path / "file"
     file.write_text("text")
-    with pytest.raises(RecordingError, match="no stream of ours"):
+    with pytest.raises(PlaceTaken, match="is no folder"):
         make_stream(job(), file)
     other = make_stream(job(2), tmp_path / "other")
     before = {path: path.read_bytes() for path in other.iterdir()}
-    with pytest.raises(RecordingError, match="seed is 0, not 1"):
+    with pytest.raises(BegunOtherwise, match="seed is 0, not 1"):
         make_stream(job(2, seed=1), other)
     assert {path: path.read_bytes() for path in other.iterdir()} == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "mine", "other"]

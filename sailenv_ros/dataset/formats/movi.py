@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.data_files import write_bytes
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Sample, WriteResult
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import motion, object_coordinates
@@ -53,7 +53,7 @@ class MoviExport(DatasetFormat):
     views: ClassVar[tuple[str, ...]] = ("depth", "instance")
     needs_neighbours: ClassVar[bool] = True
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's file."""
         frame, states = sample.frame, sample.frame.states
         if states is None:
@@ -77,7 +77,7 @@ class MoviExport(DatasetFormat):
         data = io.BytesIO()
         np.savez_compressed(data, **arrays)
         write_bytes(self.folder / sample.split / f"{sample.stem}.npz", data.getvalue())
-        return Made(written={"frames": 1, "flow fields": fields})
+        return WriteResult(written={"frames": 1, "flow fields": fields})
 
 
 def load_movi_frame(path: str | Path) -> Frame:

@@ -14,7 +14,7 @@ import numpy as np
 
 from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.object_table import ObjectTable
 
@@ -29,7 +29,7 @@ class VocExport(DatasetFormat):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write the files of a frame."""
         found = annotated_objects(sample, "Pascal VOC")
         name = f"{sample.stem}.png"
@@ -41,7 +41,9 @@ class VocExport(DatasetFormat):
         tree = _annotation(name, sample.frame, found.table)
         path = self.folder / "Annotations" / f"{sample.stem}.xml"
         write_bytes(path, ElementTree.tostring(tree))
-        return Made(written={"pictures": 1, "objects": len(found.table)}, left_out=found.left_out)
+        return WriteResult(
+            written={"pictures": 1, "objects": len(found.table)}, left_out=found.left_out
+        )
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write the list of each split's names."""

@@ -21,7 +21,7 @@ from sailenv_ros.dataset.formats.annotated_objects import (
     merged_categories,
 )
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.frame.frame import Frame
 
 __all__ = ["YoloExport", "YoloSegmentsExport"]
@@ -37,13 +37,13 @@ class YoloExport(DatasetFormat):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write the picture of a frame and take its objects."""
         found = annotated_objects(sample, "YOLO")
         split = sample.split or UNSPLIT
         write_png(self.folder / "images" / split / f"{sample.stem}.png", sample.frame["rgb"])
         rows, left_out = self._rows(sample.frame, found)
-        return Made(
+        return WriteResult(
             record={"categories": categories_of(sample, "YOLO"), "rows": rows},
             written={"pictures": 1, "objects": len(rows)},
             left_out={**found.left_out, **left_out},

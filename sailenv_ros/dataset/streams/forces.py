@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.geometry import look_at
 
-__all__ = ["FurniturePusher", "LaptopPusher", "RoamingPusher"]
+__all__ = ["FurnitureForces", "LaptopForces", "RoamingForces"]
 
 Vector = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ SLOWER = PUBLISHED_STEP_S / FRAME_S
 """By which velocities of the published programs are multiplied."""
 
 
-class LaptopPusher:
+class LaptopForces:
     """Pushes one floating object at random within a rectangle, which the camera looks at.
 
     Parameters
@@ -53,7 +53,7 @@ class LaptopPusher:
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng([seed, 1])
 
-    def push(self, simulation: Simulation, number: int) -> None:
+    def apply(self, simulation: Simulation, number: int) -> None:
         """Send it another way, if it is time, and turn the camera to it."""
         thing = simulation.get_object(self.NAME)
         simulation.set_pose(look_at(self.EYE_M, thing.pose.position_m))
@@ -74,7 +74,7 @@ class LaptopPusher:
         simulation.apply_wrench(self.NAME, force_n=thing.mass_kg * change / STEP_S)
 
 
-class FurniturePusher:
+class FurnitureForces:
     """Pushes and twists furniture in every frame, by Gaussian forces and torques.
 
     Parameters
@@ -89,7 +89,7 @@ class FurniturePusher:
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng([seed, 2])
 
-    def push(self, simulation: Simulation, number: int) -> None:
+    def apply(self, simulation: Simulation, number: int) -> None:
         """Push each for the time of a frame."""
         for name in self.NAMES:
             drawn = self._rng.normal(size=6)
@@ -101,7 +101,7 @@ class FurniturePusher:
             )
 
 
-class RoamingPusher:
+class RoamingForces:
     """Pushes the furniture, and a camera that is a body and looks at a point.
 
     The scene's mover is the camera's body: a small ball that floats, with drag, and bounces off
@@ -122,13 +122,13 @@ class RoamingPusher:
 
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng([seed, 3])
-        self._furniture = FurniturePusher(seed)
+        self._furniture = FurnitureForces(seed)
         self._slow = 0
         self._last: tuple[int, float] | None = None
 
-    def push(self, simulation: Simulation, number: int) -> None:
+    def apply(self, simulation: Simulation, number: int) -> None:
         """Push all: the camera against its way if it is fast, else along an axis if it is time."""
-        self._furniture.push(simulation, number)
+        self._furniture.apply(simulation, number)
         velocity = np.asarray(simulation.get_mover_velocity()[0])
         impulse = self._impulse(velocity, number)
         if impulse.any():

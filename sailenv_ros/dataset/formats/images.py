@@ -9,13 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_json, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.flow_files import backward_px, flo_from_backward
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.pictures.colours import view_picture
-from sailenv_ros.recording.flow_formats import (
-    backward_px,
-    flo_from_backward,
-)
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
 
@@ -52,13 +49,13 @@ class PngExport(DatasetFormat):
     truth values 0 and 255; other real numbers (flow, normals) as pictures in colour.
     """
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's files."""
         frame, folder = sample.frame, self.folder / sample.split
         for view, values in frame.views.items():
             write_png(folder / view / f"{sample.stem}.png", _png(view, values))
         record = frame_record(sample.number, frame)
-        return Made(record=record, written={"pictures": len(frame.views)})
+        return WriteResult(record=record, written={"pictures": len(frame.views)})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write the table of frames of each split."""
@@ -81,9 +78,9 @@ class FloExport(DatasetFormat):
 
     views: ClassVar[tuple[str, ...]] = ("flow",)
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's file."""
         backward = backward_px(sample.frame["flow"], sample.frame.dt_s)
         path = self.folder / sample.split / f"{sample.stem}.flo"
         write_bytes(path, flo_from_backward(backward))
-        return Made(written={"fields": 1})
+        return WriteResult(written={"fields": 1})

@@ -10,7 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import ClassVar
 
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.recording.topics import RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
@@ -30,7 +30,7 @@ class McapExport(DatasetFormat):
         self._recorder: FrameRecorder | None = None
         self._revision: tuple[int, int] | None = None
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame, and the scene where it is another one than before."""
         frame = sample.frame
         if self._recorder is None:
@@ -42,7 +42,7 @@ class McapExport(DatasetFormat):
             self._recorder.write_info(info)
         amodal = frame.draw_alone is not None
         self._recorder.write_frame(frame, frame.depth_range_m, amodal=amodal)
-        return Made(written={"frames": 1})
+        return WriteResult(written={"frames": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the bag."""

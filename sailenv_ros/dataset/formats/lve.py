@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_json, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.scene_info import SceneInfo
@@ -56,7 +56,7 @@ class LveExport(DatasetFormat):
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance", "flow")
     is_sequence: ClassVar[bool] = True
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's files."""
         frame = sample.frame
         folder, file = divmod(sample.number, FILES_PER_FOLDER)
@@ -68,7 +68,7 @@ class LveExport(DatasetFormat):
         _write_array(self.folder / "sup" / f"{place}.targets.bin", targets)
         indices = np.arange(targets.size, dtype=np.int32)
         _write_array(self.folder / "sup" / f"{place}.indices.bin", indices)
-        return Made(
+        return WriteResult(
             record={"stamp_ns": frame.stamp_ns, "epoch": frame.epoch, "classes": classes},
             written={"pictures": 1, "flow fields": 1, "label maps": 1},
         )

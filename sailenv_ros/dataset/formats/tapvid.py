@@ -14,15 +14,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.errors import RecordingError
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import SceneGeometry, Tracks, track
+from sailenv_ros.frame.pictures.codecs import decode_picture
 from sailenv_ros.simulation.recorded_geometry import recorded_geometry
 
 __all__ = ["TapVidExport", "tapvid_entry"]
@@ -49,7 +49,7 @@ class TapVidExport(DatasetFormat):
         super().__init__(folder)
         self._frames: list[Frame] = []
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's picture and keep where everything was."""
         frame = sample.frame
         if frame.states is None:
@@ -57,7 +57,7 @@ class TapVidExport(DatasetFormat):
         sample.scene_info("TAP-Vid")
         write_png(self._picture(sample.number), frame["rgb"])
         self._frames.append(replace(frame, views={}))
-        return Made(written={"pictures": 1})
+        return WriteResult(written={"pictures": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Follow the points and write the pickle."""
@@ -75,10 +75,11 @@ class TapVidExport(DatasetFormat):
         return self.folder / "frames" / f"{number:06d}.png"
 
     def _read(self, number: int) -> NDArray[np.uint8]:
-        picture = cv2.imread(str(self._picture(number)), cv2.IMREAD_COLOR)
-        if picture is None:
-            raise RecordingError(f"{self._picture(number)} cannot be read")
-        return np.asarray(picture[..., ::-1], np.uint8)
+        path = self._picture(number)
+        try:
+            return decode_picture(path.read_bytes())
+        except (OSError, InvalidRequest) as problem:
+            raise RecordingError(f"{path} cannot be read: {problem}") from None
 
 
 def tapvid_entry(

@@ -23,8 +23,8 @@ from sailenv_ros.dataset.formats.annotated_objects import (
 )
 from sailenv_ros.dataset.formats.coco_rle import run_lengths_text
 from sailenv_ros.dataset.formats.data_files import write_json, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.dataset.formats.image_formats import frame_record
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.images import frame_record
 from sailenv_ros.frame.truth.object_table import ObjectTable
 from sailenv_ros.frame.truth.run_lengths import crop_runs
 
@@ -36,7 +36,7 @@ class CocoExport(DatasetFormat):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write the picture of a frame and take its objects."""
         frame, number = sample.frame, sample.number
         found = annotated_objects(sample, "COCO")
@@ -67,7 +67,7 @@ class CocoExport(DatasetFormat):
                     crop, int(box[0]), int(box[1]), height, width
                 )
             annotations.append(annotation)
-        return Made(
+        return WriteResult(
             record={
                 "image": {**frame_record(number, frame), **image},
                 "categories": categories_of(sample, "COCO"),

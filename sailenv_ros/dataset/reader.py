@@ -11,18 +11,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.dataset.dataset_recipe import DatasetRecipe
+from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
+from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import ShardPlan
-from sailenv_ros.dataset.stores import FolderStore
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.codecs import decode_picture
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -100,13 +100,13 @@ class Dataset(Sequence[DatasetFrame]):
         self.split = split
         if not folder.is_dir():
             raise RecordingError(f"{folder} holds no data set: there is no such folder")
-        store = FolderStore(folder)
-        self.recipe: DatasetRecipe = job_of(store).recipe
+        storage = FolderStorage(folder)
+        self.recipe: DatasetRecipe = job_of(storage).recipe
         if split and split not in self.recipe.clips.by_name:
             raise UnknownName("split", split, self.recipe.clips.by_name)
         self._records = [
             record
-            for record in frame_records(store, done_shards(store))
+            for record in frame_records(storage, done_shards(storage))
             if split in ("", record["split"])
         ]
         self._source = self._opened()
@@ -254,11 +254,7 @@ def _read(tar: tarfile.TarFile, member: tarfile.TarInfo) -> bytes:
 
 
 def _from_png(view: str, data: bytes) -> NDArray[Any]:
-    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    if picture is None:
-        raise ValueError(f"{view} is no PNG file")
-    if picture.ndim > 2:
-        picture = np.ascontiguousarray(picture[..., ::-1])
+    picture = decode_picture(data)
     if VIEWS[view].dtype == np.bool_:
         return np.asarray(picture > 0)
     return picture

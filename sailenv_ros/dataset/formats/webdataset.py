@@ -20,11 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
-from sailenv_ros.dataset.formats.data_files import discard_drafts, open_draft, png_bytes
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.dataset.formats.image_formats import frame_record
+from sailenv_ros.dataset.formats.data_files import discard_drafts, open_draft
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.images import frame_record
 from sailenv_ros.dataset.formats.object_records import object_record
 from sailenv_ros.dataset.formats.tar_files import Content, TarWriter
+from sailenv_ros.frame.pictures.codecs import encode_png
 
 __all__ = ["WebDatasetExport"]
 
@@ -40,7 +41,7 @@ class WebDatasetExport(DatasetFormat):
         self._open = ExitStack()
         self._tars: dict[str, TarWriter] = {}
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
         tar = self._tar(sample.split or "train")
         frame = sample.frame
@@ -66,7 +67,7 @@ class WebDatasetExport(DatasetFormat):
             record["objects"] = [object_record(found.table, row) for row in range(len(found.table))]
             left_out = dict(found.left_out)
         tar.append(f"{name}.json", [json.dumps(record).encode()])
-        return Made(written={"samples": 1}, left_out=left_out)
+        return WriteResult(written={"samples": 1}, left_out=left_out)
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the files."""
@@ -90,7 +91,7 @@ class WebDatasetExport(DatasetFormat):
 def encoded(values: NDArray[Any]) -> tuple[str, Sequence[Content]]:
     """Return the ending and the content of the member that keeps a view's values exactly."""
     if values.dtype in (np.bool_, np.uint8, np.uint16):
-        return "png", [png_bytes(values)]
+        return "png", [encode_png(values, "fastest")]
     values = np.ascontiguousarray(values)
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, np.lib.format.header_data_from_array_1_0(values))

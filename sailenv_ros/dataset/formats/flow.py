@@ -11,11 +11,11 @@ from typing import ClassVar
 import numpy as np
 
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Sample
-from sailenv_ros.dataset.formats.image_formats import scaled_depth
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Sample, WriteResult
+from sailenv_ros.dataset.formats.flow_files import flo_from_backward, kitti_from_backward
+from sailenv_ros.dataset.formats.images import scaled_depth
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import Motion, motion
-from sailenv_ros.recording.flow_formats import flo_from_backward, kitti_from_backward
 
 __all__ = ["KittiExport", "SintelExport"]
 
@@ -59,7 +59,7 @@ class KittiExport(DatasetFormat):
     any_of: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
     needs_neighbours: ClassVar[bool] = True
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write the pair that begins with a frame."""
         frame, following = sample.frame, sample.following
         folder = self.folder / sample.split
@@ -69,13 +69,13 @@ class KittiExport(DatasetFormat):
             write_png(folder / "depth" / first, scaled_depth(frame["depth"], 256.0))
             written["depth maps"] = 1
         if following is None or not _have_one_past(frame, following):
-            return Made(written=written, left_out={NO_NEIGHBOUR: 1})
+            return WriteResult(written=written, left_out={NO_NEIGHBOUR: 1})
         if "rgb" in frame.views:
             write_png(folder / "image_2" / first, frame["rgb"])
             write_png(folder / "image_2" / second, following["rgb"])
             written["pictures"] = 2
         if not (_is_complete(frame) and _is_complete(following)):
-            return Made(written=written, left_out={NO_STATES: 1})
+            return WriteResult(written=written, left_out={NO_STATES: 1})
         for direction, begin, end, folder_name, name in (
             ("forward", frame, following, "flow", first),
             ("backward", following, frame, "flow_backward", second),
@@ -86,7 +86,7 @@ class KittiExport(DatasetFormat):
                 write_png(folder / f"{folder_name}_occ" / name, kitti_from_backward(moved.flow))
                 write_png(folder / f"{folder_name}_noc" / name, kitti_from_backward(visible))
                 written["flow fields"] += 1
-        return Made(written=written)
+        return WriteResult(written=written)
 
 
 class SintelExport(DatasetFormat):
@@ -103,7 +103,7 @@ class SintelExport(DatasetFormat):
     has_sequences: ClassVar[bool] = True
     needs_neighbours: ClassVar[bool] = True
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write a frame's files."""
         frame = sample.frame
         scene = sample.sequence or f"{frame.scene}_{frame.epoch}"
@@ -122,7 +122,7 @@ class SintelExport(DatasetFormat):
             }
             for mask, values in masks.items():
                 write_png(self.folder / f"{mask}{end}" / scene / f"{stem}.png", values)
-        return Made(written={"pictures": 1, "flow fields": len(motions)}, left_out=left_out)
+        return WriteResult(written={"pictures": 1, "flow fields": len(motions)}, left_out=left_out)
 
 
 def _have_one_past(frame: Frame, other: Frame) -> bool:

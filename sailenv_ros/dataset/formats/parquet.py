@@ -16,12 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
-from sailenv_ros.dataset.formats.data_files import discard_drafts, png_bytes
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
-from sailenv_ros.dataset.formats.image_formats import frame_record
+from sailenv_ros.dataset.formats.data_files import discard_drafts
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.images import frame_record
 from sailenv_ros.dataset.formats.object_records import object_record
 from sailenv_ros.dataset.formats.row_tables import RowTable
 from sailenv_ros.extras import need
+from sailenv_ros.frame.pictures.codecs import encode_png
 
 __all__ = ["ParquetExport"]
 
@@ -38,7 +39,7 @@ class ParquetExport(DatasetFormat):
         self._open = ExitStack()
         self._tables: dict[str, RowTable] = {}
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
         frame = sample.frame
         told = frame_record(sample.number, frame)
@@ -53,7 +54,7 @@ class ParquetExport(DatasetFormat):
             **{view: _cell(values) for view, values in frame.views.items()},
         }
         self._table(sample.split or "train", frame.views).append(row)
-        return Made(written={"rows": 1}, left_out=found.left_out)
+        return WriteResult(written={"rows": 1}, left_out=found.left_out)
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write what is left and close the files."""
@@ -80,7 +81,7 @@ def _is_image(values: NDArray[Any]) -> bool:
 
 def _cell(values: NDArray[Any]) -> Any:
     if _is_image(values):
-        return {"bytes": png_bytes(values), "path": None}
+        return {"bytes": encode_png(values, "fastest"), "path": None}
     return [row if row.ndim == 1 else list(row) for row in values]
 
 

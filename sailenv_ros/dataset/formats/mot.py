@@ -18,7 +18,7 @@ from sailenv_ros.dataset.formats.annotated_objects import (
     merged_categories,
 )
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 
 __all__ = ["MotExport"]
 
@@ -34,7 +34,7 @@ class MotExport(DatasetFormat):
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
     is_sequence: ClassVar[bool] = True
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write the picture of a frame and take its objects."""
         found = annotated_objects(sample, "MOT")
         frame, table = sample.frame, found.table
@@ -50,7 +50,7 @@ class MotExport(DatasetFormat):
                 f"{table.category_ids[row]},{shares[row]:.5f}"
             )
         height, width = frame["instance"].shape
-        return Made(
+        return WriteResult(
             record={
                 "lines": lines,
                 "size": [width, height],

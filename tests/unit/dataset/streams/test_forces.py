@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.cli.main import main
 from sailenv_ros.dataset.streams import STREAMS
-from sailenv_ros.dataset.streams.pushers import FurniturePusher, LaptopPusher, RoamingPusher
+from sailenv_ros.dataset.streams.forces import FurnitureForces, LaptopForces, RoamingForces
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.geometry import Pose, look_at
@@ -40,11 +40,11 @@ objects:
 def roam(path: Path, seed: int, frames: int) -> tuple[Vectors, Vectors, Vectors]:
     """Return places, the way that is looked and velocities of stream C's camera at each frame."""
     path.write_text(ROAMED)
-    pusher = RoamingPusher(seed)
+    forces = RoamingForces(seed)
     seen = []
     with Simulation(path, mode="lockstep", seed=seed, backend="tiny") as simulation:
         for number in range(1, frames):
-            pusher.push(simulation, number)
+            forces.apply(simulation, number)
             simulation.step(10)
             pose = simulation.get_mover_pose()
             velocity, _ = simulation.get_mover_velocity()
@@ -60,15 +60,15 @@ def test_the_camera_roams_the_room_and_looks_at_its_point(tmp_path: Path) -> Non
     assert ((places[:, 2] >= 0.1 - 1e-3) & (places[:, 2] <= 2.6 + 1e-3)).all()
     way = np.array([1.6, 0.0, 0.87]) - places
     np.testing.assert_allclose(forward, way / np.linalg.norm(way, axis=1, keepdims=True), atol=1e-9)
-    fastest = RoamingPusher.FAST_M_S + RoamingPusher.IMPULSES_N_S[1] / 0.125
+    fastest = RoamingForces.FAST_M_S + RoamingForces.IMPULSES_N_S[1] / 0.125
     assert np.linalg.norm(velocities, axis=1).max() < fastest
     assert np.ptp(places, axis=0).max() > 0.3
     # The first pushes: slow for 20 frames, then one of the impulses along an axis.
-    pushed = velocities[RoamingPusher.SLOW_FRAMES - 1]
-    low, high = np.array(RoamingPusher.IMPULSES_N_S) / 0.125
+    pushed = velocities[RoamingForces.SLOW_FRAMES - 1]
+    low, high = np.array(RoamingForces.IMPULSES_N_S) / 0.125
     assert low <= np.abs(pushed).max() <= high
     assert np.count_nonzero(pushed) == 1
-    assert not velocities[: RoamingPusher.SLOW_FRAMES - 2].any()
+    assert not velocities[: RoamingForces.SLOW_FRAMES - 2].any()
 
 
 def test_seeds_decide(tmp_path: Path) -> None:
@@ -86,10 +86,10 @@ def test_scenes_begin_as_their_pushers_do(which: str) -> None:
     agent = scene.agents[0]
     names = {thing.name: thing for thing in scene.objects}
     if which == "a":
-        laptop = names[LaptopPusher.NAME]
-        expected = look_at(LaptopPusher.EYE_M, laptop.pose.position_m)
+        laptop = names[LaptopForces.NAME]
+        expected = look_at(LaptopForces.EYE_M, laptop.pose.position_m)
     else:
-        assert not any(names[name].static for name in FurniturePusher.NAMES)
+        assert not any(names[name].static for name in FurnitureForces.NAMES)
         expected = look_at(ROAMING_EYE_M, ROAMING_TARGET_M)
         assert agent.vertical_fov == 96.0
     if which == "c":
@@ -122,21 +122,21 @@ def test_the_laptop_is_kept_in_bounds(tmp_path: Path) -> None:
     """It moves all the time, in the plane before the camera, which looks at it."""
     path = tmp_path / "scene.yaml"
     path.write_text(SCENE)
-    pusher = LaptopPusher(1)
+    forces = LaptopForces(1)
     places = []
     with Simulation(path, mode="lockstep", backend="tiny") as simulation:
         for number in range(1, 400):
-            pusher.push(simulation, number)
+            forces.apply(simulation, number)
             simulation.step(10)
             places.append(simulation.get_object("laptop").pose.position_m)
         looked = np.asarray(simulation.get_pose().matrix())[:3, 0]
     track = np.asarray(places)
     margin = 0.1
-    assert (track[:, 1:] > LaptopPusher.LEAST_M - margin).all()
-    assert (track[:, 1:] < LaptopPusher.MOST_M + margin).all()
+    assert (track[:, 1:] > LaptopForces.LEAST_M - margin).all()
+    assert (track[:, 1:] < LaptopForces.MOST_M + margin).all()
     np.testing.assert_allclose(track[:, 0], 0.915, atol=1e-6)
     assert np.linalg.norm(np.diff(track, axis=0), axis=1)[10:].max() > 0.001
-    way = track[-2] - LaptopPusher.EYE_M
+    way = track[-2] - LaptopForces.EYE_M
     np.testing.assert_allclose(looked, way / np.linalg.norm(way), atol=1e-3)
 
 

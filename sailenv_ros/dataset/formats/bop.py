@@ -20,7 +20,7 @@ from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
 from sailenv_ros.dataset.formats.bop_models import MM_PER_M, ObjectModel
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_json, write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
@@ -47,7 +47,7 @@ class BopExport(DatasetFormat):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Write the pictures of a frame and take its objects."""
         frame = sample.frame
         found = annotated_objects(sample, "BOP")
@@ -92,7 +92,7 @@ class BopExport(DatasetFormat):
             "cam_R_w2c": to_world[:3, :3].reshape(-1).tolist(),
             "cam_t_w2c": (MM_PER_M * to_world[:3, 3]).tolist(),
         }
-        return Made(
+        return WriteResult(
             record={
                 "scene": number,
                 "camera": camera,

@@ -18,17 +18,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.dataset.formats.data_files import (
-    discard_drafts,
-    png_bytes,
-    write_bytes,
-    write_json,
-)
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Made, Record, Sample
+from sailenv_ros.dataset.formats.data_files import discard_drafts, write_bytes, write_json
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.row_tables import RowTable
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.extras import need
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.codecs import encode_png
 
 __all__ = ["LeRobotExport"]
 
@@ -63,7 +59,7 @@ class LeRobotExport(DatasetFormat):
         self._table: RowTable | None = None
         self._epochs: list[int] = []
 
-    def add(self, sample: Sample) -> Made:
+    def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
         frame = sample.frame
         episode = self._episode(sample)
@@ -72,7 +68,7 @@ class LeRobotExport(DatasetFormat):
         goes_on = following is not None and _of_one_episode(frame, following)
         now, then = _pose(frame), _pose(following if goes_on and following else frame)
         row = {
-            IMAGE: {"bytes": png_bytes(frame["rgb"]), "path": None},
+            IMAGE: {"bytes": encode_png(frame["rgb"], "fastest"), "path": None},
             STATE: now.tolist(),
             ACTION: then.tolist(),
             "episode_index": episode,
@@ -88,7 +84,7 @@ class LeRobotExport(DatasetFormat):
         if self._table is None:
             self._table = self._begun(frame)
         self._table.append(row)
-        return Made(record=self._record(sample, episode, now, then), written={"frames": 1})
+        return WriteResult(record=self._record(sample, episode, now, then), written={"frames": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Close the table, and write what is known of all episodes."""

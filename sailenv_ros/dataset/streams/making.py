@@ -2,7 +2,7 @@
 
 A lockstep simulation, every frame exactly once; the same stream, seed and options give the same
 messages, whether or not it was broken off (but for `render_s`), and whatever light lies in the
-cache. What is not whole lies in a folder beside, which `stream_parts` keeps.
+cache. What is not whole lies in a folder beside, which `parts` keeps.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.dataset.streams.stream_content import scene_content
-from sailenv_ros.dataset.streams.stream_parts import StreamFolder
-from sailenv_ros.dataset.streams.stream_table import StreamKind
+from sailenv_ros.dataset.streams.content import scene_content
+from sailenv_ros.dataset.streams.parts import StreamFolder
+from sailenv_ros.dataset.streams.table import StreamKind
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import FORWARD_VIEWS
@@ -215,11 +215,11 @@ def _opened(job: StreamJob) -> Simulation:
 
 def _walk(job: StreamJob, simulation: Simulation, count: int) -> Iterator[int]:
     """Lead the simulation from frame to frame, and yield the number of each when it is due."""
-    pusher = job.kind.pusher(job.seed) if job.kind.pusher is not None else None
+    forces = job.kind.forces(job.seed) if job.kind.forces is not None else None
     step, stepped = 0, None
     for number, due in enumerate(due_steps(job.kind.rate_hz, count)):
-        if pusher is not None and number:
-            pusher.push(simulation, number)
+        if forces is not None and number:
+            forces.apply(simulation, number)
         if due > step:
             if stepped is not None:
                 # Where frames are passed over, the deadline is one frame's, not of the whole way.

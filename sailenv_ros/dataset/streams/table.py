@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from sailenv_ros.dataset.streams.pushers import FurniturePusher, LaptopPusher, RoamingPusher
+from sailenv_ros.dataset.streams.forces import FurnitureForces, LaptopForces, RoamingForces
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.resources import resource_path
 
-__all__ = ["STREAMS", "Pusher", "StreamKind", "stream_named"]
+__all__ = ["STREAMS", "ForceSchedule", "StreamKind", "stream_named"]
 
 
-class Pusher(Protocol):
+class ForceSchedule(Protocol):
     """What acts on a stream's scene before each frame but the first."""
 
-    def push(self, simulation: Simulation, number: int) -> None:
+    def apply(self, simulation: Simulation, number: int) -> None:
         """Act before the steps that lead to frame `number`, from 1 on."""
 
 
@@ -38,7 +38,7 @@ class StreamKind:
         Pictures of a lap; of the whole stream where it has no laps.
     laps : bool
         True if what happens is repeated lap by lap.
-    pusher : callable or None
+    forces : callable or None
         Makes what acts on the scene, from a seed.
     """
 
@@ -47,7 +47,7 @@ class StreamKind:
     rate_hz: float
     lap_frames: int
     laps: bool = True
-    pusher: Callable[[int], Pusher] | None = None
+    forces: Callable[[int], ForceSchedule] | None = None
 
     @property
     def scene(self) -> Path:
@@ -55,7 +55,7 @@ class StreamKind:
         return resource_path("config", "streams", f"{self.name}.yaml")
 
 
-def _colof(which: str, pusher: Callable[[int], Pusher]) -> StreamKind:
+def _colof(which: str, forces: Callable[[int], ForceSchedule]) -> StreamKind:
     """Return a stream of CoLLAs 2022: an hour at 25 Hz."""
     return StreamKind(
         name=f"colof_{which}",
@@ -63,7 +63,7 @@ def _colof(which: str, pusher: Callable[[int], Pusher]) -> StreamKind:
         rate_hz=25.0,
         lap_frames=90_000,
         laps=False,
-        pusher=pusher,
+        forces=forces,
     )
 
 
@@ -73,9 +73,9 @@ STREAMS: dict[str, StreamKind] = {
         StreamKind(name="empty_space", title="EmptySpace", rate_hz=20.0, lap_frames=1550),
         StreamKind(name="solid", title="Solid", rate_hz=8.0, lap_frames=400),
         StreamKind(name="living_room", title="LivingRoom", rate_hz=25.0, lap_frames=558),
-        _colof("a", LaptopPusher),
-        _colof("b", FurniturePusher),
-        _colof("c", RoamingPusher),
+        _colof("a", LaptopForces),
+        _colof("b", FurnitureForces),
+        _colof("c", RoamingForces),
     )
 }
 """The streams by their names."""

@@ -1,0 +1,73 @@
+"""Pictures as files: exact where nothing may be lost, refused in one sentence."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import cv2
+import numpy as np
+import pytest
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.pictures.codecs import PngEffort, decode_picture, encode_jpeg, encode_png
+
+RANDOM = np.random.default_rng(1)
+PICTURES = [
+    RANDOM.integers(256, size=(37, 53, 3), dtype=np.uint8),
+    RANDOM.integers(256, size=(37, 53), dtype=np.uint8),
+    RANDOM.integers(65536, size=(37, 53), dtype=np.uint16),
+    RANDOM.integers(65536, size=(37, 53, 3), dtype=np.uint16),
+    np.kron(RANDOM.integers(300, size=(5, 7)), np.ones((9, 11), int)).astype(np.uint16),
+    np.zeros((48, 64), np.uint8),
+    RANDOM.random((37, 53)) < 0.5,
+]
+
+
+@pytest.mark.parametrize("effort", get_args(PngEffort))
+@pytest.mark.parametrize("picture", PICTURES, ids=lambda one: f"{one.shape} {one.dtype}")
+def test_pictures_are_kept_exactly(picture: np.ndarray, effort: PngEffort) -> None:
+    data = encode_png(picture, effort)
+    wanted = picture.astype(np.uint8) * 255 if picture.dtype == np.bool_ else picture
+    found = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(found[..., ::-1] if picture.ndim == 3 else found, wanted)
+    again = decode_picture(data)
+    assert again.dtype == wanted.dtype
+    assert np.array_equal(again, wanted)
+
+
+def test_labels_are_small() -> None:
+    labels = np.kron(np.arange(48).reshape(6, 8), np.ones((80, 80), int)).astype(np.uint16)
+    assert len(encode_png(labels, "fastest")) < 0.01 * labels.nbytes
+
+
+def test_jpeg_has_the_colours_in_their_order() -> None:
+    """Red stays red; a greater quality is nearer."""
+    picture = np.full((32, 32, 3), (200, 40, 90), np.uint8)
+    picture[8:24, 8:24] = (10, 180, 60)
+    errors = []
+    for quality in (20, 95):
+        found = decode_picture(encode_jpeg(picture, quality))
+        errors.append(np.abs(found.astype(int) - picture).mean())
+        np.testing.assert_allclose(found.mean((0, 1)), picture.mean((0, 1)), atol=8.0)
+    assert errors[1] < errors[0]
+
+
+@pytest.mark.parametrize(
+    "picture",
+    [
+        np.zeros((4, 4), np.float32), np.zeros((4, 4, 4), np.uint8), np.zeros(4, np.uint8),
+        np.zeros((0, 4), np.uint8),
+    ],
+)  # fmt: skip
+def test_what_is_no_picture_is_refused(picture: np.ndarray) -> None:
+    for encode in (encode_png, lambda one: encode_jpeg(one, 90)):
+        with pytest.raises(InvalidRequest, match="picture must be an array"):
+            encode(picture)  # type: ignore[operator]
+    with pytest.raises(InvalidRequest, match="uint16"):
+        encode_jpeg(np.zeros((4, 4), np.uint16), 90)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("data", [b"", b"no picture", encode_png(PICTURES[0])[:20]])
+def test_what_is_no_file_is_refused(data: bytes) -> None:
+    with pytest.raises(InvalidRequest, match="a PNG or JPEG file"):
+        decode_picture(data)
