@@ -17,6 +17,7 @@ from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import NEVER, RayScene
 from sailenv_ros.bake.sampling import shifted
 from sailenv_ros.lights import Light
+from sailenv_ros.native.bake_types import LitPoints
 
 __all__ = ["LightSamples", "Points", "arriving", "samples_of", "sun_directions", "visible_range"]
 
@@ -47,6 +48,11 @@ class Points:
         """Return the same with patterns that are moved farther, in sizes of cells."""
         shifts = self.shifts + np.asarray(shift, dtype=np.float32)
         return replace(self, shifts=shifts - np.floor(shifts))
+
+    def lit(self) -> LitPoints:
+        """Return them as kernels take them."""
+        arrays = self.positions, self.normals, self.faces, self.shifts
+        return LitPoints(*(np.ascontiguousarray(array, np.float32) for array in arrays))
 
     def part(self, chosen: slice | NDArray[np.intp]) -> Points:
         """Return some of them."""

@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.area_light import solid_angles
 from sailenv_ros.bake.direct import samples_of
-from sailenv_ros.bake.gather import BACK, Surroundings
+from sailenv_ros.bake.gather import Surroundings
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import RayScene
 from sailenv_ros.bake.settings import BakeSettings
-from sailenv_ros.bake.sky import sky_at
 from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.lights import Light
+from sailenv_ros.native.bake_types import SkyWindows
+from sailenv_ros.native.surface_light import probe_radiance
 
 __all__ = [
     "ProbeViews",
@@ -85,19 +85,20 @@ class ProbeViews:
         self.clear[first:end] = clear.reshape(count, rays)
 
 
-def probe_light(views: ProbeViews, radiance: Floats, sky: Floats) -> Floats:
+def probe_light(views: ProbeViews, radiance: Floats, sky: SkyWindows, workers: int = 1) -> Floats:
     """Return (N, 4, C) float32: what arrives at probes from surfaces and sky; see `LightLayer`.
 
     Parameters
     ----------
     views : ProbeViews
     radiance : (texels, C) float32
-    sky : (H, W, 3) float32
+    sky : SkyWindows
+    workers : int
+        Threads.
     """
-    light = np.zeros((len(views.texels), 4, radiance.shape[1]), dtype=np.float32)
-    for k, own in enumerate(light):
-        _collect(views.texels[k], views.directions, views.clear[k], radiance, sky, own)
-    return light
+    return probe_radiance(
+        views.directions, views.texels, views.clear, sky, radiance, threads=workers
+    )
 
 
 def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Floats) -> Floats:
@@ -150,25 +151,3 @@ def dilated_grid(values: Floats, unknown: NDArray[np.bool_], grid: ProbeGrid) ->
         field[new] = total[new] / number[new][:, None]
         known = known | new
     return field.reshape(values.shape)
-
-
-@numba.njit(cache=True, nogil=True)
-def _collect(texels, directions, clear, radiance, sky, light):  # type: ignore[no-untyped-def]
-    channels = radiance.shape[1]
-    rays = len(texels)
-    for m in range(rays):
-        texel = texels[m]
-        if texel == BACK:
-            continue
-        for c in range(channels):
-            if texel >= 0:
-                value = radiance[texel, c]
-            elif c < 3:
-                value = clear[m] * sky_at(
-                    sky, directions[m, 0], directions[m, 1], directions[m, 2], c
-                )
-            else:
-                break
-            light[0, c] += value / rays
-            for axis in range(3):
-                light[1 + axis, c] += 2.0 * value * directions[m, axis] / rays

@@ -43,6 +43,7 @@ from sailenv_ros.bake.texels import Texels, rasterised
 from sailenv_ros.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.lights import Light
+from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.snapshot import WorldSnapshot
 
 __all__ = ["Preview", "Report", "bake"]
@@ -220,7 +221,8 @@ class _Bake:
     def _probes(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> tuple[Floats, Floats]:
         """Return (L, N, 4) direct and (N, 4, 3 L) bounced light of the probes."""
         radiance = solver.radiance if of_texel is None else solver.radiance[of_texel]
-        bounced = probe_light(self._views, radiance, self._around.sky)
+        sky = SkyWindows(self._around.sky, self._around.panes)
+        bounced = probe_light(self._views, radiance, sky, self._stages.workers)
         direct = np.zeros((len(solver.lights), len(self._spots), 4), dtype=np.float32)
         for place, straight in enumerate(self._probe_direct):
             if straight is not None:

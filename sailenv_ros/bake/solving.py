@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from sailenv_ros.bake.bounces import Patches, bounced_radiance
 from sailenv_ros.bake.denoise import stand_ins
 from sailenv_ros.bake.direct import Points, arriving, visible_range
-from sailenv_ros.bake.gather import BACK, Looks, Seen, Surroundings, seen_from, surfaces_light
+from sailenv_ros.bake.gather import BACK, Seen, Surroundings, seen_from
 from sailenv_ros.bake.ray_patterns import in_turns, net
 from sailenv_ros.bake.rays import in_chunks
 from sailenv_ros.bake.sampling import pass_shift
@@ -175,12 +175,11 @@ class Solver:
         samples, settings = self._samples, self._settings
         seen = np.empty((samples.count, settings.pass_rays), np.int32)
         sky = np.empty((samples.count, 3), np.float32)
-
-        looks: dict[int, Looks] = {}
+        parts: dict[int, Seen] = {}
 
         def keep(chosen: slice, found: Seen) -> None:
             seen[chosen], sky[chosen] = found.texels, found.sky
-            looks[chosen.start] = found.looks
+            parts[chosen.start] = replace(found, texels=seen[chosen], sky=sky[chosen])
 
         self._look(keep, 0, self._stages.begin("surroundings", weights[0]))
         self._passes = 1
@@ -209,9 +208,7 @@ class Solver:
         self.bounced = np.empty_like(first)
 
         def gather(start: int, end: int) -> None:
-            self.bounced[start:end] = surfaces_light(seen[start:end], self.radiance)
-            looks[start].add(self.radiance, self.bounced[start:end])
-            self.bounced[start:end, :3] += sky[start:end]
+            self.bounced[start:end] = parts[start].light(self.radiance)
 
         self._stages.run(gather, samples.count, settings.pass_rays)
 
@@ -234,9 +231,7 @@ class Solver:
         share = np.float32(1.0 / self._passes)
 
         def add(chosen: slice, found: Seen) -> None:
-            light = surfaces_light(found.texels, self.radiance)
-            found.looks.add(self.radiance, light)
-            light[:, :3] += found.sky
+            light = found.light(self.radiance)
             self.bounced[chosen] += (light - self.bounced[chosen]) * share
 
         self._look(add, self._passes - 1, report)

@@ -16,22 +16,17 @@ from numpy.typing import NDArray
 from sailenv_ros.bake.returned_light import returned
 from sailenv_ros.bake.sky_picture import sky_picture
 from sailenv_ros.bake.static_geometry import StaticGeometry, static_geometry_of
+from sailenv_ros.bake.texels import REACH, off_the_edges
 from sailenv_ros.baked_light import BakedLight, Unwrapping
 from sailenv_ros.colour import LINEAR_OF_SRGB8
 from sailenv_ros.model import Material, Model
-from sailenv_ros.native.ray_tracing import cover_texels
+from sailenv_ros.native.texel_kernels import cover_texels
 from sailenv_ros.relight.ray_shapes import Shape, shape_of, tree_over
 from sailenv_ros.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 __all__ = ["BakedScene", "Panes", "TexelPatches", "albedo_of_model"]
 
 Floats = NDArray[np.float32]
-
-REACH = 1.5
-"""How far from a triangle texels stand for it [texels]; as in `bake.texels`."""
-
-EDGE, EDGE_M = 1e-3, 3e-3
-"""Points of which a corner's weight is less than `EDGE` are moved in by `EDGE_M` [m]."""
 
 TILE = 4
 """Side of a patch [texels]."""
@@ -201,10 +196,7 @@ class BakedScene:
         owner, weights = cover_texels(self._places(geometry), side, REACH)
         rows, columns = np.nonzero(owner >= 0)
         triangle = owner[rows, columns]
-        share = np.empty((len(rows), 3), np.float32)
-        share[:, 1:] = weights[rows, columns]
-        share[:, 0] = 1.0 - share[:, 1] - share[:, 2]
-        share = _off_the_edges(geometry.corners[triangle], share)
+        share = off_the_edges(geometry.corners[triangle], weights[rows, columns])
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
         faces = geometry.faces[triangle]
         normals = np.einsum("nc,ncx->nx", share, geometry.normals[triangle])
@@ -281,15 +273,6 @@ class BakedScene:
             emission=emission[material],
             materials=np.asarray(material, np.int32),
         )
-
-
-def _off_the_edges(corners: Floats, share: Floats) -> Floats:
-    """Return the weights of points a little further in: at the very edge others may begin."""
-    points = np.einsum("nc,ncx->nx", share, corners)
-    far = np.maximum(np.linalg.norm(corners.mean(axis=1) - points, axis=1), 1e-9)
-    inwards = np.where(share.min(axis=1) < EDGE, np.minimum(EDGE_M / far, 1.0 / 3.0), 0.0)
-    moved = share * (1.0 - inwards[:, None]) + inwards[:, None] / 3.0
-    return np.asarray(moved, np.float32)
 
 
 def albedo_of_model(model: Model) -> Floats:

@@ -20,7 +20,6 @@ from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame import VIEWS, checked_views, views_of
 from sailenv_ros.render import annotate as ground_truth
-from sailenv_ros.render import cluster_culling
 from sailenv_ros.render.backend import RenderedViews
 from sailenv_ros.render.context import create_context
 from sailenv_ros.render.draw_list import DrawList
@@ -81,7 +80,6 @@ class Renderer:
         self._finisher = Finisher()
         self._mirrors = FlatMirrors()
         self._closed = False
-        cluster_culling.warm_up()
 
     @property
     def description(self) -> str:

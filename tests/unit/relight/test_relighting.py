@@ -14,7 +14,8 @@ from sailenv_ros.bake.texels import rasterised
 from sailenv_ros.baked_light import BakedLight
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment, Light
-from sailenv_ros.native.ray_tracing import build_box_tree, cover_texels
+from sailenv_ros.native.ray_tracing import build_box_tree
+from sailenv_ros.native.texel_kernels import cover_texels
 from sailenv_ros.relight.baked_scene import BakedScene
 from sailenv_ros.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.relight.relighting import relit
