@@ -55,6 +55,16 @@ class Patches:
         means: Floats = (np.stack(sums, axis=1) / number[:, None]).astype(np.float32)
         return means
 
+    def middles(self, texels: Texels) -> NDArray[np.intp]:
+        """Return (count,) the texel that is nearest to the middle of each."""
+        size = np.bincount(self.of_texel, minlength=self.count)
+        far = np.zeros(texels.count)
+        for at in (texels.rows, texels.columns):
+            middle = np.bincount(self.of_texel, weights=at, minlength=self.count) / size
+            far += (at - middle[self.of_texel]) ** 2
+        order = np.lexsort((far, self.of_texel))
+        return order[np.concatenate([[0], np.cumsum(size)[:-1]])] if len(order) else order
+
 
 def patches_of(geometry: StaticGeometry, texels: Texels) -> Patches:
     """Group the texels."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.bake.back_to_back import BackToBack
 from sailenv_ros.bake.direct import Points
-from sailenv_ros.bake.ray_patterns import net
+from sailenv_ros.bake.ray_patterns import low_discrepancy_points
 from sailenv_ros.bake.rays import NEVER, Hits, RayScene
 from sailenv_ros.native.bake_types import Emitters, LitPoints, MappedTriangles, SkyWindows
 from sailenv_ros.native.gather_kernels import (
@@ -28,7 +28,7 @@ from sailenv_ros.native.gather_kernels import (
 )
 from sailenv_ros.native.surface_light import add_radiance_met, mean_radiance_met, met_texels
 
-__all__ = ["BACK", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
+__all__ = ["BACK", "INSIDE_SHARE", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
 
 Floats = NDArray[np.float32]
 
@@ -37,6 +37,10 @@ NOTHING = -1
 
 BACK = -2
 """Stands for the back of a surface that has none: such light is lost."""
+
+INSIDE_SHARE = 0.25
+"""A point that sees more backs of surfaces than this share lies inside of something; the same in
+src/kernels/relight_gathering.cpp."""
 
 EMITTER_RAYS = 4
 """From each point to each emitter; texels of a tile of 4 by 4 use different ones."""
@@ -190,7 +194,7 @@ def _looks(
     none = np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.float32)
     if not len(around.emitters):
         return Looks(point=none[0], texel=none[1], weight=none[2])
-    emitters, pattern = Emitters(around.emitters), net(EMITTER_RAYS)
+    emitters, pattern = Emitters(around.emitters), low_discrepancy_points(EMITTER_RAYS)
     shots = len(pattern)
     found = [weights_within_cones(points, emitters, directions, texels, shots=shots)]
     # Of a net of 2 by 2, steps of a quarter would lean to one side of its cells.

@@ -9,14 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.bake.area_light import solid_angles
-from sailenv_ros.bake.direct import samples_of
+from sailenv_ros.bake.direct import Points
 from sailenv_ros.bake.gather import Surroundings
+from sailenv_ros.bake.light_shapes import light_record
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.bake.rays import RayScene
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.lights import Light
 from sailenv_ros.native.bake_types import SkyWindows
+from sailenv_ros.native.light_kernels import light_samples
 from sailenv_ros.native.surface_light import probe_radiance
 
 __all__ = [
@@ -103,23 +105,21 @@ def probe_light(views: ProbeViews, radiance: Floats, sky: SkyWindows, workers: i
 
 def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Floats) -> Floats:
     """Return (N, 4) float32: what arrives at probes straight from a light."""
-    shifts = np.zeros((len(positions), 2), dtype=np.float32)
-    samples = samples_of(light, positions, shifts, pattern)
+    row, points = light_record(light), Points.in_the_air(positions).lit()
+    towards, lengths, irradiance = light_samples(row, points, pattern)
     count = len(pattern)
     free = scene.share_that_passes(
-        np.repeat(positions, count, axis=0),
-        samples.towards.reshape(-1, 3),
-        samples.lengths.reshape(-1),
+        np.repeat(positions, count, axis=0), towards.reshape(-1, 3), lengths.reshape(-1)
     ).reshape(-1, count)
-    power = samples.irradiance * free
+    power = irradiance * free
     if light.type == "area":
         # A sample may be near; of the whole the formula knows how much arrives.
-        whole = np.maximum(samples.irradiance.mean(axis=1), 1e-30)
+        whole = np.maximum(irradiance.mean(axis=1), 1e-30)
         power *= (solid_angles(light, positions) / whole)[:, None]
-    length = np.maximum(np.linalg.norm(samples.towards, axis=2, keepdims=True), 1e-9)
+    length = np.maximum(np.linalg.norm(towards, axis=2, keepdims=True), 1e-9)
     arriving = np.empty((len(positions), 4), dtype=np.float32)
     arriving[:, 0] = power.mean(axis=1) / (4.0 * math.pi)
-    arriving[:, 1:] = np.einsum("nm,nmx->nx", power, samples.towards / length)
+    arriving[:, 1:] = np.einsum("nm,nmx->nx", power, towards / length)
     arriving[:, 1:] /= 2.0 * math.pi * count
     return arriving
 

@@ -1,4 +1,4 @@
-"""Patterns of rays for neighbouring texels. From `ray_patterns` to shifted ones; knows no scene.
+"""How far neighbouring texels move their patterns of rays. Knows no scene.
 
 Everything is deterministic: neighbouring texels of a tile of 4 by 4 take shifted copies of one
 pattern, which together are a pattern 16 times as fine, so that averaging over tiles leaves no
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["pass_shift", "shifted", "tile_shift"]
+__all__ = ["pass_shift", "tile_shift"]
 
 Floats = NDArray[np.float32]
 
@@ -39,15 +39,3 @@ def pass_shift(number: int) -> tuple[float, float]:
         y += between * up + half * right
         half, between, number = half / 2.0, between / 2.0, number >> 2
     return x % 1.0, y % 1.0
-
-
-def shifted(pattern: Floats, shifts: Floats) -> Floats:
-    """Return (N, M, 2) float32: each point of a net moved within its own cell of the square.
-
-    A net of M points has one in each of M square cells. Moved modulo the cell, the nets of a tile
-    fill all cells evenly; moved modulo 1 they would leave gaps.
-    """
-    cells = np.float32(np.sqrt(len(pattern)))
-    cell = np.floor(pattern * cells)
-    inside = (pattern * cells - cell)[None] + shifts[:, None]
-    return np.asarray((cell + inside - np.floor(inside)) / cells, dtype=np.float32)

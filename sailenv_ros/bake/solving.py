@@ -16,8 +16,8 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from sailenv_ros.bake.bounces import Patches, bounced_radiance
 from sailenv_ros.bake.denoise import stand_ins
 from sailenv_ros.bake.direct import Points, arriving, visible_range
-from sailenv_ros.bake.gather import BACK, Seen, Surroundings, seen_from
-from sailenv_ros.bake.ray_patterns import in_turns, net
+from sailenv_ros.bake.gather import BACK, INSIDE_SHARE, Seen, Surroundings, seen_from
+from sailenv_ros.bake.ray_patterns import in_turns, low_discrepancy_points
 from sailenv_ros.bake.rays import in_chunks
 from sailenv_ros.bake.sampling import pass_shift
 from sailenv_ros.bake.settings import BakeSettings
@@ -27,9 +27,6 @@ from sailenv_ros.lights import Light
 __all__ = ["Samples", "SolvedLight", "Solver", "Stages"]
 
 Floats = NDArray[np.float32]
-
-MOST_BACKS = 0.25
-"""A point that sees more backs of surfaces than this share lies inside of something."""
 
 SURELY_INSIDE = 0.5
 """What sees more at first is not looked at any further."""
@@ -157,7 +154,7 @@ class Solver:
     @property
     def valid(self) -> NDArray[np.bool_]:
         """See the class."""
-        return np.asarray(self._backs <= MOST_BACKS * self._passes)
+        return np.asarray(self._backs <= INSIDE_SHARE * self._passes)
 
     @property
     def nearness(self) -> Floats:
@@ -244,7 +241,8 @@ class Solver:
     ) -> None:
         """Cast the rays of a pass; hand over what they found."""
         samples, settings = self._samples, self._settings
-        pattern, window_pattern = in_turns(net(settings.pass_rays)), net(settings.window_rays)
+        pattern = in_turns(low_discrepancy_points(settings.pass_rays))
+        window_pattern = low_discrepancy_points(settings.window_rays)
         shift = pass_shift(number)
 
         def look(first: int, end: int) -> None:
@@ -264,7 +262,7 @@ class Solver:
         scene = self._samples.around.scene
 
         def shine_on(lit: NDArray[np.intp], rays: int, given: Floats | None) -> None:
-            pattern = net(rays)
+            pattern = low_discrepancy_points(rays)
 
             def shine(first: int, end: int) -> None:
                 chosen = lit[first:end]
@@ -287,7 +285,7 @@ class Solver:
         texels, points = self._samples.texels, self._samples.points
         if texels is None:
             return np.full(self._samples.count, np.nan, np.float32)
-        count, pattern = texels.count, net(self._settings.light_rays // 4)
+        count, pattern = texels.count, low_discrepancy_points(self._settings.light_rays // 4)
         lowest, highest = np.empty((2, count), np.float32)
         scene = self._samples.around.scene
 

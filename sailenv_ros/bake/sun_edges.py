@@ -11,9 +11,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.bake.direct import LIFT_M, sun_directions
-from sailenv_ros.bake.ray_patterns import net
-from sailenv_ros.bake.rays import NEVER, RayScene
+from sailenv_ros.bake.direct import Points, free_shares
+from sailenv_ros.bake.light_shapes import SUN_DISC_RADIUS, light_record
+from sailenv_ros.bake.ray_patterns import low_discrepancy_points
+from sailenv_ros.bake.rays import RayScene
 from sailenv_ros.bake.static_geometry import StaticGeometry
 from sailenv_ros.bake.texels import Texels, off_the_edges
 from sailenv_ros.baked_light import EDGE_POINTS, SunEdges
@@ -96,11 +97,7 @@ def _shares(
     faces = geometry.faces[triangle] * np.sign(side)[:, None].astype(np.float32)
     # All points take the same rays: shares grow evenly across an edge, in small steps.
     shifts = np.zeros((len(triangle), 2), np.float32)
-    towards = sun_directions(light, net(RAYS), shifts)
-    above = np.einsum("nmx,nx->nm", towards, faces) > 0.0
-    point, _ = np.nonzero(above)
-    origins = positions[point] + faces[point] * np.float32(LIFT_M)
-    free = np.zeros(above.shape, np.float32)
-    never = np.full(len(point), NEVER, np.float32)
-    free[above] = scene.share_that_passes(origins, towards[above], never)
+    points = Points(positions=positions, normals=faces, faces=faces, shifts=shifts)
+    row = light_record(light, SUN_DISC_RADIUS)
+    free, _ = free_shares(scene, row, points.lit(), low_discrepancy_points(RAYS))
     return np.asarray(free.mean(axis=1), np.float32)

@@ -16,7 +16,13 @@ from sailenv_ros.native.gather_kernels import (
     sky_by_choice,
     weights_within_cones,
 )
-from sailenv_ros.native.light_kernels import rectangle_form_factors
+from sailenv_ros.native.light_kernels import (
+    direct_light,
+    light_rays,
+    light_samples,
+    rectangle_form_factors,
+)
+from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.surface_light import (
     add_radiance_met,
     hand_on,
@@ -86,6 +92,21 @@ def drive_gathering() -> None:
         )  # fmt: skip
 
 
+def drive_direct_light() -> None:
+    """Lights of any kind and none, of numbers that are none."""
+    rng = np.random.default_rng(9)
+    light = np.zeros(1, RAY_LIGHT)
+    for kind in range(-1, 5):
+        for name in RAY_LIGHT.names or ():
+            light[name] = wild_floats(rng, *light[name].shape) if name != "kind" else kind
+        for count, rays in ((0, 4), (1, 1), (50, 16)):
+            points = LitPoints(*wild_floats(rng, 3, count, 3), wild_floats(rng, count, 2))
+            pattern = wild_floats(rng, rays, 2)
+            light_samples(light, points, pattern)
+            light_rays(light, points, pattern)
+            direct_light(light, points, pattern, wild_floats(rng, count, rays))
+
+
 def drive_surface_light() -> None:
     """Triangles and texels that are none, places that are no places, patches without texels."""
     rng = np.random.default_rng(7)
@@ -136,6 +157,7 @@ def drive_clusters() -> None:
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_texels,
     drive_gathering,
+    drive_direct_light,
     drive_surface_light,
     drive_clusters,
 )

@@ -38,7 +38,7 @@ double pane_density(const SkyWindows& sky, const float* p, const float* d) {
 
 void add_sky(const SkyWindows& sky, const float* d, double weight, float* light) {
     double radiance[3];
-    sky_radiance(sky, d, radiance);
+    sky_radiance(sky.picture, sky.height, sky.width, d, radiance);
     for (int c = 0; c < 3; c++) light[c] = static_cast<float>(light[c] + weight * radiance[c]);
 }
 
@@ -52,7 +52,8 @@ SAILENV_KERNEL(sky_by_chance)
 (const sailenv::LitPoints* points, const sailenv::SkyWindows* sky, int64_t rays,
  const float* directions, const int32_t* texels, const float* clear, int64_t shots, float* light) {
     using namespace sailenv;
-    if (points->count < 0 || rays < 1 || !has_picture(*sky)) return STATUS_INVALID_ARGUMENT;
+    if (points->count < 0 || rays < 1 || sky->height < 1 || sky->width < 1)
+        return STATUS_INVALID_ARGUMENT;
     for (int64_t k = 0; k < points->count; k++) {
         const float *p = points->positions + 3 * k, *n = points->normals + 3 * k;
         for (int64_t m = 0; m < rays; m++) {
@@ -78,7 +79,7 @@ SAILENV_KERNEL(sky_by_choice)
  const int32_t* point, const float* towards, const float* share, int64_t shots, int64_t others,
  float* light) {
     using namespace sailenv;
-    if (rays < 0 || !has_picture(*sky)) return STATUS_INVALID_ARGUMENT;
+    if (rays < 0 || sky->height < 1 || sky->width < 1) return STATUS_INVALID_ARGUMENT;
     for (int64_t ray = 0; ray < rays; ray++) {
         if (share[ray] <= 0.0f) continue;
         const int64_t k = point[ray];

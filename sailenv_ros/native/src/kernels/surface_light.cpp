@@ -104,7 +104,7 @@ SAILENV_KERNEL(probe_radiance)
  const float* directions, const int32_t* texels, const float* clear, int64_t size, int64_t channels,
  const float* radiance, float* light) {
     using namespace sailenv;
-    if (count < 0 || rays < 1 || channels < 3 || !has_picture(*sky)) {
+    if (count < 0 || rays < 1 || channels < 3 || sky->height < 1 || sky->width < 1) {
         return STATUS_INVALID_ARGUMENT;
     }
     parallel_for(threads, count, 16, [&](int64_t first, int64_t last, int64_t) {
@@ -116,7 +116,7 @@ SAILENV_KERNEL(probe_radiance)
                 if (texel == BACK || texel >= size) continue;
                 const float* d = directions + 3 * m;
                 double from_sky[3] = {0.0, 0.0, 0.0};
-                if (texel < 0) sky_radiance(*sky, d, from_sky);
+                if (texel < 0) sky_radiance(sky->picture, sky->height, sky->width, d, from_sky);
                 const int64_t all = texel < 0 ? 3 : channels;
                 for (int64_t c = 0; c < all; c++) {
                     const double value = texel < 0 ? clear[k * rays + m] * from_sky[c]
