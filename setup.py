@@ -28,7 +28,6 @@ REQUIREMENTS = [
     "mapbox-earcut>=1.0.3",
     "mcap>=1.2",
     "moderngl>=5.10",
-    "numba>=0.59",
     "numpy>=1.26",
     "opencv-python-headless>=4.8",
     "pillow>=10.1",

@@ -36,7 +36,7 @@ Probe = Callable[[str, float], "tuple[dict[str, Any] | None, str]"]
 
 _STYLES: dict[Level, str] = {"ok": "green", "note": "cyan", "warning": "yellow", "FAILED": "red"}
 
-LIBRARIES = ("numpy", "scipy", "numba", "moderngl", "pydantic", "opencv-python-headless")
+LIBRARIES = ("numpy", "scipy", "moderngl", "pydantic", "opencv-python-headless")
 GRAPHICS_PACKAGES = "libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri"
 GRAPHICS_VARIABLES = (
     "EGL_PLATFORM",

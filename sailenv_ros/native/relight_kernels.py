@@ -1,4 +1,4 @@
-"""What moved things change of baked light, by src/kernels/relight.cpp; see `relight.relighting`.
+"""What moved things change of baked light, by src/kernels/relight_*.cpp; see `relight.relighting`.
 
 Arrays of structures hold addresses; whoever calls keeps what they point to alive.
 """
@@ -15,7 +15,7 @@ __all__ = [
     "gather_change",
     "gather_probe_change",
     "light_of_probes",
-    "shine_change",
+    "direct_light_delta",
     "smooth_change",
     "spread_change",
 ]
@@ -36,8 +36,8 @@ _PROBES = Kernel(
     "gather_probe_change",
     *("integer", "array", "integer", "array", "integer", "array", "integer", "array", "array"),
 )
-_SHINE = Kernel(
-    "shine_change",
+_DELTA = Kernel(
+    "direct_light_delta",
     *("integer", "array", "array", "integer", "array", "array", "array", "array", "integer"),
     *("array", "array", "array", "array"),
 )
@@ -184,7 +184,7 @@ def gather_probe_change(
     return far, near
 
 
-def shine_change(
+def direct_light_delta(
     scene: NDArray[np.void],
     light: NDArray[np.void],
     positions: Floats,
@@ -213,7 +213,7 @@ def shine_change(
     checked("found", found, np.uint8, (int(scene["patch_count"][0]),))
     state = np.zeros(count, np.uint8)
     direct, share = np.zeros(count, np.float32), np.zeros(count, np.float32)
-    _SHINE(
+    _DELTA(
         threads, scene, light, count, positions, normals, patch_of_texel, found,
         len(pattern), pattern, state, direct, share,
     )  # fmt: skip

@@ -53,7 +53,6 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
     data = f"{path.name.rsplit('-', 3)[0]}.data/data"
     for folder in ("sailenv_ros", "sailenv_msgs_py"):
         for source in (ROOT / folder).rglob("*"):
-            # numba keeps what it compiled beside Python's own cache.
             left_out = "__pycache__" in source.parts or source.suffix in (".txt", ".cpp", ".h")
             if source.is_file() and not left_out:
                 assert str(source.relative_to(ROOT)) in held

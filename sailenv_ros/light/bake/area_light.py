@@ -6,11 +6,11 @@ is near, a curtain before a window's light, it would count for far more than all
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_shapes import area_sides
+from sailenv_ros.native.light_kernels import rectangle_form_factors
 from sailenv_ros.types.lights import Light
 
 __all__ = ["form_factors", "solid_angles"]
@@ -28,9 +28,8 @@ def form_factors(light: Light, positions: Floats, normals: Floats) -> Floats:
     positions, normals : (N, 3) float32
         World frame [m]; normals are of unit length.
     """
-    found = np.zeros(len(positions), np.float32)
-    _form_factors(_corners(light), np.asarray(light.direction, float), positions, normals, found)
-    return found
+    at, facing = (np.ascontiguousarray(a, np.float32) for a in (positions, normals))
+    return rectangle_form_factors(_corners(light), np.asarray(light.direction, float), at, facing)
 
 
 def solid_angles(light: Light, positions: Floats) -> Floats:
@@ -55,43 +54,3 @@ def _corners(light: Light) -> NDArray[np.float64]:
     width, height = area_sides(light)
     steps = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
     return np.array([np.asarray(light.position_m) + u * width + v * height for u, v in steps])
-
-
-@numba.njit(cache=True, nogil=True)
-def _form_factors(corners, direction, positions, normals, found):  # type: ignore[no-untyped-def]
-    above = np.empty((5, 3))
-    heights = np.empty(4)
-    towards = np.empty((4, 3))
-    for k in range(len(positions)):
-        before = 0.0
-        for i in range(4):
-            heights[i] = 0.0
-            for c in range(3):
-                towards[i, c] = corners[i, c] - positions[k, c]
-                heights[i] += towards[i, c] * normals[k, c]
-        for c in range(3):
-            before -= towards[0, c] * direction[c]
-        if before <= 0.0:
-            continue
-        # Clipped at the horizon, a rectangle has at most five corners.
-        count = 0
-        for i in range(4):
-            j = (i + 1) % 4
-            if heights[i] >= 0.0:
-                above[count] = towards[i]
-                count += 1
-            if (heights[i] >= 0.0) != (heights[j] >= 0.0):
-                share = heights[i] / (heights[i] - heights[j])
-                above[count] = towards[i] + share * (towards[j] - towards[i])
-                count += 1
-        total = 0.0
-        for i in range(count):
-            ax, ay, az = above[i]
-            bx, by, bz = above[(i + 1) % count]
-            x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-            sine = np.sqrt(x * x + y * y + z * z)
-            if sine > 0.0:
-                angle = np.arctan2(sine, ax * bx + ay * by + az * bz)
-                facing = x * normals[k, 0] + y * normals[k, 1] + z * normals[k, 2]
-                total += angle * facing / sine
-        found[k] = min(abs(total) / (2.0 * np.pi), 1.0)

@@ -8,21 +8,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.ray_patterns import TURN
-from sailenv_ros.light.bake.rays import in_chunks
 from sailenv_ros.light.bake.static_geometry import StaticGeometry
 from sailenv_ros.light.bake.texels import Texels
+from sailenv_ros.native.surface_light import hand_on, patch_sources
 
 __all__ = ["Patches", "bounced_radiance", "patches_of"]
 
 Floats = NDArray[np.float32]
 
-
-CHUNK_PATCHES = 4096
 
 FEWEST_RAYS = 2 * TURN
 """Of each texel count at least in a patch of many."""
@@ -57,6 +54,16 @@ class Patches:
         ]
         means: Floats = (np.stack(sums, axis=1) / number[:, None]).astype(np.float32)
         return means
+
+    def middles(self, texels: Texels) -> NDArray[np.intp]:
+        """Return (count,) the texel that is nearest to the middle of each."""
+        size = np.bincount(self.of_texel, minlength=self.count)
+        far = np.zeros(texels.count)
+        for at in (texels.rows, texels.columns):
+            middle = np.bincount(self.of_texel, weights=at, minlength=self.count) / size
+            far += (at - middle[self.of_texel]) ** 2
+        order = np.lexsort((far, self.of_texel))
+        return order[np.concatenate([[0], np.cumsum(size)[:-1]])] if len(order) else order
 
 
 def patches_of(geometry: StaticGeometry, texels: Texels) -> Patches:
@@ -111,12 +118,8 @@ def bounced_radiance(
     arriving = np.zeros_like(start)
     grown = [np.ones(channels), np.ones(channels)]
     for _ in range(bounces):
-        before, arriving = arriving, np.zeros_like(start)
-
-        def hand_on(begin: int, end: int, arriving: Floats = arriving) -> None:
-            _hand_on(ends, sources, radiance, arriving, begin, end)
-
-        in_chunks(hand_on, patches.count, CHUNK_PATCHES, workers)
+        before = arriving
+        arriving = hand_on(ends, sources, radiance, threads=workers)[:, :channels]
         radiance[:, :channels] = start + share * arriving
         grown = [grown[1], np.sum(arriving - before, axis=0, dtype=np.float64)]
     if bounces > 1:
@@ -138,50 +141,4 @@ def _sources_of(
     """
     size = np.diff(bounds)
     turns = np.clip(size, 1, max(seen.shape[1] // FEWEST_RAYS, 1))
-    ends = np.concatenate([[0], np.cumsum(size * (seen.shape[1] // turns))]).astype(np.int64)
-    sources = np.empty(int(ends[-1]), np.int32)
-    _find_sources(members, bounds, seen, met, turns, ends, sources)
-    return ends, sources
-
-
-@numba.njit(cache=True, nogil=True)
-def _find_sources(  # type: ignore[no-untyped-def]
-    members, bounds, seen, of_texel, turns, ends, sources
-):
-    for patch in range(len(bounds) - 1):
-        at = ends[patch]
-        # Neighbours take turns with the rays: together they have all directions.
-        rays = seen.shape[1] // turns[patch]
-        for place in range(bounds[patch], bounds[patch + 1]):
-            begin = (place - bounds[patch]) % turns[patch] * rays
-            for m in range(begin, begin + rays):
-                texel = seen[members[place], m]
-                sources[at] = of_texel[texel] if texel >= 0 else -1
-                at += 1
-
-
-@numba.njit(cache=True, nogil=True)
-def _hand_on(ends, sources, radiance, arriving, first, end):  # type: ignore[no-untyped-def]
-    channels = arriving.shape[1]
-    for patch in range(first, end):
-        rays = ends[patch + 1] - ends[patch]
-        if rays == 0:
-            continue
-        for begin in range(0, radiance.shape[1], BLOCK):
-            # In registers: eight sums in memory would wait for each other.
-            a = b = c = d = e = f = g = h = np.float32(0.0)
-            for place in range(ends[patch], ends[patch + 1]):
-                source = sources[place]
-                if source < 0:
-                    continue
-                a += radiance[source, begin]
-                b += radiance[source, begin + 1]
-                c += radiance[source, begin + 2]
-                d += radiance[source, begin + 3]
-                e += radiance[source, begin + 4]
-                f += radiance[source, begin + 5]
-                g += radiance[source, begin + 6]
-                h += radiance[source, begin + 7]
-            for k, total in enumerate((a, b, c, d, e, f, g, h)):
-                if begin + k < channels:
-                    arriving[patch, begin + k] = total / rays
+    return patch_sources(members, bounds.astype(np.int64), seen, met, turns.astype(np.int64))

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.area_light import solid_angles
-from sailenv_ros.light.bake.direct import samples_of
-from sailenv_ros.light.bake.gather import BACK, Surroundings
+from sailenv_ros.light.bake.direct import Points
+from sailenv_ros.light.bake.gather import Surroundings
+from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.light.bake.rays import RayScene
 from sailenv_ros.light.bake.settings import BakeSettings
-from sailenv_ros.light.bake.sky import sky_at
+from sailenv_ros.native.bake_types import SkyWindows
+from sailenv_ros.native.light_kernels import light_samples
+from sailenv_ros.native.surface_light import probe_radiance
 from sailenv_ros.types.baked_light import ProbeGrid
 from sailenv_ros.types.lights import Light
 
@@ -85,40 +87,39 @@ class ProbeViews:
         self.clear[first:end] = clear.reshape(count, rays)
 
 
-def probe_light(views: ProbeViews, radiance: Floats, sky: Floats) -> Floats:
+def probe_light(views: ProbeViews, radiance: Floats, sky: SkyWindows, workers: int = 1) -> Floats:
     """Return (N, 4, C) float32: what arrives at probes from surfaces and sky; see `LightLayer`.
 
     Parameters
     ----------
     views : ProbeViews
     radiance : (texels, C) float32
-    sky : (H, W, 3) float32
+    sky : SkyWindows
+    workers : int
+        Threads.
     """
-    light = np.zeros((len(views.texels), 4, radiance.shape[1]), dtype=np.float32)
-    for k, own in enumerate(light):
-        _collect(views.texels[k], views.directions, views.clear[k], radiance, sky, own)
-    return light
+    return probe_radiance(
+        views.directions, views.texels, views.clear, sky, radiance, threads=workers
+    )
 
 
 def straight_light(scene: RayScene, light: Light, positions: Floats, pattern: Floats) -> Floats:
     """Return (N, 4) float32: what arrives at probes straight from a light."""
-    shifts = np.zeros((len(positions), 2), dtype=np.float32)
-    samples = samples_of(light, positions, shifts, pattern)
+    row, points = light_record(light), Points.in_the_air(positions).lit()
+    towards, lengths, irradiance = light_samples(row, points, pattern)
     count = len(pattern)
     free = scene.share_that_passes(
-        np.repeat(positions, count, axis=0),
-        samples.towards.reshape(-1, 3),
-        samples.lengths.reshape(-1),
+        np.repeat(positions, count, axis=0), towards.reshape(-1, 3), lengths.reshape(-1)
     ).reshape(-1, count)
-    power = samples.irradiance * free
+    power = irradiance * free
     if light.type == "area":
         # A sample may be near; of the whole the formula knows how much arrives.
-        whole = np.maximum(samples.irradiance.mean(axis=1), 1e-30)
+        whole = np.maximum(irradiance.mean(axis=1), 1e-30)
         power *= (solid_angles(light, positions) / whole)[:, None]
-    length = np.maximum(np.linalg.norm(samples.towards, axis=2, keepdims=True), 1e-9)
+    length = np.maximum(np.linalg.norm(towards, axis=2, keepdims=True), 1e-9)
     arriving = np.empty((len(positions), 4), dtype=np.float32)
     arriving[:, 0] = power.mean(axis=1) / (4.0 * math.pi)
-    arriving[:, 1:] = np.einsum("nm,nmx->nx", power, samples.towards / length)
+    arriving[:, 1:] = np.einsum("nm,nmx->nx", power, towards / length)
     arriving[:, 1:] /= 2.0 * math.pi * count
     return arriving
 
@@ -150,25 +151,3 @@ def dilated_grid(values: Floats, unknown: NDArray[np.bool_], grid: ProbeGrid) ->
         field[new] = total[new] / number[new][:, None]
         known = known | new
     return field.reshape(values.shape)
-
-
-@numba.njit(cache=True, nogil=True)
-def _collect(texels, directions, clear, radiance, sky, light):  # type: ignore[no-untyped-def]
-    channels = radiance.shape[1]
-    rays = len(texels)
-    for m in range(rays):
-        texel = texels[m]
-        if texel == BACK:
-            continue
-        for c in range(channels):
-            if texel >= 0:
-                value = radiance[texel, c]
-            elif c < 3:
-                value = clear[m] * sky_at(
-                    sky, directions[m, 0], directions[m, 1], directions[m, 2], c
-                )
-            else:
-                break
-            light[0, c] += value / rays
-            for axis in range(3):
-                light[1 + axis, c] += 2.0 * value * directions[m, axis] / rays

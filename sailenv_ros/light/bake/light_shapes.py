@@ -1,4 +1,4 @@
-"""How large lights are, whose shadows are worked out beforehand."""
+"""How large lights are, whose shadows are worked out beforehand, and how kernels take them."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.render_types import record
 from sailenv_ros.types.lights import Light
 
-__all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "area_sides"]
+__all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "area_sides", "light_record"]
 
 SUN_RADIUS = math.tan(math.radians(0.4))
 """Of a directional light's disc at a distance of 1, for texels: shadows end as they are wide."""
@@ -19,6 +21,35 @@ SUN_DISC_RADIUS = math.tan(math.radians(0.265))
 
 LAMP_RADIUS_M = 0.03
 """Of point and spot lights, for their shadows' edges alone."""
+
+
+_KINDS = {"directional": 0, "point": 1, "spot": 2, "area": 3}
+
+
+def light_record(light: Light, sun_radius: float = SUN_RADIUS) -> NDArray[np.void]:
+    """Return (1,) RAY_LIGHT: a light as kernels look for it.
+
+    Parameters
+    ----------
+    sun_radius : float
+        Of a directional light's disc at a distance of 1.
+    """
+    row = record(
+        RAY_LIGHT,
+        position=light.position_m,
+        direction=light.direction,
+        range=max(light.range_m, 1e-6),
+        inner_cosine=np.cos(np.radians(light.inner_cone_deg)),
+        outer_cosine=np.cos(np.radians(light.outer_cone_deg)),
+        kind=_KINDS[light.type],
+    )
+    if light.type == "area":
+        row["across"][0], row["up"][0] = area_sides(light)
+    elif light.type == "directional":
+        row["range"] = sun_radius
+    else:
+        row["across"][0] = LAMP_RADIUS_M
+    return row
 
 
 def area_sides(light: Light) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

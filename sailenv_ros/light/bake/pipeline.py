@@ -29,7 +29,7 @@ from sailenv_ros.light.bake.light_probes import (
     probe_positions,
     straight_light,
 )
-from sailenv_ros.light.bake.ray_patterns import net
+from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
 from sailenv_ros.light.bake.rays import NEVER, RayScene
 from sailenv_ros.light.bake.reflectance import albedo_of, emission_of, glow_of
 from sailenv_ros.light.bake.sampling import tile_shift
@@ -41,6 +41,7 @@ from sailenv_ros.light.bake.static_geometry import StaticGeometry, static_geomet
 from sailenv_ros.light.bake.sun_edges import sun_edges
 from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
+from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.types.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -180,7 +181,7 @@ class _Bake:
     def _draft(self, samples: Samples) -> BakedLight:
         """Return the light as one texel of each patch gets it, spread over the patch."""
         texels, of_texel = self._texels, samples.patches.of_texel
-        chosen = _middles(texels, samples.patches)
+        chosen = samples.patches.middles(texels)
         index = np.full(texels.index.shape, -1, np.int32)
         index[texels.rows, texels.columns] = of_texel
         points = samples.points.part(chosen)
@@ -214,13 +215,14 @@ class _Bake:
         """Return (N, 4) float32, what probes get straight from a light that needs them for that."""
         if light.type == "directional":
             return None
-        pattern = net(self._settings.light_rays)
+        pattern = low_discrepancy_points(self._settings.light_rays)
         return straight_light(self._around.scene, light, self._spots, pattern)
 
     def _probes(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> tuple[Floats, Floats]:
         """Return (L, N, 4) direct and (N, 4, 3 L) bounced light of the probes."""
         radiance = solver.radiance if of_texel is None else solver.radiance[of_texel]
-        bounced = probe_light(self._views, radiance, self._around.sky)
+        sky = SkyWindows(self._around.sky, self._around.panes)
+        bounced = probe_light(self._views, radiance, sky, self._stages.workers)
         direct = np.zeros((len(solver.lights), len(self._spots), 4), dtype=np.float32)
         for place, straight in enumerate(self._probe_direct):
             if straight is not None:
@@ -345,14 +347,3 @@ def _places_of(texels: Texels) -> NDArray[np.int64]:
     """Return (N,) the number of each texel's place in the map."""
     places: NDArray[np.int64] = texels.rows.astype(np.int64) * texels.index.shape[1]
     return places + texels.columns
-
-
-def _middles(texels: Texels, patches: Patches) -> NDArray[np.intp]:
-    """Return (patches,) the texel that is nearest to the middle of each."""
-    of_texel, count = patches.of_texel, np.bincount(patches.of_texel, minlength=patches.count)
-    far = np.zeros(texels.count)
-    for at in (texels.rows, texels.columns):
-        middle = np.bincount(of_texel, weights=at, minlength=patches.count) / count
-        far += (at - middle[of_texel]) ** 2
-    order = np.lexsort((far, of_texel))
-    return order[np.concatenate([[0], np.cumsum(count)[:-1]])] if len(order) else order

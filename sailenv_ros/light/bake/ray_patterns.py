@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TURN", "fibonacci_sphere", "in_turns", "net"]
+__all__ = ["TURN", "fibonacci_sphere", "in_turns", "low_discrepancy_points"]
 
 Floats = NDArray[np.float32]
 
@@ -14,7 +14,7 @@ TURN = 16
 """Points of a net that are enough by themselves; see `in_turns`."""
 
 
-def net(count: int) -> Floats:
+def low_discrepancy_points(count: int) -> Floats:
     """Return (count, 2) float32: points of the unit square, one in each of its even parts.
 
     Of a square of a power of two there is one in each of as many square cells.

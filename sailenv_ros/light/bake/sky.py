@@ -1,39 +1,18 @@
-"""What comes in from outside: the sky's radiance by direction, and the windows it comes through.
-
-From `sky_picture` and `StaticGeometry` to what compiled code reads. Knows no rays.
-"""
+"""The windows that the sky comes in by. From `StaticGeometry` to panes; knows no rays."""
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.static_geometry import StaticGeometry, StaticInstance
 
-__all__ = ["panes", "sky_at"]
+__all__ = ["panes"]
 
 MOST_PANES = 16
 
 THIN = 0.2
 """Glass thinner than this share of its width is a pane."""
-
-
-@numba.njit(cache=True, nogil=True)
-def sky_at(picture, x, y, z, channel):  # type: ignore[no-untyped-def]
-    """Return one colour's radiance from a unit direction, between the nearest four texels."""
-    height, width, _ = picture.shape
-    row = np.arccos(min(max(z, -1.0), 1.0)) / np.pi * height - 0.5
-    column = (0.5 - np.arctan2(y, x) / (2.0 * np.pi)) * width - 0.5
-    r, c = int(np.floor(row)), int(np.floor(column))
-    down, right = row - r, column - c
-    top, bottom = max(r, 0), min(r + 1, height - 1)
-    left, next_one = c % width, (c + 1) % width
-    upper = picture[top, left, channel] * (1.0 - right) + picture[top, next_one, channel] * right
-    lower = (
-        picture[bottom, left, channel] * (1.0 - right) + picture[bottom, next_one, channel] * right
-    )
-    return upper * (1.0 - down) + lower * down
 
 
 def panes(geometry: StaticGeometry) -> NDArray[np.float32]:

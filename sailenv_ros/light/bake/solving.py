@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,8 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from sailenv_ros.light.bake.bounces import Patches, bounced_radiance
 from sailenv_ros.light.bake.denoise import stand_ins
 from sailenv_ros.light.bake.direct import Points, arriving, visible_range
-from sailenv_ros.light.bake.gather import BACK, Looks, Seen, Surroundings, seen_from, surfaces_light
-from sailenv_ros.light.bake.ray_patterns import in_turns, net
+from sailenv_ros.light.bake.gather import BACK, INSIDE_SHARE, Seen, Surroundings, seen_from
+from sailenv_ros.light.bake.ray_patterns import in_turns, low_discrepancy_points
 from sailenv_ros.light.bake.rays import in_chunks
 from sailenv_ros.light.bake.sampling import pass_shift
 from sailenv_ros.light.bake.settings import BakeSettings
@@ -27,9 +27,6 @@ from sailenv_ros.types.lights import Light
 __all__ = ["Samples", "SolvedLight", "Solver", "Stages"]
 
 Floats = NDArray[np.float32]
-
-MOST_BACKS = 0.25
-"""A point that sees more backs of surfaces than this share lies inside of something."""
 
 SURELY_INSIDE = 0.5
 """What sees more at first is not looked at any further."""
@@ -157,7 +154,7 @@ class Solver:
     @property
     def valid(self) -> NDArray[np.bool_]:
         """See the class."""
-        return np.asarray(self._backs <= MOST_BACKS * self._passes)
+        return np.asarray(self._backs <= INSIDE_SHARE * self._passes)
 
     @property
     def nearness(self) -> Floats:
@@ -175,12 +172,11 @@ class Solver:
         samples, settings = self._samples, self._settings
         seen = np.empty((samples.count, settings.pass_rays), np.int32)
         sky = np.empty((samples.count, 3), np.float32)
-
-        looks: dict[int, Looks] = {}
+        parts: dict[int, Seen] = {}
 
         def keep(chosen: slice, found: Seen) -> None:
             seen[chosen], sky[chosen] = found.texels, found.sky
-            looks[chosen.start] = found.looks
+            parts[chosen.start] = replace(found, texels=seen[chosen], sky=sky[chosen])
 
         self._look(keep, 0, self._stages.begin("surroundings", weights[0]))
         self._passes = 1
@@ -209,9 +205,7 @@ class Solver:
         self.bounced = np.empty_like(first)
 
         def gather(start: int, end: int) -> None:
-            self.bounced[start:end] = surfaces_light(seen[start:end], self.radiance)
-            looks[start].add(self.radiance, self.bounced[start:end])
-            self.bounced[start:end, :3] += sky[start:end]
+            self.bounced[start:end] = parts[start].light(self.radiance)
 
         self._stages.run(gather, samples.count, settings.pass_rays)
 
@@ -234,9 +228,7 @@ class Solver:
         share = np.float32(1.0 / self._passes)
 
         def add(chosen: slice, found: Seen) -> None:
-            light = surfaces_light(found.texels, self.radiance)
-            found.looks.add(self.radiance, light)
-            light[:, :3] += found.sky
+            light = found.light(self.radiance)
             self.bounced[chosen] += (light - self.bounced[chosen]) * share
 
         self._look(add, self._passes - 1, report)
@@ -249,7 +241,8 @@ class Solver:
     ) -> None:
         """Cast the rays of a pass; hand over what they found."""
         samples, settings = self._samples, self._settings
-        pattern, window_pattern = in_turns(net(settings.pass_rays)), net(settings.window_rays)
+        pattern = in_turns(low_discrepancy_points(settings.pass_rays))
+        window_pattern = low_discrepancy_points(settings.window_rays)
         shift = pass_shift(number)
 
         def look(first: int, end: int) -> None:
@@ -269,7 +262,7 @@ class Solver:
         scene = self._samples.around.scene
 
         def shine_on(lit: NDArray[np.intp], rays: int, given: Floats | None) -> None:
-            pattern = net(rays)
+            pattern = low_discrepancy_points(rays)
 
             def shine(first: int, end: int) -> None:
                 chosen = lit[first:end]
@@ -292,7 +285,7 @@ class Solver:
         texels, points = self._samples.texels, self._samples.points
         if texels is None:
             return np.full(self._samples.count, np.nan, np.float32)
-        count, pattern = texels.count, net(self._settings.light_rays // 4)
+        count, pattern = texels.count, low_discrepancy_points(self._settings.light_rays // 4)
         lowest, highest = np.empty((2, count), np.float32)
         scene = self._samples.around.scene
 

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.static_geometry import StaticGeometry
+from sailenv_ros.native.bake_types import TexelMap
+from sailenv_ros.native.texel_kernels import cover_texels
 
-__all__ = ["Texels", "closest_point", "off_the_edges", "rasterised"]
+__all__ = ["Texels", "off_the_edges", "rasterised"]
 
 REACH = 1.5
 """Texels this near to a triangle stand for its nearest point: bilinear look-ups meet them."""
@@ -60,13 +61,17 @@ class Texels:
         """How many there are."""
         return len(self.triangle)
 
+    def of_map(self, owners: NDArray[np.int32]) -> TexelMap:
+        """Return what filters over the map need; `owners`, (N,) int32, tells surfaces apart."""
+        return TexelMap(
+            self.index, self.rows, self.columns, owners, self.positions, self.normals, self.faces
+        )
+
 
 def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
     """Find the texels that the charts cover, and those that touch them."""
     side = layout.side
-    owner = np.full((side, side), -1, dtype=np.int32)
-    weights = np.zeros((side, side, 3), dtype=np.float32)
-    _cover(layout.places, owner, weights, np.full((side, side), REACH * REACH, dtype=np.float32))
+    owner, weights = cover_texels(layout.places, side, REACH)
     rows, columns = np.nonzero(owner >= 0)
     index = np.full((side, side), -1, dtype=np.int32)
     index[rows, columns] = np.arange(len(rows))
@@ -98,51 +103,3 @@ def off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> N
     inwards = np.where(share.min(axis=1) < EDGE, np.minimum(EDGE_M / far, 1.0 / 3.0), 0.0)
     moved = share * (1.0 - inwards[:, None]) + inwards[:, None] / 3.0
     return np.asarray(moved, dtype=np.float32)
-
-
-@numba.njit(cache=True, nogil=True)
-def _cover(places, owner, weights, nearest):  # type: ignore[no-untyped-def]
-    """Assign each texel the triangle that is nearest to its centre, in order of the triangles."""
-    height, width = owner.shape
-    share = np.zeros(3, np.float32)
-    for t in range(len(places)):
-        corners = places[t]
-        left = max(int(np.floor(corners[:, 0].min() - REACH)), 0)
-        right = min(int(np.ceil(corners[:, 0].max() + REACH)), width)
-        top = max(int(np.floor(corners[:, 1].min() - REACH)), 0)
-        bottom = min(int(np.ceil(corners[:, 1].max() + REACH)), height)
-        for row in range(top, bottom):
-            for column in range(left, right):
-                if nearest[row, column] == 0.0:
-                    continue
-                far = closest_point(corners, column + 0.5, row + 0.5, share)
-                if far < nearest[row, column]:
-                    nearest[row, column] = far
-                    owner[row, column] = t
-                    weights[row, column] = share
-
-
-@numba.njit(cache=True, nogil=True)
-def closest_point(corners, x, y, share):  # type: ignore[no-untyped-def]
-    """Return the squared distance of a point from a triangle, and in `share` the nearest point."""
-    ax, ay = corners[0, 0], corners[0, 1]
-    bx, by = corners[1, 0], corners[1, 1]
-    cx, cy = corners[2, 0], corners[2, 1]
-    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-    if abs(area) > 1e-9:
-        wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
-        wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
-        if wb >= 0.0 and wc >= 0.0 and wb + wc <= 1.0:
-            share[0], share[1], share[2] = 1.0 - wb - wc, wb, wc
-            return 0.0
-    best = np.inf
-    for k in range(3):
-        px, py = corners[k, 0], corners[k, 1]
-        dx, dy = corners[(k + 1) % 3, 0] - px, corners[(k + 1) % 3, 1] - py
-        along = ((x - px) * dx + (y - py) * dy) / max(dx * dx + dy * dy, 1e-12)
-        along = min(max(along, 0.0), 1.0)
-        far = (x - px - along * dx) ** 2 + (y - py - along * dy) ** 2
-        if far < best:
-            best = far
-            share[k], share[(k + 1) % 3], share[(k + 2) % 3] = 1.0 - along, along, 0.0
-    return best

@@ -13,14 +13,12 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
+from sailenv_ros.light.bake.gather import INSIDE_SHARE
 from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.light.bake.rays import RayScene
 from sailenv_ros.light.bake.static_geometry import StaticGeometry
 
 __all__ = ["ProbeVisibility", "visible_triangles", "probe_visibility"]
-
-MOST_BACKS = 0.15
-"""Who sees more backs of surfaces than this share is inside of something."""
 
 LEAST_VIEW_M = 0.5
 """Who nowhere sees farther is inside of something, too."""
@@ -74,7 +72,7 @@ def probe_visibility(
         backs = (triangle >= 0) & (facing > 0.0) & ~two_sided[triangle]
         sky[own] = np.mean(triangle < 0, axis=1)
         farthest = hits.distance.reshape(size, rays).max(axis=1)
-        inside[own] = (backs.mean(axis=1) > MOST_BACKS) | (farthest < LEAST_VIEW_M)
+        inside[own] = (backs.mean(axis=1) > INSIDE_SHARE) | (farthest < LEAST_VIEW_M)
         met[own][backs] = -1
     closed = bool((sky[~inside] < MOST_SKY / 2).any())
     useful = ~inside & ~(closed & (sky > MOST_SKY))

@@ -13,11 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.bounces import patches_of
+from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.static_geometry import StaticGeometry, static_geometry_of
+from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.relight.ray_shapes import Shape, shape_of, tree_over
-from sailenv_ros.native.ray_tracing import cover_texels
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material, Model
@@ -26,15 +28,6 @@ from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapsh
 __all__ = ["BakedScene", "Panes", "TexelPatches", "albedo_of_model"]
 
 Floats = NDArray[np.float32]
-
-REACH = 1.5
-"""How far from a triangle texels stand for it [texels]; as in `bake.texels`."""
-
-EDGE, EDGE_M = 1e-3, 3e-3
-"""Points of which a corner's weight is less than `EDGE` are moved in by `EDGE_M` [m]."""
-
-TILE = 4
-"""Side of a patch [texels]."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -197,27 +190,14 @@ class BakedScene:
         return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
 
     def _lay_out(self, geometry: StaticGeometry) -> None:
-        side = self.side
-        owner, weights = cover_texels(self._places(geometry), side, REACH)
-        rows, columns = np.nonzero(owner >= 0)
-        triangle = owner[rows, columns]
-        share = np.empty((len(rows), 3), np.float32)
-        share[:, 1:] = weights[rows, columns]
-        share[:, 0] = 1.0 - share[:, 1] - share[:, 2]
-        share = _off_the_edges(geometry.corners[triangle], share)
+        layout = Layout(side=self.side, charts={}, places=self._places(geometry))
+        texels = rasterised(geometry, layout)
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
-        faces = geometry.faces[triangle]
-        normals = np.einsum("nc,ncx->nx", share, geometry.normals[triangle])
-        facing = np.einsum("nx,nx->n", normals, faces)
-        normals[facing < 0.05] = faces[facing < 0.05]
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-        self.places = (rows * side + columns).astype(np.int32)
-        self.positions = np.ascontiguousarray(
-            np.einsum("nc,ncx->nx", share, geometry.corners[triangle]), np.float32
-        )
-        self.normals = np.ascontiguousarray(normals, np.float32)
-        self.owners = ids[geometry.owner[triangle]]
-        self.patches = self._patches(geometry, rows, columns, triangle)
+        self.places = (texels.rows * self.side + texels.columns).astype(np.int32)
+        self.positions = np.ascontiguousarray(texels.positions, np.float32)
+        self.normals = np.ascontiguousarray(texels.normals, np.float32)
+        self.owners = ids[geometry.owner[texels.triangle]]
+        self.patches = self._patches(geometry, texels)
         layers = self.baked.layers
         self.irradiance = np.empty((len(self.patches.size), 3 * len(layers)), np.float32)
         self.direct = np.empty((len(self.patches.size), len(layers)), np.float32)
@@ -244,52 +224,28 @@ class BakedScene:
                 first += len(triangles)
         return places
 
-    def _patches(
-        self,
-        geometry: StaticGeometry,
-        rows: NDArray[np.intp],
-        columns: NDArray[np.intp],
-        triangle: NDArray[np.int32],
-    ) -> TexelPatches:
-        tiles = self.side // TILE + 1
-        axis = np.argmax(np.abs(self.normals), axis=1)
-        sign = self.normals[np.arange(len(axis)), axis] > 0.0
-        key = (rows // TILE).astype(np.int64) * tiles + columns // TILE
-        key = (key * 6 + axis * 2 + sign) * (len(geometry.instances) + 1) + geometry.owner[triangle]
-        _, of_texel, size = np.unique(key, return_inverse=True, return_counts=True)
+    def _patches(self, geometry: StaticGeometry, texels: Texels) -> TexelPatches:
+        patches = patches_of(geometry, texels)
         of_map = np.full((self.side, self.side), -1, np.int32)
-        of_map[rows, columns] = of_texel
-        # The texel that is nearest to the middle of its patch stands for it.
-        count = size.astype(np.float64)
-        middle = [np.bincount(of_texel, weights=w) / count for w in (columns, rows)]
-        far = (columns - middle[0][of_texel]) ** 2 + (rows - middle[1][of_texel]) ** 2
-        order = np.lexsort((far, of_texel))
-        chosen = order[np.concatenate([[0], np.cumsum(size)[:-1]])]
+        of_map[texels.rows, texels.columns] = patches.of_texel
+        chosen = patches.middles(texels)
         looks = [_look(material) for material in geometry.materials]
         albedo = np.array([look[0] for look in looks], np.float32).reshape(-1, 3)
         emission = np.array([look[1] for look in looks], np.float32).reshape(-1, 3)
-        material = geometry.material[triangle[chosen]]
+        material = geometry.material[texels.triangle[chosen]]
+        places = np.stack([texels.columns[chosen], texels.rows[chosen]], axis=1)
         return TexelPatches(
             of_map=of_map,
-            of_texel=np.asarray(of_texel, np.int32),
-            places=np.stack([columns[chosen], rows[chosen]], axis=1).astype(np.float32),
+            of_texel=patches.of_texel,
+            places=places.astype(np.float32),
             positions=np.ascontiguousarray(self.positions[chosen]),
             normals=np.ascontiguousarray(self.normals[chosen]),
             owners=np.ascontiguousarray(self.owners[chosen]),
-            size=size.astype(np.float32),
+            size=np.bincount(patches.of_texel, minlength=patches.count).astype(np.float32),
             albedo=albedo[material],
             emission=emission[material],
             materials=np.asarray(material, np.int32),
         )
-
-
-def _off_the_edges(corners: Floats, share: Floats) -> Floats:
-    """Return the weights of points a little further in: at the very edge others may begin."""
-    points = np.einsum("nc,ncx->nx", share, corners)
-    far = np.maximum(np.linalg.norm(corners.mean(axis=1) - points, axis=1), 1e-9)
-    inwards = np.where(share.min(axis=1) < EDGE, np.minimum(EDGE_M / far, 1.0 / 3.0), 0.0)
-    moved = share * (1.0 - inwards[:, None]) + inwards[:, None] / 3.0
-    return np.asarray(moved, np.float32)
 
 
 def albedo_of_model(model: Model) -> Floats:

@@ -1,4 +1,4 @@
-"""What rays meet before and after changes, and the lights they go to, as kernels take it.
+"""What rays meet before and after changes, as kernels take it.
 
 From `BakedScene` and changes to structures of `native.ray_types`.
 """
@@ -11,19 +11,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.light_shapes import LAMP_RADIUS_M, SUN_RADIUS, area_sides
 from sailenv_ros.light.relight.baked_scene import BakedScene
-from sailenv_ros.light.relight.scene_changes import Change, Standing, ray_instances, standing
+from sailenv_ros.light.relight.scene_changes import (
+    Change,
+    PlacedInstance,
+    placed_instances,
+    ray_instances,
+)
 from sailenv_ros.native.ray_tracing import build_box_tree
-from sailenv_ros.native.ray_types import RAY_LIGHT, RAY_SCENE
+from sailenv_ros.native.ray_types import RAY_SCENE
 from sailenv_ros.native.render_types import address, record
-from sailenv_ros.types.lights import Light
 
-__all__ = ["RayWorld", "ray_light", "ray_world"]
+__all__ = ["RayWorld", "ray_world"]
 
 Floats = NDArray[np.float32]
-
-_KINDS = {"directional": 0, "point": 1, "spot": 2, "area": 3}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -33,12 +34,12 @@ class RayWorld:
     Attributes
     ----------
     record : (1,) RAY_SCENE
-    changed : list of Standing
+    changed : list of PlacedInstance
         What stands there before or after alone.
     """
 
     record: NDArray[np.void]
-    changed: list[Standing]
+    changed: list[PlacedInstance]
     kept: tuple[object, ...]
 
 
@@ -61,12 +62,14 @@ def ray_world(
     moved = {change.id for change in changes if change.came is None}
     charts = scene.baked.charts
     resting = [
-        Standing(scene.shape(id_), charts[id_].world_from_body, charts[id_], None, True, True)
+        PlacedInstance(scene.shape(id_), charts[id_].world_from_body, charts[id_], None, True, True)
         for id_ in scene.drawn
         if id_ not in moved
     ]
     changed = [
-        thing for change in changes for thing in standing(scene, change, radiance_of(change))
+        thing
+        for change in changes
+        for thing in placed_instances(scene, change, radiance_of(change))
     ]
     rows, boxes = ray_instances(resting)
     nodes, order = build_box_tree(boxes) if len(rows) else (None, None)
@@ -96,23 +99,3 @@ def ray_world(
         channels=before.shape[1],
     )
     return RayWorld(made, changed, (resting, rows, nodes, order, changed_rows, before, after))
-
-
-def ray_light(light: Light) -> NDArray[np.void]:
-    """Return (1,) RAY_LIGHT."""
-    row = record(
-        RAY_LIGHT,
-        position=light.position_m,
-        direction=light.direction,
-        range=max(light.range_m, 1e-6),
-        inner_cosine=np.cos(np.radians(light.inner_cone_deg)),
-        outer_cosine=np.cos(np.radians(light.outer_cone_deg)),
-        kind=_KINDS[light.type],
-    )
-    if light.type == "area":
-        row["across"][0], row["up"][0] = area_sides(light)
-    elif light.type == "directional":
-        row["range"] = SUN_RADIUS
-    else:
-        row["across"][0] = LAMP_RADIUS_M
-    return row

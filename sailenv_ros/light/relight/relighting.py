@@ -13,17 +13,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere, net
+from sailenv_ros.light.bake.light_shapes import light_record
+from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere, low_discrepancy_points
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.quality import Quality
-from sailenv_ros.light.relight.ray_world import ray_light, ray_world
+from sailenv_ros.light.relight.ray_world import ray_world
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
+    direct_light_delta,
     gather_change,
     gather_probe_change,
     light_of_probes,
-    shine_change,
     smooth_change,
     spread_change,
 )
@@ -101,7 +102,7 @@ class _Relighting:
         irradiance, direct = self._scene.irradiance.copy(), self._scene.direct.copy()
         _take(irradiance, found, change)
         self._take_area(direct, found, area)
-        shone = self._shine(found, direct)
+        deltas = self._direct_deltas(found, direct)
         self._send_out(irradiance, direct)
         if quality.first_rays:
             wanted = np.where(found == 2, 2, self._wanted)
@@ -109,11 +110,11 @@ class _Relighting:
         found_far, change, far, near = self._bounced(found, change, direct)
         if quality.by_texels:
             layers = [
-                self._with_direct(layer, shone.get(number))
+                self._with_direct(layer, deltas.get(number))
                 for number, layer in enumerate(self._spread(found_far, change, area, {}))
             ]
         else:
-            layers = self._spread(found_far, change, area, shone)
+            layers = self._spread(found_far, change, area, deltas)
         layers = self._with_probes(layers, far, near)
         return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
 
@@ -219,11 +220,12 @@ class _Relighting:
             empty = np.zeros((patches, len(self._area)), np.float32)
             return np.zeros(patches, np.uint8), np.zeros_like(self._before), empty
         lights = np.concatenate(
-            [np.zeros(0, RAY_LIGHT), *(ray_light(light) for light in self._area_lights)]
+            [np.zeros(0, RAY_LIGHT), *(light_record(light) for light in self._area_lights)]
         )
+        shots = low_discrepancy_points(self._quality.area_rays)
         found, change, area, nearness = gather_change(
             self._rays, self._patch_positions, self._patch_normals, wanted.astype(np.uint8),
-            net(rays), lights, net(self._quality.area_rays), self._quality.least,
+            low_discrepancy_points(rays), lights, shots, self._quality.least,
             threads=self._threads,
         )  # fmt: skip
         # Both in one go: they share their neighbours.
@@ -245,17 +247,17 @@ class _Relighting:
             _take(column, found, area[:, place : place + 1])
             np.maximum(column, 0.0, out=column)
 
-    def _shine(
+    def _direct_deltas(
         self, found: NDArray[np.uint8], direct: Floats
     ) -> dict[int, tuple[NDArray[np.uint8], Floats, Floats]]:
         """Find what changes of lamps and sun, and bring means of patches up to date.
 
         Returns
         -------
-        shone : dict of int to tuple
+        deltas : dict of int to tuple
             By layer: state, light and share of it that arrives, of texels or of patches.
         """
-        patches, shone = self._scene.patches, {}
+        patches, deltas = self._scene.patches, {}
         by_texels = self._quality.by_texels
         places = (
             (self._positions, self._normals, patches.of_texel)
@@ -269,9 +271,9 @@ class _Relighting:
         for number, light in enumerate(self._lights):
             if light is None or light.type == "area" or not self._changes:
                 continue
-            state, value, share = shine_change(
-                self._rays, ray_light(light), *places,
-                found, net(self._quality.light_rays), threads=self._threads,
+            state, value, share = direct_light_delta(
+                self._rays, light_record(light), *places,
+                found, low_discrepancy_points(self._quality.light_rays), threads=self._threads,
             )  # fmt: skip
             if by_texels:
                 old = self._layers[number].direct.reshape(-1)[self._scene.places].astype(np.float32)
@@ -282,8 +284,8 @@ class _Relighting:
             if by_texels:
                 difference = patches.means(difference)
             direct[:, number] = np.maximum(direct[:, number] + difference, 0.0)
-            shone[number] = state, value, share
-        return shone
+            deltas[number] = state, value, share
+        return deltas
 
     def _probe_change(self) -> tuple[Floats, Floats]:
         """Return (Z, Y, X, 4, C) float32 twice: see `gather_probe_change`."""
@@ -335,20 +337,20 @@ class _Relighting:
         found: NDArray[np.uint8],
         change: Floats,
         area: Floats,
-        shone: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
+        deltas: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
     ) -> list[LightLayer]:
         """Bring texels up to date by what was found at patches.
 
         Parameters
         ----------
-        shone : dict of int to tuple
-            What lamps and sun give to patches, by layer; see `_shine`.
+        deltas : dict of int to tuple
+            What lamps and sun give to patches, by layer; see `_direct_deltas`.
         """
         bounced = [layer.bounced.copy() for layer in self._layers]
         direct = {number: self._layers[number].direct.copy() for number in self._area}
         columns = [change, area]
         shares: dict[int, NDArray[np.float16]] = {}
-        for number, (state, value, share) in shone.items():
+        for number, (state, value, share) in deltas.items():
             if not state.any():
                 continue
             # What is worked out anew is so for all lights alike.
@@ -393,11 +395,11 @@ class _Relighting:
         )  # fmt: skip
 
     def _with_direct(
-        self, layer: LightLayer, shone: tuple[NDArray[np.uint8], Floats, Floats] | None
+        self, layer: LightLayer, deltas: tuple[NDArray[np.uint8], Floats, Floats] | None
     ) -> LightLayer:
-        if shone is None:
+        if deltas is None:
             return layer
-        state, value, share = shone
+        state, value, share = deltas
         direct = layer.direct.copy()
         _put(direct, self._scene.places, state, value, 6e4)
         if layer.visibility is None:

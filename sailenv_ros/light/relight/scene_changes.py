@@ -15,7 +15,7 @@ from sailenv_ros.types.baked_light import LightChart
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
 
-__all__ = ["Change", "Standing", "ray_instances", "standing"]
+__all__ = ["Change", "PlacedInstance", "placed_instances", "ray_instances"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -39,8 +39,8 @@ class Change:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Standing:
-    """One thing that rays may meet."""
+class PlacedInstance:
+    """A shape where it stands: before the changes, after them, or both."""
 
     shape: Shape
     pose: NDArray[np.float64]
@@ -50,25 +50,25 @@ class Standing:
     after: bool
 
 
-def standing(
+def placed_instances(
     scene: BakedScene, change: Change, radiance: NDArray[np.float32] | None
-) -> list[Standing]:
+) -> list[PlacedInstance]:
     """Return what a change takes away and puts there."""
     if change.came is not None:
         model, scale = change.came
         shape = scene.shape_of(model, scale, None)
         assert change.after is not None
-        return [Standing(shape, change.after, None, radiance, False, True)]
+        return [PlacedInstance(shape, change.after, None, radiance, False, True)]
     shape, chart = scene.shape(change.id), scene.baked.charts[change.id]
     things = []
     if change.before is not None:
-        things.append(Standing(shape, change.before, chart, None, True, False))
+        things.append(PlacedInstance(shape, change.before, chart, None, True, False))
     if change.after is not None:
-        things.append(Standing(shape, change.after, chart, None, False, True))
+        things.append(PlacedInstance(shape, change.after, chart, None, False, True))
     return things
 
 
-def ray_instances(things: list[Standing]) -> tuple[NDArray[np.void], NDArray[np.float32]]:
+def ray_instances(things: list[PlacedInstance]) -> tuple[NDArray[np.void], NDArray[np.float32]]:
     """Return (N,) RAY_INSTANCE, and (N, 6) float32 boxes around them; `things` keeps the memory."""
     rows = np.zeros(len(things), RAY_INSTANCE)
     boxes = np.zeros((len(things), 6), np.float32)

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import RenderError
 from sailenv_ros.render.contract import RenderedViews
-from sailenv_ros.render.gl import cluster_culling
 from sailenv_ros.render.gl.context import create_context
 from sailenv_ros.render.gl.draw_list import DrawList
 from sailenv_ros.render.gl.edge_pass import EdgePass
@@ -81,7 +80,6 @@ class Renderer:
         self._finisher = Finisher()
         self._mirrors = FlatMirrors()
         self._closed = False
-        cluster_culling.warm_up()
 
     @property
     def description(self) -> str:

@@ -6,9 +6,6 @@ only where the package was installed from its sources without a C++ compiler.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from sailenv_ros.native import (
     ambient_visibility,
     annotation,
@@ -21,6 +18,7 @@ from sailenv_ros.native import (
 )
 from sailenv_ros.native.library import native_is_usable
 from sailenv_ros.render import reference_kernels, reference_motion, reference_rays
+from sailenv_ros.render.gl import reflection_blur
 
 __all__ = [
     "annotate_pixels",
@@ -36,20 +34,6 @@ __all__ = [
 ]
 
 
-def _blur_directions(
-    radiance: NDArray[np.float32],
-    directions: NDArray[np.float32],
-    lobe: NDArray[np.float32],
-    result: NDArray[np.float32],
-    *,
-    threads: int,
-) -> None:
-    # Imported here: numba takes a quarter of a second, and the native library has a kernel.
-    from sailenv_ros.render.gl.reflection_blur import blur_with_numba
-
-    blur_with_numba(radiance, directions, lobe, result)
-
-
 if native_is_usable():
     annotate_pixels = annotation.annotate_pixels
     blur_directions = light_maps.blur_directions
@@ -63,7 +47,7 @@ if native_is_usable():
     transform_points = motion_kernels.transform_points
 else:
     annotate_pixels = reference_kernels.annotate_pixels
-    blur_directions = _blur_directions
+    blur_directions = reflection_blur.blur_directions
     build_tree = reference_rays.build_tree
     cast_rays = reference_rays.cast_rays
     find_ambient_visibility = reference_kernels.find_ambient_visibility

@@ -30,9 +30,10 @@ from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import move_points, transform_points
 from sailenv_ros.native.picture_kernels import make_picture
 from sailenv_ros.native.ray_kernels import RayModels, build_tree, cast_rays
-from sailenv_ros.native.ray_tracing import build_box_tree, cover_texels
+from sailenv_ros.native.ray_tracing import build_box_tree
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
+from sailenv_ros.native.texel_kernels import cover_texels
 from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
@@ -42,10 +43,10 @@ from sailenv_ros.types.picture_settings import PictureSettings
 from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
+from tests.unit.native import hostile_bake
+from tests.unit.native.hostile_numbers import NUMBERS, THREADS
 
 __all__ = ["DRIVERS", "THREADS"]
-
-THREADS = (1, 3)
 
 
 def drive_self_test() -> None:
@@ -60,9 +61,6 @@ SIZES = ((1, 1), (1, 2), (2, 1), (3, 3), (8, 8), (7, 33), (65, 19))
 
 LARGEST = (4096, 4096)
 """Of pictures that a camera may have: tried once a kernel, since sanitizers are slow."""
-
-NUMBERS = (np.nan, np.inf, -np.inf, -1.0, 0.0, 1e-45, 1e-9, 0.3, 1e30, 65535.0, 65536.0, 3e9)
-"""What surfaces, motions and lenses are made of."""
 
 
 def surfaces(*sizes: tuple[int, int]) -> Iterator[NDArray[np.float32]]:
@@ -306,6 +304,7 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_light_maps,
     drive_sensor,
     drive_relighting,
+    *hostile_bake.DRIVERS,
     drive_alone,
     drive_instance_measures,
 )

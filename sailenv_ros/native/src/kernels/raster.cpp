@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../threads.h"
+#include "cluster_culling.h"
 #include "texture.h"
 
 namespace sailenv {
@@ -12,33 +13,10 @@ namespace {
 
 constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; see render/clusters.py
 constexpr int64_t SEGMENT_CLUSTERS = 48;
-constexpr double MARGIN = 0.01;         // see render/cluster_culling.py
 constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no bounds on the screen
 
 LANES_INLINE float smaller(float a, float b) { return a < b ? a : b; }
 LANES_INLINE float larger(float a, float b) { return a > b ? a : b; }
-
-bool is_beyond(const double* centre, double radius, const double* sides) {
-    for (int s = 0; s < 4; s++) {
-        const double* p = sides + 4 * s;
-        if (p[0] * centre[0] + p[1] * centre[1] + p[2] * centre[2] + p[3] < -radius) return true;
-    }
-    return false;
-}
-
-// Tells if no triangle within the sphere, with a normal within the cone, can face the eye.
-bool faces_away(const Cluster& cluster, const double* eye) {
-    const double dx = cluster.centre[0] - eye[0], dy = cluster.centre[1] - eye[1],
-                 dz = cluster.centre[2] - eye[2];
-    const double along = cluster.axis[0] * dx + cluster.axis[1] * dy + cluster.axis[2] * dz;
-    if (!(cluster.cosine > 0.0) || !(along > 0.0)) return false;
-    const double square = dx * dx + dy * dy + dz * dz;
-    const double rest = square - along * along;
-    const double across = std::sqrt(rest > 0.0 ? rest : 0.0);
-    const double cosine = cluster.cosine < 1.0 ? cluster.cosine : 1.0;
-    const double sine = std::sqrt(1.0 - cosine * cosine);
-    return along * cluster.cosine - across * sine >= cluster.radius + MARGIN * std::sqrt(square);
-}
 
 // Eye from object, row by row, times a pose with a scale.
 void compose(const double* eye_from_world, const double* pose, const double* scale, double* out) {
@@ -64,8 +42,8 @@ void set_sides(InstanceFrame& frame, const Projection& p) {
         const double left = p.cx + 0.5 - pixel_of(p, p.x0), right = pixel_of(p, p.x1) + 0.5 - p.cx;
         const double up = p.cy + 0.5 - pixel_of(p, p.y0), low = pixel_of(p, p.y1) + 0.5 - p.cy;
         const double across = left > right ? left : right, down = up > low ? up : low;
-        wide[0] = wide[1] = (1.0 + MARGIN) * across / p.focal;
-        wide[2] = wide[3] = (1.0 + MARGIN) * down / p.focal;
+        wide[0] = wide[1] = (1.0 + CULL_MARGIN) * across / p.focal;
+        wide[2] = wide[3] = (1.0 + CULL_MARGIN) * down / p.focal;
     }
     for (int s = 0; s < 4; s++) {
         const double sign = s % 2 ? -1.0 : 1.0;

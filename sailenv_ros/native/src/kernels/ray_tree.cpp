@@ -1,4 +1,4 @@
-// Trees of boxes for rays, and which texels of a light map triangles cover.
+// Trees of boxes for rays.
 #include <algorithm>
 #include <cmath>
 
@@ -132,87 +132,5 @@ SAILENV_KERNEL(build_box_tree)
         used += 2;
     }
     *made = used;
-    return STATUS_OK;
-}
-
-namespace sailenv {
-namespace {
-
-// The squared distance of a point from a triangle, and in `share` the weights of the nearest point.
-float closest_point(const float* c, float x, float y, float* share) {
-    const float ax = c[0], ay = c[1], bx = c[2], by = c[3], cx = c[4], cy = c[5];
-    const float area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-    if (std::fabs(area) > 1e-9f) {
-        const float wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area;
-        const float wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area;
-        if (wb >= 0.0f && wc >= 0.0f && wb + wc <= 1.0f) {
-            share[0] = wb;
-            share[1] = wc;
-            return 0.0f;
-        }
-    }
-    float best = 3e38f;
-    for (int k = 0; k < 3; k++) {
-        const int next = (k + 1) % 3;
-        const float px = c[2 * k], py = c[2 * k + 1];
-        const float dx = c[2 * next] - px, dy = c[2 * next + 1] - py;
-        const float length = std::max(dx * dx + dy * dy, 1e-12f);
-        const float along =
-            std::min(std::max(((x - px) * dx + (y - py) * dy) / length, 0.0f), 1.0f);
-        const float ox = x - px - along * dx, oy = y - py - along * dy;
-        const float far = ox * ox + oy * oy;
-        if (far < best) {
-            best = far;
-            float weight[3] = {0.0f, 0.0f, 0.0f};
-            weight[k] = 1.0f - along;
-            weight[next] = along;
-            share[0] = weight[1];
-            share[1] = weight[2];
-        }
-    }
-    return best;
-}
-
-}  // namespace
-}  // namespace sailenv
-
-// Gives each texel the triangle that is nearest to its centre, not farther than `reach`.
-// places: (count, 3, 2) [texels]; owner: (side, side), -1 at first; weights: (side, side, 2), of
-// the second and third corner; nearest: (side, side), the square of the reach at first.
-SAILENV_KERNEL(cover_texels)
-(int64_t count, int64_t side, double reach, const float* places, int32_t* owner, float* weights,
- float* nearest) {
-    using namespace sailenv;
-    if (count < 0 || side < 1 || side > 65536 || !(reach >= 0.0 && reach < 16.0)) {
-        return STATUS_INVALID_ARGUMENT;
-    }
-    const float r = static_cast<float>(reach), last = static_cast<float>(side);
-    for (int64_t t = 0; t < count; t++) {
-        const float* c = places + 6 * t;
-        const float left = std::min(std::min(c[0], c[2]), c[4]) - r;
-        const float right = std::max(std::max(c[0], c[2]), c[4]) + r;
-        const float top = std::min(std::min(c[1], c[3]), c[5]) - r;
-        const float bottom = std::max(std::max(c[1], c[3]), c[5]) + r;
-        if (!(right > 0.0f && bottom > 0.0f && left < last && top < last)) continue;
-        const int64_t x0 = static_cast<int64_t>(std::max(left, 0.0f));
-        const int64_t x1 = static_cast<int64_t>(std::min(std::ceil(right), last));
-        const int64_t y0 = static_cast<int64_t>(std::max(top, 0.0f));
-        const int64_t y1 = static_cast<int64_t>(std::min(std::ceil(bottom), last));
-        for (int64_t y = y0; y < y1; y++) {
-            for (int64_t x = x0; x < x1; x++) {
-                const int64_t at = y * side + x;
-                if (nearest[at] == 0.0f) continue;
-                float share[2] = {0.0f, 0.0f};
-                const float far = closest_point(c, static_cast<float>(x) + 0.5f,
-                                                static_cast<float>(y) + 0.5f, share);
-                if (far < nearest[at]) {
-                    nearest[at] = far;
-                    owner[at] = static_cast<int32_t>(t);
-                    weights[2 * at] = share[0];
-                    weights[2 * at + 1] = share[1];
-                }
-            }
-        }
-    }
     return STATUS_OK;
 }

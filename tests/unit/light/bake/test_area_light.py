@@ -12,7 +12,7 @@ from sailenv_ros.light.bake.direct import Points, arriving
 from sailenv_ros.light.bake.light_probes import straight_light
 from sailenv_ros.light.bake.light_shapes import area_sides
 from sailenv_ros.light.bake.pipeline import bake
-from sailenv_ros.light.bake.ray_patterns import net
+from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
 from sailenv_ros.light.bake.rays import RayScene
 from sailenv_ros.light.bake.static_geometry import static_geometry_of
 from sailenv_ros.types.geometry import Pose
@@ -88,10 +88,10 @@ def test_a_thing_that_touches_a_light_is_no_brighter_than_it() -> None:
         shifts=rng.uniform(0.0, 1.0, (4000, 2)).astype(np.float32),
     )  # fmt: skip
     scene = RayScene(static_geometry_of(far))
-    direct, _ = arriving(scene, PANEL, points, net(16))
+    direct, _ = arriving(scene, PANEL, points, low_discrepancy_points(16))
     np.testing.assert_allclose(direct, form_factors(PANEL, positions, normals), rtol=1e-5)
     assert direct.min() > 0.9
-    probes = straight_light(scene, PANEL, positions, net(16))
+    probes = straight_light(scene, PANEL, positions, low_discrepancy_points(16))
     np.testing.assert_allclose(probes[:, 0], 0.5, rtol=0.15)
 
 

@@ -1,0 +1,194 @@
+// Rays from points of surfaces: into their half spaces, to panes of glass and to small lamps.
+#include <algorithm>
+#include <cmath>
+
+#include "../abi.h"
+#include "bake_types.h"
+#include "net_points.h"
+
+namespace sailenv {
+namespace {
+
+constexpr double NEAR = 1.02;  // nearer to the middle of an emitter, in radii, none is looked for
+
+double along(const double* d, const float* n) { return d[0] * n[0] + d[1] * n[1] + d[2] * n[2]; }
+
+bool is_above(const LitPoints& points, int64_t k, const double* d) {
+    return along(d, points.normals + 3 * k) > 0.0 && along(d, points.faces + 3 * k) > 0.0;
+}
+
+void lift(const LitPoints& points, int64_t k, float* origin) {
+    for (int c = 0; c < 3; c++) {
+        origin[c] = points.positions[3 * k + c] + points.faces[3 * k + c] * LIFT_M;
+    }
+}
+
+// The density, over solid angle, of directions into the cones of all emitters.
+double cone_density(const Emitters& emitters, const float* p, const float* d) {
+    double density = 0.0;
+    for (int64_t e = 0; e < emitters.count; e++) {
+        const float* ball = emitters.balls + 4 * e;
+        const float x = ball[0] - p[0], y = ball[1] - p[1], z = ball[2] - p[2];
+        const float d2 = x * x + y * y + z * z, r2 = ball[3] * ball[3];
+        if (d2 <= NEAR * NEAR * r2) continue;
+        const float ahead = d[0] * x + d[1] * y + d[2] * z;
+        if (ahead > 0.0f && ahead * ahead >= d2 - r2) {
+            density += 1.0 / (2.0 * PI * (1.0 - std::sqrt(1.0 - static_cast<double>(r2 / d2))));
+        }
+    }
+    return density;
+}
+
+float cosine(const float* d, const float* n) { return d[0] * n[0] + d[1] * n[1] + d[2] * n[2]; }
+
+}  // namespace
+}  // namespace sailenv
+
+// Rays whose density is the cosine to the normal, over pi; those that would run into the face are
+// mirrored at it. pattern: (rays, 2), a net. Result: origins, directions: (count, rays, 3).
+SAILENV_KERNEL(hemisphere_rays)
+(const sailenv::LitPoints* points, int64_t rays, const float* pattern, float* origins,
+ float* directions) {
+    using namespace sailenv;
+    if (points->count < 0 || rays < 1) return STATUS_INVALID_ARGUMENT;
+    const double cells = std::sqrt(static_cast<double>(rays));
+    for (int64_t k = 0; k < points->count; k++) {
+        const float* face = points->faces + 3 * k;
+        float origin[3];
+        lift(*points, k, origin);
+        for (int64_t m = 0; m < rays; m++) {
+            double u, v, d[3];
+            shifted_point(pattern + 2 * m, points->shifts + 2 * k, cells, &u, &v);
+            const double radius = std::sqrt(u), turn = 2.0 * PI * v;
+            around_axis(points->normals + 3 * k, radius * std::cos(turn), radius * std::sin(turn),
+                        std::sqrt(std::max(1.0 - u, 0.0)), d);
+            const double below = along(d, face);
+            float* out = directions + 3 * (k * rays + m);
+            float* from = origins + 3 * (k * rays + m);
+            for (int c = 0; c < 3; c++) {
+                if (below < 0.0) d[c] -= 2.0 * below * face[c];
+                out[c] = static_cast<float>(d[c]);
+                from[c] = origin[c];
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+// Rays to points of a pane, (4, 3), that lie above the horizon.
+SAILENV_KERNEL(pane_rays)
+(const sailenv::LitPoints* points, const float* pane, int64_t rays, const float* pattern,
+ const sailenv::RayList* list) {
+    using namespace sailenv;
+    if (points->count < 0 || rays < 1) return STATUS_INVALID_ARGUMENT;
+    const double cells = std::sqrt(static_cast<double>(rays));
+    int64_t made = 0;
+    for (int64_t k = 0; k < points->count; k++) {
+        for (int64_t m = 0; m < rays; m++) {
+            double u, v, d[3];
+            shifted_point(pattern + 2 * m, points->shifts + 2 * k, cells, &u, &v);
+            u = 2.0 * u - 1.0;
+            v = 2.0 * v - 1.0;
+            for (int c = 0; c < 3; c++) {
+                d[c] = pane[c] + u * pane[3 + c] + v * pane[6 + c] - points->positions[3 * k + c];
+            }
+            if (!is_above(*points, k, d)) continue;
+            const double length =
+                std::max(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), 1e-9);
+            list->point[made] = static_cast<int32_t>(k);
+            lift(*points, k, list->origins + 3 * made);
+            for (int c = 0; c < 3; c++) {
+                list->towards[3 * made + c] = static_cast<float>(d[c] / length);
+            }
+            made++;
+        }
+    }
+    *list->made = made;
+    return STATUS_OK;
+}
+
+// Rays into the cone of an emitter, (4,), that lie above the horizon.
+SAILENV_KERNEL(emitter_rays)
+(const sailenv::LitPoints* points, const float* ball, int64_t rays, const float* pattern,
+ const sailenv::RayList* list) {
+    using namespace sailenv;
+    if (points->count < 0 || rays < 1) return STATUS_INVALID_ARGUMENT;
+    const double cells = std::sqrt(static_cast<double>(rays));
+    int64_t made = 0;
+    for (int64_t k = 0; k < points->count; k++) {
+        float axis[3];
+        for (int c = 0; c < 3; c++) axis[c] = ball[c] - points->positions[3 * k + c];
+        const float d2 = cosine(axis, axis), r2 = ball[3] * ball[3];
+        if (!(d2 > NEAR * NEAR * r2)) continue;
+        const float far = std::sqrt(d2);
+        for (float& c : axis) c /= far;
+        const double edge = std::sqrt(1.0 - static_cast<double>(r2 / d2));
+        for (int64_t m = 0; m < rays; m++) {
+            double u, v, d[3];
+            shifted_point(pattern + 2 * m, points->shifts + 2 * k, cells, &u, &v);
+            const double up = 1.0 - u * (1.0 - edge);
+            const double out = std::sqrt(std::max(1.0 - up * up, 0.0)), turn = 2.0 * PI * v;
+            around_axis(axis, out * std::cos(turn), out * std::sin(turn), up, d);
+            if (!is_above(*points, k, d)) continue;
+            list->point[made] = static_cast<int32_t>(k);
+            lift(*points, k, list->origins + 3 * made);
+            for (int c = 0; c < 3; c++) list->towards[3 * made + c] = static_cast<float>(d[c]);
+            made++;
+        }
+    }
+    *list->made = made;
+    return STATUS_OK;
+}
+
+// How much rays into cones count (the balance heuristic): `shots` of them from each point, and
+// `others` in all directions. point: (rays,); towards: (rays, 3). Result: weights: (rays,).
+SAILENV_KERNEL(emitter_weights)
+(const sailenv::LitPoints* points, const sailenv::Emitters* emitters, int64_t rays,
+ const int32_t* point, const float* towards, int64_t shots, int64_t others, float* weights) {
+    using namespace sailenv;
+    for (int64_t ray = 0; ray < rays; ray++) {
+        const int64_t k = point[ray];
+        if (k < 0 || k >= points->count) return STATUS_INVALID_ARGUMENT;
+        const float* d = towards + 3 * ray;
+        const double own = cosine(d, points->normals + 3 * k) / PI;
+        const double density = cone_density(*emitters, points->positions + 3 * k, d);
+        weights[ray] = static_cast<float>(
+            own / (static_cast<double>(others) * own + static_cast<double>(shots) * density));
+    }
+    return STATUS_OK;
+}
+
+// How much less rays in all directions count that lie in cones, where without cones each counts one
+// over their number. directions: (count, rays, 3); texels: (count, rays), below 0 where a ray met
+// none. Result: of those that count less, of `room` at most: point, texel, weight; made: how many
+// there are, whatever the room.
+SAILENV_KERNEL(weights_within_cones)
+(const sailenv::LitPoints* points, const sailenv::Emitters* emitters, int64_t rays,
+ const float* directions, const int32_t* texels, int64_t shots, int64_t room, int32_t* point,
+ int32_t* texel, float* weights, int64_t* made) {
+    using namespace sailenv;
+    if (points->count < 0 || rays < 1) return STATUS_INVALID_ARGUMENT;
+    const double all = static_cast<double>(rays);
+    int64_t count = 0;
+    for (int64_t k = 0; k < points->count; k++) {
+        for (int64_t m = 0; m < rays; m++) {
+            const int32_t met = texels[k * rays + m];
+            if (met < 0) continue;
+            const float* d = directions + 3 * (k * rays + m);
+            const double density = cone_density(*emitters, points->positions + 3 * k, d);
+            if (density == 0.0) continue;
+            if (count < room) {
+                // Rays that were mirrored at the face may lie below the normal's horizon.
+                const double own =
+                    std::max(static_cast<double>(cosine(d, points->normals + 3 * k)), 1e-3) / PI;
+                point[count] = static_cast<int32_t>(k);
+                texel[count] = met;
+                weights[count] = static_cast<float>(
+                    own / (all * own + static_cast<double>(shots) * density) - 1.0 / all);
+            }
+            count++;
+        }
+    }
+    *made = count;
+    return STATUS_OK;
+}

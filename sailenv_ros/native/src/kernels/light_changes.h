@@ -1,0 +1,137 @@
+// What changes of light along rays when things that were baked move; see relight/relighting.py.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "light_sampling.h"
+#include "rays.h"
+
+namespace sailenv {
+
+// A number from 0 to 1 that has nothing to do with its neighbours' (Wellons' integer hash).
+static inline float scatter(uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x7feb352dU;
+    x ^= x >> 15;
+    x *= 0x846ca68bU;
+    x ^= x >> 16;
+    return static_cast<float>(x >> 8) * (1.0f / 16777216.0f);
+}
+
+// What a ray meets first, before and after; true if that is not the same.
+static inline bool meet_both(const RayScene& s, const Ray& r, Hit& before, Hit& after) {
+    for (int64_t k = 0; k < s.changed_count; k++) {
+        const RayInstance& i = s.changed[k];
+        if (!comes_near(i, r, ENDLESS)) continue;
+        if (i.before) meet_instance(i, r, before);
+        if (i.after) meet_instance(i, r, after);
+    }
+    if (before.triangle < 0 && after.triangle < 0) return false;
+    Hit rest;
+    meet_resting(s, r, rest);
+    if (rest.t <= before.t && rest.t <= after.t) return false;
+    if (rest.t < before.t) before = rest;
+    if (rest.t < after.t) after = rest;
+    return true;
+}
+
+static inline Hit meet_after(const RayScene& s, const Ray& r) {
+    Hit hit;
+    for (int64_t k = 0; k < s.changed_count; k++) {
+        if (s.changed[k].after) meet_instance(s.changed[k], r, hit);
+    }
+    meet_resting(s, r, hit);
+    return hit;
+}
+
+// Whether light is stopped on the way from a point, before and after; the same if nothing that
+// changes is in the way.
+struct Stopped {
+    bool touched, before, after;
+};
+
+static inline Stopped stopped(const RayScene& s, const Ray& r, float length, bool whole) {
+    bool by_before = false, by_after = false;
+    for (int64_t k = 0; k < s.changed_count; k++) {
+        const RayInstance& i = s.changed[k];
+        if ((i.before ? by_before : true) && (i.after ? by_after : true)) continue;
+        if (!comes_near(i, r, length) || !stops_instance(i, r, length)) continue;
+        by_before |= i.before != 0;
+        by_after |= i.after != 0;
+    }
+    if (!whole && !by_before && !by_after) return {false, false, false};
+    const bool rest = (by_before && by_after) ? true : stops_resting(s, r, length);
+    return {by_before != by_after && !rest, by_before || rest, by_after || rest};
+}
+
+// Whether anything that changes may come between a point and a light.
+static inline bool comes_between(const RayScene& s, const RayLight& l, const float* p,
+                                 const float* n) {
+    float towards[3], reach_of = 0.0f;
+    for (int c = 0; c < 3; c++) {
+        towards[c] = l.kind == LIGHT_DIRECTIONAL ? -l.direction[c] : l.position[c] - p[c];
+        reach_of += l.across[c] * l.across[c] + l.up[c] * l.up[c];
+    }
+    reach_of = 0.5f * std::sqrt(reach_of);
+    if (dot(towards, n) < -reach_of) return false;
+    const Ray r = ray_of(p, towards);
+    const float length = l.kind == LIGHT_DIRECTIONAL ? ENDLESS : 1.0f;
+    for (int64_t k = 0; k < s.changed_count; k++) {
+        if (comes_near(s.changed[k], r, length, reach_of)) return true;
+    }
+    return false;
+}
+
+// What changes of the direct light of a lamp at a point.
+struct DirectLightDelta {
+    float change, total;            // of irradiance / pi
+    float share_change, share_all;  // of the rays that arrive
+    bool touched;
+};
+
+// `whole`: all of the light is wanted, whatever changed.
+static inline DirectLightDelta direct_light_delta(const RayScene& s, const RayLight& l,
+                                                  const float* p, const float* n,
+                                                  const float* pattern, int64_t rays,
+                                                  uint32_t number, bool whole) {
+    DirectLightDelta result = {0.0f, 0.0f, 0.0f, 0.0f, false};
+    const float turn_u = scatter(2 * number), turn_v = scatter(2 * number + 1);
+    const float o[3] = {p[0] + n[0] * LIFT_M, p[1] + n[1] * LIFT_M, p[2] + n[2] * LIFT_M};
+    const float each = 1.0f / static_cast<float>(rays);
+    float unhindered = 0.0f;
+    for (int64_t m = 0; m < rays; m++) {
+        float u = pattern[2 * m] + turn_u, v = pattern[2 * m + 1] + turn_v;
+        u -= std::floor(u);
+        v -= std::floor(v);
+        const LightSample light = sample_light(l, p, u, v);
+        const float power = sample_power(light, n) * each;
+        if (!(power > 0.0f)) continue;
+        unhindered += power;
+        const Ray r = ray_of(o, light.towards);
+        const Stopped way = stopped(s, r, light.length, whole);
+        result.touched |= way.touched;
+        const float freed = static_cast<float>(way.before) - static_cast<float>(way.after);
+        if (freed == 0.0f && (!whole || way.after)) continue;
+        const float clear = l.kind == LIGHT_DIRECTIONAL ? through_panes(s, r) : 1.0f;
+        result.change += freed * power * clear;
+        result.share_change += freed * each * clear;
+        if (!way.after) {
+            result.total += power * clear;
+            result.share_all += each * clear;
+        }
+    }
+    if (result.change != 0.0f || result.total != 0.0f) {
+        const float scale = sample_scale(l, p, n, unhindered);
+        result.change *= scale;
+        result.total *= scale;
+    }
+    return result;
+}
+
+static inline bool sound(const RayScene& s) {
+    return s.channels >= 3 && s.channels % 3 == 0 && s.sky_height > 0 && s.sky_width > 0 &&
+           s.height > 0 && s.width > 0 && s.changed_count >= 0 && s.resting_count >= 0;
+}
+
+}  // namespace sailenv

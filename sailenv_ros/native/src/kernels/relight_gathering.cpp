@@ -1,0 +1,222 @@
+// What changes of light at patches, texels and points in the air; see relight/relighting.py.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "../abi.h"
+#include "../threads.h"
+#include "light_changes.h"
+#include "sky_picture.h"
+
+namespace sailenv {
+namespace {
+
+constexpr float FAR_M = 2.0f;          // what is farther is as good as endless
+constexpr float INSIDE_SHARE = 0.25f;  // of the backs of surfaces that are seen; see bake/gather.py
+
+// Adds what a ray sees, times `weight`, to `sum`; false if that is the back of a surface.
+bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* table, float weight,
+              float* sum) {
+    if (hit.triangle < 0) {
+        const float share = weight * through_panes(s, r);
+        double sky[3];
+        sky_radiance(s.sky, s.sky_height, s.sky_width, r.d, sky);
+        for (int c = 0; c < 3; c++) sum[c] += share * static_cast<float>(sky[c]);
+        return true;
+    }
+    if (!hit.front) return false;
+    const RayInstance& i = *hit.instance;
+    const float* radiance = i.radiance;
+    if (i.has_chart && i.shape->places != nullptr) {
+        const float* p = i.shape->places + 6 * static_cast<int64_t>(hit.triangle);
+        const float first = 1.0f - hit.second - hit.third;
+        const float u =
+            i.chart[0] + i.chart[2] * (first * p[0] + hit.second * p[2] + hit.third * p[4]);
+        const float v =
+            i.chart[1] + i.chart[3] * (first * p[1] + hit.second * p[3] + hit.third * p[5]);
+        const int32_t x = std::min(std::max(static_cast<int32_t>(u * s.width), 0), s.width - 1);
+        const int32_t y = std::min(std::max(static_cast<int32_t>(v * s.height), 0), s.height - 1);
+        const int32_t patch = s.patches[static_cast<int64_t>(y) * s.width + x];
+        if (patch < 0 || patch >= s.patch_count) return true;
+        radiance = table + static_cast<int64_t>(patch) * s.channels;
+    }
+    for (int c = 0; c < s.channels; c++) sum[c] += weight * radiance[c];
+    return true;
+}
+
+// The largest share of a hemisphere that things which change may take, seen from a point.
+float reach(const RayScene& s, const float* p, const float* n) {
+    float most = 0.0f;
+    for (int64_t k = 0; k < s.changed_count; k++) {
+        const float* ball = s.changed[k].sphere;
+        const float to[3] = {ball[0] - p[0], ball[1] - p[1], ball[2] - p[2]};
+        if (dot(to, n) < -ball[3]) continue;
+        const float d2 = dot(to, to);
+        most = std::max(most, ball[3] * ball[3] / std::max(d2, 1e-6f));
+    }
+    return most;
+}
+
+}  // namespace
+}  // namespace sailenv
+
+// What arrives at patches by way of others and from the sky, and straight from area lights.
+//
+// positions, normals: (count, 3). wanted: (count,), 0 nothing, 1 the change, 2 all of it. Result:
+// found: (count,), the same, and 2 where so much has changed that all of it was worked out, or 3
+// where that could not be because the patch lies inside of something;
+// change: (count, channels) and direct: (count, lights), irradiance / pi: the difference, or all;
+// nearness: (count,), the harmonic mean of the distances of what was looked at [m].
+SAILENV_KERNEL(gather_change)
+(int64_t threads, const sailenv::RayScene* scene, int64_t count, const float* positions,
+ const float* normals, const uint8_t* wanted, int64_t rays, const float* pattern, int64_t lights,
+ const sailenv::RayLight* area, int64_t shots, const float* shot_pattern, double least,
+ uint8_t* found, float* change, float* direct, float* nearness) {
+    using namespace sailenv;
+    const RayScene& s = *scene;
+    if (count < 0 || rays < 1 || shots < 1 || lights < 0 || !sound(s)) {
+        return STATUS_INVALID_ARGUMENT;
+    }
+    const float each = 1.0f / static_cast<float>(rays);
+    parallel_for(threads, count, 64, [&](int64_t first, int64_t last, int64_t) {
+        for (int64_t k = first; k < last; k++) {
+            const float *p = positions + 3 * k, *n = normals + 3 * k;
+            float* sum = change + k * s.channels;
+            float* straight = direct + k * lights;
+            found[k] = 0;
+            nearness[k] = FAR_M;
+            memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
+            if (lights > 0) memset(straight, 0, static_cast<size_t>(lights) * sizeof(float));
+            if (wanted[k] == 0) continue;
+            bool whole = wanted[k] == 2;
+            const uint32_t number = static_cast<uint32_t>(k);
+            if (whole || reach(s, p, n) > static_cast<float>(least)) {
+                float a[3], b[3];
+                frame_about(n, a, b);
+                const float turn_u = scatter(2 * number), turn_v = scatter(2 * number + 1);
+                const float o[3] = {p[0] + n[0] * LIFT_M, p[1] + n[1] * LIFT_M,
+                                    p[2] + n[2] * LIFT_M};
+                for (int again = 0; again < 2; again++) {
+                    int64_t changed = 0, backs = 0, looked = 0;
+                    float near = 0.0f;
+                    for (int64_t m = 0; m < rays; m++) {
+                        float u = pattern[2 * m] + turn_u, v = pattern[2 * m + 1] + turn_v;
+                        u -= std::floor(u);
+                        v -= std::floor(v);
+                        const float radius = std::sqrt(u), turn = 6.28318531f * v;
+                        const float x = radius * std::cos(turn), y = radius * std::sin(turn);
+                        const float z = std::sqrt(std::max(1.0f - u, 0.0f));
+                        float d[3];
+                        for (int c = 0; c < 3; c++) d[c] = x * a[c] + y * b[c] + z * n[c];
+                        const Ray r = ray_of(o, d);
+                        if (whole) {
+                            const Hit hit = meet_after(s, r);
+                            backs += !add_seen(s, hit, r, s.after, each, sum);
+                            near += 1.0f / std::min(std::max(hit.t, 1e-3f), FAR_M);
+                            looked++;
+                            continue;
+                        }
+                        Hit before, after;
+                        if (!meet_both(s, r, before, after)) continue;
+                        changed++;
+                        const float t = std::min(before.t, after.t);
+                        near += 1.0f / std::min(std::max(t, 1e-3f), FAR_M);
+                        looked++;
+                        add_seen(s, before, r, s.before, -each, sum);
+                        add_seen(s, after, r, s.after, each, sum);
+                    }
+                    if (looked > 0) nearness[k] = static_cast<float>(looked) / near;
+                    if (changed > 0) found[k] = 1;
+                    if (whole) {
+                        const float most = INSIDE_SHARE * static_cast<float>(rays);
+                        found[k] = static_cast<float>(backs) > most ? 3 : 2;
+                    }
+                    if (whole || 4 * changed <= rays) break;
+                    // Little of what was baked here is of use.
+                    whole = true;
+                    memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
+                }
+            }
+            if (found[k] == 3) continue;
+            for (int64_t l = 0; l < lights; l++) {
+                if (!whole && !comes_between(s, area[l], p, n)) continue;
+                const DirectLightDelta way =
+                    direct_light_delta(s, area[l], p, n, shot_pattern, shots, number, whole);
+                straight[l] = whole ? way.total : way.change;
+                if (way.touched && found[k] == 0) found[k] = 1;
+            }
+        }
+    });
+    return STATUS_OK;
+}
+
+// What changes at points in the air; see LightLayer.probe_bounced. Result: far, near: (count, 4,
+// channels): what rays bring that meet the same surface as before, and what the others do; far
+// stays 0 if it is not wanted, which saves nearly all the work.
+SAILENV_KERNEL(gather_probe_change)
+(int64_t threads, const sailenv::RayScene* scene, int64_t count, const float* positions,
+ int64_t rays, const float* directions, int64_t with_far, float* far, float* near) {
+    using namespace sailenv;
+    const RayScene& s = *scene;
+    if (count < 0 || rays < 1 || !sound(s)) return STATUS_INVALID_ARGUMENT;
+    const float each = 1.0f / static_cast<float>(rays);
+    const size_t row = static_cast<size_t>(4 * s.channels);
+    parallel_for(threads, count, 8, [&](int64_t first, int64_t last, int64_t) {
+        for (int64_t k = first; k < last; k++) {
+            memset(far + k * 4 * s.channels, 0, row * sizeof(float));
+            memset(near + k * 4 * s.channels, 0, row * sizeof(float));
+            for (int64_t m = 0; m < rays; m++) {
+                const float* d = directions + 3 * m;
+                const Ray r = ray_of(positions + 3 * k, d);
+                Hit before, after;
+                const bool differs = meet_both(s, r, before, after);
+                if (!differs) {
+                    if (with_far == 0) continue;
+                    before = Hit();
+                    meet_resting(s, r, before);
+                    after = before;
+                    if (before.triangle < 0) continue;
+                }
+                float* sum = (differs ? near : far) + k * 4 * s.channels;
+                for (int c = 0; c < 4; c++) {
+                    const float weight = c == 0 ? each : 2.0f * each * d[c - 1];
+                    add_seen(s, before, r, s.before, -weight, sum + c * s.channels);
+                    add_seen(s, after, r, s.after, weight, sum + c * s.channels);
+                }
+            }
+        }
+    });
+    return STATUS_OK;
+}
+
+// What changes of a lamp's or the sun's direct light at texels.
+//
+// positions, normals: (count, 3); patch: (count,); wanted: (patches,) as `found` of gather_change.
+// Result: state: (count,), 0 as it was, 1 the change, 2 all of it; direct: irradiance / pi; share:
+// of the light that arrives.
+SAILENV_KERNEL(direct_light_delta)
+(int64_t threads, const sailenv::RayScene* scene, const sailenv::RayLight* light, int64_t count,
+ const float* positions, const float* normals, const int32_t* patch, const uint8_t* wanted,
+ int64_t rays, const float* pattern, uint8_t* state, float* direct, float* share) {
+    using namespace sailenv;
+    const RayScene& s = *scene;
+    const RayLight& l = *light;
+    if (count < 0 || rays < 1 || !sound(s)) return STATUS_INVALID_ARGUMENT;
+    parallel_for(threads, count, 1024, [&](int64_t first, int64_t last, int64_t) {
+        for (int64_t k = first; k < last; k++) {
+            state[k] = 0;
+            const float *p = positions + 3 * k, *n = normals + 3 * k;
+            const int32_t own = patch[k];
+            const bool whole = own >= 0 && own < s.patch_count && wanted[own] == 2;
+            if (own >= 0 && own < s.patch_count && wanted[own] == 3) continue;
+            if (!whole && !comes_between(s, l, p, n)) continue;
+            const DirectLightDelta way =
+                direct_light_delta(s, l, p, n, pattern, rays, static_cast<uint32_t>(k), whole);
+            if (!whole && !way.touched) continue;
+            state[k] = whole ? 2 : 1;
+            direct[k] = whole ? way.total : way.change;
+            share[k] = whole ? way.share_all : way.share_change;
+        }
+    });
+    return STATUS_OK;
+}
