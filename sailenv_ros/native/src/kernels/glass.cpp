@@ -23,7 +23,7 @@ Planes planes_of(const Triangle& t, const Part& part) {
 
 // Square root of base colour, and alpha.
 struct Base8 {
-    f8 r, g, b, a;
+    f8 x, y, z, a;
 };
 
 Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, f8 depth, f8 u, f8 v,
@@ -51,14 +51,14 @@ Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, f8 depth
         *reinterpret_cast<f4_any*>(found + 4 * k) = a + (b - a) * share[k];
     }
     Base8 c;
-    transpose4(found, c.r, c.g, c.b, c.a);
+    transpose4(found, c.x, c.y, c.z, c.a);
     const float over = 1.0f / 255.0f;
-    return {c.r * (factor[0] * over), c.g * (factor[1] * over), c.b * (factor[2] * over),
+    return {c.x * (factor[0] * over), c.y * (factor[1] * over), c.z * (factor[2] * over),
             c.a * (factor[3] * over)};
 }
 
 // Irradiance / pi on a surface.
-Colour8 light_around(const Light& light, int32_t id, f8 nx, f8 ny, f8 nz) {
+Vec3x8 light_around(const Light& light, int32_t id, f8 nx, f8 ny, f8 nz) {
     if (light.baked) {
         const float* p = light.instance_light + 12 * static_cast<int64_t>(id);
         const f8 none = splat(0.0f);
@@ -66,11 +66,7 @@ Colour8 light_around(const Light& light, int32_t id, f8 nx, f8 ny, f8 nz) {
                 max8(p[4] + p[5] * nx + p[6] * ny + p[7] * nz, none),
                 max8(p[8] + p[9] * nx + p[10] * ny + p[11] * nz, none)};
     }
-    const Colour8 horizon = splat3(light.sky_horizon);
-    const Colour8 dome = mix3(horizon, splat3(light.sky_zenith), splat(0.5f));
-    const Colour8 sky = mix3(splat3(light.sky_ground), dome, 0.5f + 0.5f * nz);
-    return {light.ambient[0] + light.sky_share * sky.r, light.ambient[1] + light.sky_share * sky.g,
-            light.ambient[2] + light.sky_share * sky.b};
+    return light_of_sky(light, nz);
 }
 
 // Dims what lies behind eight pixels and adds what the glass mirrors and scatters.
@@ -85,9 +81,9 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     };
     const f8 u = attribute(3), v = attribute(4);
     Base8 base = base_colour(part, p, t, depth, u, v, wanted);
-    base.r *= base.r;
-    base.g *= base.g;
-    base.b *= base.b;
+    base.x *= base.x;
+    base.y *= base.y;
+    base.z *= base.z;
     const float* m = s.world_from_camera;
     const f8 cx = (at - s.cx) * (1.0f / s.focal);
     const float cy = (row - s.cy) / s.focal;
@@ -113,22 +109,19 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const f8 g2 = grazing * grazing;
     const f8 fresnel = 0.04f + 0.96f * (g2 * g2 * grazing);
     const f8 rest = 1.0f - fresnel;
-    const f8 brightest = max8(max8(base.r, max8(base.g, base.b)), splat(1e-3f));
+    const f8 brightest = max8(max8(base.x, max8(base.y, base.z)), splat(1e-3f));
     const f8 clear = rest * (1.0f - base.a);
     const f8 mx = 2.0f * facing * nx - vx, my = 2.0f * facing * ny - vy,
              mz = 2.0f * facing * nz - vz;
-    Colour8 seen;
+    Vec3x8 seen;
     if (light.baked && light.reflecting) {
         seen = mirrored_room(light, splat(light.reflection_table[part.id]), s.eye[0] + rx * depth,
                              s.eye[1] + ry * depth, s.eye[2] + rz * depth, mx, my, mz,
                              splat(part.roughness));
     } else {
-        const Colour8 sky = analytic_sky(light, mz);
-        seen = {light.ambient[0] + light.sky_share * sky.r,
-                light.ambient[1] + light.sky_share * sky.g,
-                light.ambient[2] + light.sky_share * sky.b};
+        seen = light.ambient + light.sky_share * analytic_sky(light, mz);
     }
-    const Colour8 around = light_around(light, part.id, nx, ny, nz);
+    const Vec3x8 around = light_around(light, part.id, nx, ny, nz);
     const f8 scattered = rest * base.a;
     uint16_t* radiance = s.outputs->radiance + 4 * (y * s.width + x);
     alignas(32) float behind[4 * 8] = {};
@@ -146,8 +139,8 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
         const f8 sum = clamp8(added * light.exposure, 0.0f, 6e4f) + load(behind + 8 * j) * through;
         return to_half(clamp8(sum, 0.0f, 6e4f));
     };
-    const i8 r = over(0, base.r, seen.r, around.r), g = over(1, base.g, seen.g, around.g),
-             b = over(2, base.b, seen.b, around.b);
+    const i8 r = over(0, base.x, seen.x, around.x), g = over(1, base.y, seen.y, around.y),
+             b = over(2, base.z, seen.z, around.z);
     for (int k = 0; k < 8; k++) {
         if (!wanted[k]) continue;
         // The share of light from around stays that of what lies behind.

@@ -110,10 +110,6 @@ LANES_INLINE bool any(i8 mask) {
 #endif
 }
 LANES_INLINE f8 mix8(f8 a, f8 b, f8 share) { return a + (b - a) * share; }
-LANES_INLINE f8 smoothstep8(f8 low, f8 high, f8 x) {
-    const f8 t = clamp8((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
 LANES_INLINE f8 inverse_length(f8 x, f8 y, f8 z) {
     return 1.0f / sqrt8(max8(x * x + y * y + z * z, splat(1e-20f)));
 }

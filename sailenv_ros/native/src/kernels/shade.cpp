@@ -407,13 +407,13 @@ void colour(Chunk& c, float bias, float most) {
             look_up(c.colour_texels + i, u + along_u * k, v + along_v * k, size, level, wanted,
                     texels);
         }
-        Colour8 sum;
+        Vec3x8 sum;
         f8 alpha;
-        transpose4(texels, sum.r, sum.g, sum.b, alpha);
+        transpose4(texels, sum.x, sum.y, sum.z, alpha);
         const f8 unit = share * (1.0f / 255.0f);
-        store(c.red + i, load(c.red + i) * (mapped ? sum.r * unit : splat(1.0f)));
-        store(c.green + i, load(c.green + i) * (mapped ? sum.g * unit : splat(1.0f)));
-        store(c.blue + i, load(c.blue + i) * (mapped ? sum.b * unit : splat(1.0f)));
+        store(c.red + i, load(c.red + i) * (mapped ? sum.x * unit : splat(1.0f)));
+        store(c.green + i, load(c.green + i) * (mapped ? sum.y * unit : splat(1.0f)));
+        store(c.blue + i, load(c.blue + i) * (mapped ? sum.z * unit : splat(1.0f)));
     }
 }
 
@@ -589,8 +589,8 @@ void baked_light(const Shading& s, Chunk& c) {
     }
     const LayerSum& map = *light.light_map;
     for (int32_t i = 0; i < c.padded; i += 8) need_texels(map, at + i, width);
-    const float* main = light.main_towards;
-    const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
+    const vec3 main = light.main_towards;
+    const bool has_main = light.main_colour.x + light.main_colour.y + light.main_colour.z > 0.0f;
     const int64_t row = 4 * static_cast<int64_t>(width);
     alignas(32) float texels[4 * 8];
     for (int32_t i = 0; i < c.padded; i += 8) {
@@ -620,7 +620,7 @@ void baked_light(const Shading& s, Chunk& c) {
         store(c.around_g + i, g);
         store(c.around_b + i, b);
         const f8 facing =
-            load(c.nx + i) * main[0] + load(c.ny + i) * main[1] + load(c.nz + i) * main[2];
+            load(c.nx + i) * main.x + load(c.ny + i) * main.y + load(c.nz + i) * main.z;
         const i8 mapped = light.main_baked > 0.0f ? charted : splat(0);
         if (light.edge_index != nullptr && any(mapped & there & (share > 0.0f) & (share < 1.0f))) {
             share = edge_shares(light, at + i, across + i, down + i, share);
@@ -645,20 +645,16 @@ void baked_light(const Shading& s, Chunk& c) {
 // The same where nothing is baked: an analytic sky, and the shadow map alone.
 void live_light(const Shading& s, Chunk& c) {
     const Light& light = *s.light;
-    const float* main = light.main_towards;
-    const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
-    const Colour8 horizon = splat3(light.sky_horizon), ground = splat3(light.sky_ground);
-    const Colour8 dome = mix3(horizon, splat3(light.sky_zenith), splat(0.55f));
+    const vec3 main = light.main_towards;
+    const bool has_main = light.main_colour.x + light.main_colour.y + light.main_colour.z > 0.0f;
     const float step = 1.6f / static_cast<float>(light.shadow_size);
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const f8 nz = load(c.nz + i);
-        const Colour8 above = mix3(horizon, dome, max8(nz, splat(0.0f)));
-        const Colour8 sky = mix3(ground, above, 0.5f + 0.5f * nz);
-        store(c.around_r + i, light.ambient[0] + light.sky_share * sky.r);
-        store(c.around_g + i, light.ambient[1] + light.sky_share * sky.g);
-        store(c.around_b + i, light.ambient[2] + light.sky_share * sky.b);
+        const Vec3x8 sky = light_of_sky(light, load(c.nz + i));
+        store(c.around_r + i, sky.x);
+        store(c.around_g + i, sky.y);
+        store(c.around_b + i, sky.z);
         const f8 facing =
-            load(c.nx + i) * main[0] + load(c.ny + i) * main[1] + load(c.nz + i) * main[2];
+            load(c.nx + i) * main.x + load(c.ny + i) * main.y + load(c.nz + i) * main.z;
         f8 arrives = splat(0.0f);
         if (has_main && any(~load(c.empty + i) & (facing > 0.0f))) {
             const MapPlace p = in_shadow_map(light, c, i, facing);
@@ -692,20 +688,15 @@ LANES_INLINE Direction8 mirrored_ray(const Chunk& c, int32_t i) {
 void mirrored_light(const Shading& s, Chunk& c) {
     const Light& light = *s.light;
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const Colour8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
+        const Vec3x8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
         const f8 roughness = load(c.roughness + i);
-        Colour8 seen = around;
+        Vec3x8 seen = around;
         if (!light.baked) {
             const Direction8 d = mirrored_ray(c, i);
-            const Colour8 horizon = splat3(light.sky_horizon);
-            const Colour8 dome = mix3(horizon, splat3(light.sky_zenith), splat(0.55f));
-            const Colour8 above = mix3(horizon, dome, max8(d.z, splat(0.0f)));
-            const Colour8 soft = mix3(splat3(light.sky_ground), above, 0.5f + 0.5f * d.z);
-            const Colour8 sky =
-                mix3(analytic_sky(light, d.z), soft, min8(roughness * 1.4f, splat(1.0f)));
-            seen = {light.ambient[0] + light.sky_share * sky.r,
-                    light.ambient[1] + light.sky_share * sky.g,
-                    light.ambient[2] + light.sky_share * sky.b};
+            const Vec3x8 soft =
+                sky_irradiance(d.z, light.sky_zenith, light.sky_horizon, light.sky_ground);
+            const f8 share = min8(roughness * 1.4f, splat(1.0f));
+            seen = light.ambient + light.sky_share * mix(analytic_sky(light, d.z), soft, share);
         } else if (light.reflecting && any((roughness < 0.7f) & ~load(c.empty + i))) {
             const Direction8 d = mirrored_ray(c, i);
             i8 point{};
@@ -718,32 +709,32 @@ void mirrored_light(const Shading& s, Chunk& c) {
                     open[j][k] = light.reflection_points[point[k]].light[j];
                 }
             }
-            const Colour8 room = mirrored_room(light, point, load(c.px + i), load(c.py + i),
-                                               load(c.pz + i), d.x, d.y, d.z, roughness);
+            const Vec3x8 room = mirrored_room(light, point, load(c.px + i), load(c.py + i),
+                                              load(c.pz + i), d.x, d.y, d.z, roughness);
             // Where less light arrives than in the middle of the room, less of the room is seen.
             const f8 there = load(open[0]) + load(open[1]) * load(c.nx + i) +
                              load(open[2]) * load(c.ny + i) + load(open[3]) * load(c.nz + i);
-            const f8 share = clamp8(luma8(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
-            const Colour8 dimmed = {room.r * share, room.g * share, room.b * share};
+            const f8 share = clamp8(luminance(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
+            const Vec3x8 dimmed = {room.x * share, room.y * share, room.z * share};
             // The rougher, the more of the half space it mirrors: that is the light around.
-            seen = mix3(dimmed, around, smoothstep8(splat(0.25f), splat(0.7f), roughness));
+            seen = mix(dimmed, around, smoothstep(0.25f, 0.7f, roughness));
         }
-        store(c.mirrored_r + i, seen.r);
-        store(c.mirrored_g + i, seen.g);
-        store(c.mirrored_b + i, seen.b);
+        store(c.mirrored_r + i, seen.x);
+        store(c.mirrored_g + i, seen.y);
+        store(c.mirrored_b + i, seen.z);
     }
 }
 
 // A surface of eight pixels, as the light from one direction meets it.
 struct Surface8 {
     f8 nx, ny, nz, vx, vy, vz;  // normal, and direction to the eye
-    Colour8 diffuse, f0;
+    Vec3x8 diffuse, f0;
     f8 a2, nv;  // roughness to the fourth power, cosine of the viewing angle
 };
 
 // GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
-LANES_INLINE void add_reflected(const Surface8& s, f8 lx, f8 ly, f8 lz, const Colour8& power,
-                                Colour8& sum) {
+LANES_INLINE void add_reflected(const Surface8& s, f8 lx, f8 ly, f8 lz, const Vec3x8& power,
+                                Vec3x8& sum) {
     const f8 nl = clamp8(s.nx * lx + s.ny * ly + s.nz * lz, 0.0f, 1.0f);
     f8 hx = lx + s.vx, hy = ly + s.vy, hz = lz + s.vz;
     const f8 scale = inverse_length(hx, hy, hz);
@@ -758,47 +749,33 @@ LANES_INLINE void add_reflected(const Surface8& s, f8 lx, f8 ly, f8 lz, const Co
     // Distribution times visibility.
     const f8 lobe = 0.5f * s.a2 / (PI * spread * spread * smith);
     const f8 grazing = 1.0f - vh, g2 = grazing * grazing, g5 = g2 * g2 * grazing;
-    const f8 fr = s.f0.r + (1.0f - s.f0.r) * g5, fg = s.f0.g + (1.0f - s.f0.g) * g5,
-             fb = s.f0.b + (1.0f - s.f0.b) * g5;
+    const f8 fr = s.f0.x + (1.0f - s.f0.x) * g5, fg = s.f0.y + (1.0f - s.f0.y) * g5,
+             fb = s.f0.z + (1.0f - s.f0.z) * g5;
     const float over_pi = 1.0f / PI;
-    sum.r = sum.r + power.r * nl * (s.diffuse.r * (1.0f - fr) * over_pi + fr * lobe);
-    sum.g = sum.g + power.g * nl * (s.diffuse.g * (1.0f - fg) * over_pi + fg * lobe);
-    sum.b = sum.b + power.b * nl * (s.diffuse.b * (1.0f - fb) * over_pi + fb * lobe);
+    sum.x = sum.x + power.x * nl * (s.diffuse.x * (1.0f - fr) * over_pi + fr * lobe);
+    sum.y = sum.y + power.y * nl * (s.diffuse.y * (1.0f - fg) * over_pi + fg * lobe);
+    sum.z = sum.z + power.z * nl * (s.diffuse.z * (1.0f - fb) * over_pi + fb * lobe);
 }
 
-void add_lamp(const Lamp& lamp, const Chunk& c, int32_t i, const Surface8& s, Colour8& sum) {
-    f8 lx = splat(-lamp.direction[0]), ly = splat(-lamp.direction[1]),
-       lz = splat(-lamp.direction[2]);
-    Colour8 power = splat3(lamp.colour);
-    if (lamp.kind > 0.5f) {
-        const f8 x = lamp.position[0] - load(c.px + i), y = lamp.position[1] - load(c.py + i),
-                 z = lamp.position[2] - load(c.pz + i);
-        const f8 square = max8(x * x + y * y + z * z, splat(1e-4f));
-        const f8 inverse = 1.0f / sqrt8(square);
-        lx = x * inverse;
-        ly = y * inverse;
-        lz = z * inverse;
-        const f8 reach = square / (lamp.range * lamp.range);
-        const f8 window = clamp8(1.0f - reach * reach, 0.0f, 1.0f);
-        f8 share = window * window / square;
-        const f8 along =
-            -(lx * lamp.direction[0] + ly * lamp.direction[1] + lz * lamp.direction[2]);
-        if (lamp.kind > 2.5f) {
-            share = share * max8(along, splat(0.0f));
-        } else if (lamp.kind > 1.5f) {
-            share = share * smoothstep8(splat(lamp.outer_cosine), splat(lamp.inner_cosine), along);
-        }
-        // A cone without a soft edge divides by 0 at its very edge: nothing arrives there.
-        share = max8(share, splat(0.0f));
-        power = {power.r * share, power.g * share, power.b * share};
-        if (!any((share > 0.0f) & (s.nx * lx + s.ny * ly + s.nz * lz > 0.0f))) return;
+void add_lamp(const Lamp& lamp, const Chunk& c, int32_t i, const Surface8& s, Vec3x8& sum) {
+    if (lamp.kind == LIGHT_DIRECTIONAL) {
+        const vec3 towards = -lamp.direction;
+        add_reflected(s, splat(towards.x), splat(towards.y), splat(towards.z), splat(lamp.colour),
+                      sum);
+        return;
     }
-    add_reflected(s, lx, ly, lz, power, sum);
+    const Vec3x8 offset = lamp.position - Vec3x8(load(c.px + i), load(c.py + i), load(c.pz + i));
+    const f8 square = lamp_square(offset);
+    const Vec3x8 towards = offset * (1.0f / sqrt8(square));
+    const f8 share = lamp_falloff(lamp, square, -dot(towards, lamp.direction));
+    const f8 facing = s.nx * towards.x + s.ny * towards.y + s.nz * towards.z;
+    if (!any((share > 0.0f) & (facing > 0.0f))) return;
+    add_reflected(s, towards.x, towards.y, towards.z, lamp.colour * share, sum);
 }
 
 void combine(const Shading& s, Chunk& c) {
     const Light& light = *s.light;
-    const bool has_main = light.main_colour[0] + light.main_colour[1] + light.main_colour[2] > 0.0f;
+    const bool has_main = light.main_colour.x + light.main_colour.y + light.main_colour.z > 0.0f;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 rx = load(c.ray_x + i), ry = load(c.ray_y + i), rz = load(c.ray_z + i);
         const f8 scale = -inverse_length(rx, ry, rz);
@@ -809,11 +786,11 @@ void combine(const Shading& s, Chunk& c) {
         here.nx = load(c.nx + i);
         here.ny = load(c.ny + i);
         here.nz = load(c.nz + i);
-        const Colour8 base = {load(c.red + i), load(c.green + i), load(c.blue + i)};
+        const Vec3x8 base = {load(c.red + i), load(c.green + i), load(c.blue + i)};
         const f8 metallic = load(c.metallic + i), roughness = load(c.roughness + i);
         const f8 matt = 1.0f - metallic;
-        here.f0 = mix3({splat(0.04f), splat(0.04f), splat(0.04f)}, base, metallic);
-        here.diffuse = {base.r * matt, base.g * matt, base.b * matt};
+        here.f0 = mix(vec3(0.04f, 0.04f, 0.04f), base, metallic);
+        here.diffuse = {base.x * matt, base.y * matt, base.z * matt};
         const f8 square = roughness * roughness;
         here.a2 = square * square;
         here.nv = abs8(here.nx * here.vx + here.ny * here.vy + here.nz * here.vz) + 1e-4f;
@@ -825,9 +802,9 @@ void combine(const Shading& s, Chunk& c) {
         const f8 a = min8(q0 * q0, exp2_8(-9.28f * nv)) * q0 + q1;
         const f8 term_x = -1.04f * a + q2, term_y = 1.04f * a + q3;
         const f8 lost = 1.0f - (term_x + term_y);
-        const Colour8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
-        const Colour8 seen = {load(c.mirrored_r + i), load(c.mirrored_g + i),
-                              load(c.mirrored_b + i)};
+        const Vec3x8 around = {load(c.around_r + i), load(c.around_g + i), load(c.around_b + i)};
+        const Vec3x8 seen = {load(c.mirrored_r + i), load(c.mirrored_g + i),
+                             load(c.mirrored_b + i)};
         // Single bounces in the microfacets, and what comes back from further ones (Fdez-Aguera
         // 2019, "A multiple-scattering microfacet model").
         auto of_environment = [&](f8 f0, f8 diffuse, f8 mirrored, f8 from_around) {
@@ -836,23 +813,21 @@ void combine(const Shading& s, Chunk& c) {
             const f8 again = lost * once * mean / (1.0f - mean * lost);
             return once * mirrored + (again + diffuse * (1.0f - once - again)) * from_around;
         };
-        Colour8 sum = {of_environment(here.f0.r, here.diffuse.r, seen.r, around.r),
-                       of_environment(here.f0.g, here.diffuse.g, seen.g, around.g),
-                       of_environment(here.f0.b, here.diffuse.b, seen.b, around.b)};
-        store(c.from_around + i, luma8(sum));
+        Vec3x8 sum = {of_environment(here.f0.x, here.diffuse.x, seen.x, around.x),
+                      of_environment(here.f0.y, here.diffuse.y, seen.y, around.y),
+                      of_environment(here.f0.z, here.diffuse.z, seen.z, around.z)};
+        store(c.from_around + i, luminance(sum));
         const f8 glow = load(c.emission + i);
-        sum = {sum.r + base.r * glow, sum.g + base.g * glow, sum.b + base.b * glow};
+        sum = {sum.x + base.x * glow, sum.y + base.y * glow, sum.z + base.z * glow};
         const f8 arrives = load(c.arrives + i);
         if (has_main && any(arrives > 0.0f)) {
-            const Colour8 power = {light.main_colour[0] * arrives, light.main_colour[1] * arrives,
-                                   light.main_colour[2] * arrives};
-            add_reflected(here, splat(light.main_towards[0]), splat(light.main_towards[1]),
-                          splat(light.main_towards[2]), power, sum);
+            add_reflected(here, splat(light.main_towards.x), splat(light.main_towards.y),
+                          splat(light.main_towards.z), light.main_colour * arrives, sum);
         }
         for (int32_t k = 0; k < light.lamp_count; k++) add_lamp(light.lamps[k], c, i, here, sum);
-        store(c.light_r + i, sum.r);
-        store(c.light_g + i, sum.g);
-        store(c.light_b + i, sum.b);
+        store(c.light_r + i, sum.x);
+        store(c.light_g + i, sum.y);
+        store(c.light_b + i, sum.z);
     }
 }
 
@@ -873,8 +848,8 @@ f8 arc_tangent(f8 y, f8 x) {
 }
 
 // What is seen where nothing was hit; see shaders/sky.frag.
-Colour8 background(const Light& light, f8 dx, f8 dy, f8 dz) {
-    if (light.background_plain) return splat3(light.background);
+Vec3x8 background(const Light& light, f8 dx, f8 dy, f8 dz) {
+    if (light.background_plain) return splat(light.background);
     if (light.sky_map == nullptr) return analytic_sky(light, dz * inverse_length(dx, dy, dz));
     const f8 across = 0.5f - arc_tangent(dy, dx) * (0.5f / PI);
     const f8 down = arc_tangent(sqrt8(dx * dx + dy * dy), dz) * (1.0f / PI);
@@ -895,9 +870,9 @@ Colour8 background(const Light& light, f8 dx, f8 dy, f8 dz) {
         *reinterpret_cast<f4_any*>(texels + 4 * k) =
             sample_halves(p, p + row, share_x[k], share_y[k]);
     }
-    Colour8 seen;
+    Vec3x8 seen;
     f8 unused;
-    transpose4(texels, seen.r, seen.g, seen.b, unused);
+    transpose4(texels, seen.x, seen.y, seen.z, unused);
     return seen;
 }
 
@@ -906,19 +881,19 @@ void finish(const Shading& s, const Chunk& c, uint16_t* radiance) {
     const Light& light = *s.light;
     alignas(32) int32_t out[2 * CHUNK];
     for (int32_t i = 0; i < c.padded; i += 8) {
-        Colour8 sum = {load(c.light_r + i), load(c.light_g + i), load(c.light_b + i)};
-        f8 share = load(c.from_around + i) / max8(luma8(sum), splat(1e-6f));
+        Vec3x8 sum = {load(c.light_r + i), load(c.light_g + i), load(c.light_b + i)};
+        f8 share = load(c.from_around + i) / max8(luminance(sum), splat(1e-6f));
         const i8 empty = load(c.empty + i);
         if (c.missed && any(empty)) {
-            const Colour8 sky =
+            const Vec3x8 sky =
                 background(light, load(c.ray_x + i), load(c.ray_y + i), load(c.ray_z + i));
-            sum = {empty ? sky.r : sum.r, empty ? sky.g : sum.g, empty ? sky.b : sum.b};
+            sum = {empty ? sky.x : sum.x, empty ? sky.y : sum.y, empty ? sky.z : sum.z};
             share = empty ? splat(0.0f) : share;
         }
         // Half precision ends at 65504.
-        const i8 r = to_half(clamp8(sum.r * light.exposure, 0.0f, 6e4f));
-        const i8 g = to_half(clamp8(sum.g * light.exposure, 0.0f, 6e4f));
-        const i8 b = to_half(clamp8(sum.b * light.exposure, 0.0f, 6e4f));
+        const i8 r = to_half(clamp8(sum.x * light.exposure, 0.0f, 6e4f));
+        const i8 g = to_half(clamp8(sum.y * light.exposure, 0.0f, 6e4f));
+        const i8 b = to_half(clamp8(sum.z * light.exposure, 0.0f, 6e4f));
         const i8 a = to_half(clamp8(share, 0.0f, 1.0f));
         const i8 rg = r | (g << 16), ba = b | (a << 16);
         store(out + 2 * i, (i8)SHUFFLE(rg, ba, 0, 8, 1, 9, 2, 10, 3, 11));
@@ -996,8 +971,8 @@ void shade_chunk(const Shading& s, Chunk& c) {
 
 }  // namespace
 
-Colour8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz,
-                      f8 roughness) {
+Vec3x8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz,
+                     f8 roughness) {
     const f8 ix = 1.0f / (dx + 1e-6f), iy = 1.0f / (dy + 1e-6f), iz = 1.0f / (dz + 1e-6f);
     const float *low = light.room_low, *high = light.room_high;
     alignas(32) float from[3][8];
@@ -1037,9 +1012,9 @@ Colour8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 
         const f4 far = sample_halves(p + next, p + next + row, across[k], down[k]);
         *reinterpret_cast<f4_any*>(texels + 4 * k) = near + (far - near) * share[k];
     }
-    Colour8 seen;
+    Vec3x8 seen;
     f8 unused;
-    transpose4(texels, seen.r, seen.g, seen.b, unused);
+    transpose4(texels, seen.x, seen.y, seen.z, unused);
     return seen;
 }
 
