@@ -70,7 +70,7 @@ static_assert(sizeof(Lamp) == 64, "shaders and lights.py take it for so long");
 
 // A shadow map: 1 - depth as the light sees it, the nearest surface, 0 where there is none.
 struct ShadowMap {
-    const float* nearness;  // (size, size + 8)
+    const float* nearness;  // (size, size + ROW_PADDING)
 };
 
 // A light map that is added up where it is looked at: texels from `LAYER_RUN` to `LAYER_RUN`, each
@@ -89,14 +89,14 @@ struct LayerSum {
 
 // From where a room was looked at for what is mirrored.
 struct ReflectionPoint {
-    float position[3];
+    vec3 position;
     float light[4];  // irradiance / pi there: c0, cx, cy, cz; luminance
 };
 
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
     vec3 main_colour, main_towards;
-    float map_from_world[12];  // first three rows; the map's sides are 0 and 1
+    Mat3x4 map_from_world;  // the map's sides are 0 and 1
     float texel_m;
     int32_t shadow_size;
     ShadowMap shadow, static_shadow;
@@ -124,7 +124,7 @@ struct Light {
     float layers_per_roughness;
     const ReflectionPoint* reflection_points;
     const int32_t* reflection_table;  // (ids,): the point that an instance uses
-    float room_low[3], room_high[3];
+    vec3 room_low, room_high;
 };
 
 struct View {

@@ -18,7 +18,8 @@ struct Shading {
     int64_t width, stride;
     const uint32_t* visible;
     float focal, cx, cy;
-    float world_from_camera[9], camera_from_world[9], eye[3];
+    Mat3 world_from_camera, camera_from_world;
+    vec3 eye;
 };
 
 // The sky's light on a surface whose normal has the z `up`: irradiance / pi.
@@ -33,8 +34,7 @@ LANES_INLINE Vec3x8 analytic_sky(const Light& l, f8 up) {
 
 // What shiny surfaces mirror of a room, as `point` says for each; see shaders/reflections.glsl.
 // Points and directions in the world frame.
-Vec3x8 mirrored_room(const Light& light, i8 point, f8 x, f8 y, f8 z, f8 dx, f8 dy, f8 dz,
-                     f8 roughness);
+Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 direction, f8 roughness);
 
 // Shades the pixels of one band: radiance, surfaces, normals, as wanted.
 void shade_band(const Shading& shading, int32_t first_row, int32_t last_row);
@@ -55,6 +55,6 @@ void shade_fragments(const Shading& shading, const Fragment* fragments, int64_t 
 // Draws see-through surfaces over a band of radiance.
 void draw_glass_band(const Shading& shading, const TriangleSet& glass, const DrawList& parts,
                      const Projection& projection, int32_t band, int32_t band_rows,
-                     const float* nearness);
+                     const float* inverse_depth);
 
 }  // namespace sailenv

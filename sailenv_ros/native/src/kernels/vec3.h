@@ -99,9 +99,61 @@ LANES_INLINE typename Either<A, B>::type dot(Vec3<A> a, Vec3<B> b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+template <class A, class B>
+LANES_INLINE Vec3Of<A, B> cross(Vec3<A> a, Vec3<B> b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 template <class T>
 LANES_INLINE Vec3<T> max(Vec3<T> a, float b) {
     return {max(a.x, b), max(a.y, b), max(a.z, b)};
+}
+
+template <class T>
+LANES_INLINE Vec3<T> clamp(Vec3<T> a, float low, float high) {
+    return {clamp(a.x, low, high), clamp(a.y, low, high), clamp(a.z, low, high)};
+}
+
+// What GLSL has no name for.
+LANES_INLINE f8 inverse_length(Vec3x8 a) { return 1.0f / sqrt(max(dot(a, a), 1e-20f)); }
+LANES_INLINE f8 largest(Vec3x8 a) { return max8(a.x, max8(a.y, a.z)); }
+LANES_INLINE Vec3x8 where(i8 mask, Vec3x8 a, Vec3x8 b) {
+    return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+
+// Three rows of numbers, from a frame to another.
+struct Mat3 {
+    vec3 rows[3];
+
+    constexpr vec3 column(int k) const {
+        return k == 0   ? vec3(rows[0].x, rows[1].x, rows[2].x)
+               : k == 1 ? vec3(rows[0].y, rows[1].y, rows[2].y)
+                        : vec3(rows[0].z, rows[1].z, rows[2].z);
+    }
+};
+template <class T>
+LANES_INLINE Vec3<T> operator*(const Mat3& m, Vec3<T> a) {
+    return {dot(m.rows[0], a), dot(m.rows[1], a), dot(m.rows[2], a)};
+}
+// The same of (x, y, 1), a ray of depth 1.
+template <class A, class B>
+LANES_INLINE Vec3Of<A, B> ray_at(const Mat3& m, A x, B y) {
+    return {m.rows[0].x * x + (m.rows[0].y * y + m.rows[0].z),
+            m.rows[1].x * x + (m.rows[1].y * y + m.rows[1].z),
+            m.rows[2].x * x + (m.rows[2].y * y + m.rows[2].z)};
+}
+
+// The first three rows of a transform of points.
+struct Mat3x4 {
+    struct Row {
+        vec3 turn;
+        float shift;
+    } rows[3];
+};
+template <class T>
+LANES_INLINE Vec3<T> operator*(const Mat3x4& m, Vec3<T> a) {
+    return {dot(m.rows[0].turn, a) + m.rows[0].shift, dot(m.rows[1].turn, a) + m.rows[1].shift,
+            dot(m.rows[2].turn, a) + m.rows[2].shift};
 }
 
 }  // namespace sailenv
