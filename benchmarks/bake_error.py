@@ -19,10 +19,10 @@ from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.bake.settings import BakeSettings
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.colour import LUMINANCE
 from sailenv_ros.types.snapshot import WorldSnapshot
 
 PASS_RAYS = 256
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 LEAST = 0.05
 PERCENTILES = (50, 95, 99)
 

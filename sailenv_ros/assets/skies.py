@@ -19,6 +19,7 @@ from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.extras import need
 from sailenv_ros.system.files import write_file
+from sailenv_ros.types.colour import LUMINANCE
 from sailenv_ros.types.lights import SkyMap
 
 __all__ = ["SKIES", "bake_sky", "load_sky", "sky_files"]
@@ -31,8 +32,6 @@ MEAN_RADIANCE = 0.65
 
 SUN_RADIANCE = 6.0
 """Brighter than this times the median is the sun: lights stand for it, the map does not."""
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def sky_files(folders: Iterable[Path]) -> Mapping[str, Path]:

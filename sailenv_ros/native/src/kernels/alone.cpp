@@ -16,7 +16,7 @@ namespace sailenv {
 // Memory of a thread, and what was drawn of each object.
 struct AloneThread {
     TriangleSet set;
-    std::vector<float> nearness;
+    std::vector<float> inverse_depth;
 };
 struct AloneScratch {
     Scratch shared;  // frames alone
@@ -40,12 +40,13 @@ struct Rectangle {
     bool empty() const { return x0 > x1 || y0 > y1; }
 };
 
-// Turns a row of nearness to depths, infinite where there is nothing; counts those that are not.
-int64_t set_depths(float* row, int64_t count, float least_nearness, float far_m) {
+// Turns a row of inverse_depth to depths, infinite where there is nothing; counts those that are
+// not.
+int64_t set_depths(float* row, int64_t count, float least_inverse_depth, float far_m) {
     int32_t covered = 0;
     for (int64_t k = 0; k < count; k++) {
         const float n = row[k], z = 1.0f / n;
-        const bool there = n > least_nearness && !(z > far_m);
+        const bool there = n > least_inverse_depth && !(z > far_m);
         row[k] = there ? z : __builtin_inff();
         covered += there;
     }
@@ -88,17 +89,17 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
     window.x1 = reach.x1;
     window.y1 = reach.y1;
     const int64_t width = reach.x1 - reach.x0 + 1, height = reach.y1 - reach.y0 + 1;
-    const int64_t stride = width + 8;
+    const int64_t stride = width + ROW_PADDING;
     const size_t size = static_cast<size_t>(stride * height + 8);
-    if (own.nearness.size() < size) own.nearness.resize(size);
-    float* pixels = own.nearness.data();
-    std::fill(pixels, pixels + size, canvas.least_nearness);
+    if (own.inverse_depth.size() < size) own.inverse_depth.resize(size);
+    float* pixels = own.inverse_depth.data();
+    std::fill(pixels, pixels + size, canvas.least_inverse_depth);
     draw_window(own.set, parts, window, stride, pixels);
     Rectangle whole, seen;
     const int32_t left = std::max(reach.x0, 0), right = std::min(reach.x1, canvas.width - 1);
     for (int32_t y = reach.y0; y <= reach.y1; y++) {
         float* row = pixels + (y - reach.y0) * stride;
-        const int64_t covered = set_depths(row, width, canvas.least_nearness, far_m);
+        const int64_t covered = set_depths(row, width, canvas.least_inverse_depth, far_m);
         if (covered == 0) continue;
         result[0] += include_row(row, reach.x0, reach.x0, reach.x1, y, whole);
         if (y >= 0 && y < canvas.height && left <= right) {
@@ -169,8 +170,8 @@ SAILENV_KERNEL(draw_alone)
     canvas.y0 = -canvas.height;
     canvas.x1 = 2 * canvas.width - 1;
     canvas.y1 = 2 * canvas.height - 1;
-    canvas.least_nearness = std::nextafter(static_cast<float>(1.0 / view->far_m), 0.0f);
-    canvas.greatest_nearness = 3e38f;
+    canvas.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view->far_m), 0.0f);
+    canvas.greatest_inverse_depth = 3e38f;
     try {
         AloneScratch& scratch = **handle;
         scratch.shared.band_rows = ONE_BAND;
