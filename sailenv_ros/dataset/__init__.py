@@ -2,7 +2,7 @@
 
 from sailenv_ros.dataset.dataset_reader import Dataset, DatasetFrame, open_dataset
 from sailenv_ros.dataset.dataset_reader import open_dataset as open
-from sailenv_ros.dataset.engines import engine_of
+from sailenv_ros.dataset.engine_choice import engine_of
 from sailenv_ros.dataset.job import Job, RecipeError, load_job, load_recipe
 from sailenv_ros.dataset.making import MadeDataset, Progress, make_dataset
 from sailenv_ros.dataset.verifying import Difference, verify_dataset

@@ -1,4 +1,4 @@
-"""Who makes the shards: this process, processes here, or a Ray cluster. Numbers in, summaries out.
+"""Who makes the shards: this process, or processes here. Numbers in, summaries out.
 
 A shard whose worker dies is made by another one, up to `ATTEMPTS` times. Errors of the work itself
 (a scene that cannot be built, a full disk) end it: another worker would meet them, too.
@@ -28,7 +28,7 @@ from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_with_parent
 
-__all__ = ["Engine", "HereEngine", "ProcessEngine", "engine_of"]
+__all__ = ["ATTEMPTS", "Engine", "HereEngine", "OnFrames", "ProcessEngine", "dealt"]
 
 ATTEMPTS = 3
 """How often a shard is tried whose worker dies."""
@@ -135,15 +135,6 @@ class ProcessEngine:
                 summary = future.result()
                 del running[future]
                 yield summary
-
-
-def engine_of(workers: int, ray_address: str | None) -> Engine:
-    """Return the engine for so many workers here, or for a Ray cluster."""
-    if ray_address is not None:
-        from sailenv_ros.dataset.ray_engine import RayEngine
-
-        return RayEngine(ray_address)
-    return ProcessEngine(workers) if workers > 1 else HereEngine()
 
 
 def dealt(shards: Sequence[int], workers: int) -> list[int]:

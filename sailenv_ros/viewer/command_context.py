@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar
+from typing import Any, ParamSpec, Protocol, TypeVar
 
 from sailenv_ros.frame import Frame
 from sailenv_ros.operations import Operation
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.viewer.debug_agent import DebugAgent
+from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.request_arguments import Arguments
-
-if TYPE_CHECKING:
-    from sailenv_ros.viewer.edit_history import EditHistory
 
 __all__ = ["Command", "CommandTable", "CommandContext"]
 

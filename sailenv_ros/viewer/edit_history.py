@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import ParamSpec, Protocol, TypeAlias, TypeVar
 
 from sailenv_ros.errors import InvalidState
+from sailenv_ros.operations import Operation
+from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation.edit_records import (
     EditOperations,
     ObjectRecord,
     SurroundingsRecord,
 )
 from sailenv_ros.simulation.room_edits import RoomOperations, RoomRecord
-from sailenv_ros.viewer.command_context import CommandContext
 
 __all__ = ["EditHistory", "EditStep", "Record"]
 
@@ -28,6 +29,21 @@ MOST_STEPS = 200
 
 MERGED_S = 1.0
 """Changes of one thing that follow as fast are one step, as those of a slider are [s]."""
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Conversation(Protocol):
+    """A simulation that carries operations out for a page."""
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as it was announced last."""
+
+    async def run(self, operation: Operation[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Have the simulation do something; wait for its result."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +108,7 @@ class EditHistory:
             self._done[:] = [*self._done[1 - MOST_STEPS :], step]
         self._undone.clear()
 
-    async def undo(self, context: CommandContext) -> tuple[str, int]:
+    async def undo(self, context: Conversation) -> tuple[str, int]:
         """Undo the last change; return what it was, and the object's id or 0.
 
         Raises
@@ -104,11 +120,11 @@ class EditHistory:
         """
         return await self._step(context, backwards=True)
 
-    async def redo(self, context: CommandContext) -> tuple[str, int]:
+    async def redo(self, context: Conversation) -> tuple[str, int]:
         """Do again what was undone last; as `undo`."""
         return await self._step(context, backwards=False)
 
-    async def _step(self, context: CommandContext, *, backwards: bool) -> tuple[str, int]:
+    async def _step(self, context: Conversation, *, backwards: bool) -> tuple[str, int]:
         async with self._busy:
             self.forget_other_scenes(context.info.epoch)
             taken, put = (self._done, self._undone)[:: 1 if backwards else -1]
@@ -121,7 +137,7 @@ class EditHistory:
             return step.what, number
 
 
-async def _restored(context: CommandContext, now: Record, then: Record) -> int:
+async def _restored(context: Conversation, now: Record, then: Record) -> int:
     if isinstance(now, SurroundingsRecord) and isinstance(then, SurroundingsRecord):
         await context.run(EditOperations.restore_surroundings, now, then)
         return 0
