@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import TypedDict
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.validation import checked_number, vector
@@ -20,6 +21,8 @@ __all__ = [
     "LIGHT_LIMITS",
     "Environment",
     "Light",
+    "LightAttributes",
+    "LightChanges",
     "LightType",
     "SkyMap",
     "light_named",
@@ -112,6 +115,27 @@ length again changes last bits, and a light that only became brighter must not s
 
 LIGHT_ATTRIBUTES: tuple[str, ...] = tuple(f.name for f in fields(Light) if f.name != "name")
 """Names of everything that can be changed of a light, in their order."""
+
+
+class LightAttributes(TypedDict, total=False):
+    """Attributes of a light of a given type, by their names in `Light`."""
+
+    colour: ArrayLike
+    intensity: float
+    indirect_multiplier: float
+    position_m: ArrayLike
+    direction: ArrayLike
+    range_m: float
+    inner_cone_deg: float
+    outer_cone_deg: float
+    width_m: float
+    height_m: float
+
+
+class LightChanges(LightAttributes, total=False):
+    """Everything that can be changed of a light, by its names in `Light`."""
+
+    type: LightType
 
 
 def light_named(name: str, lights: Iterable[Light]) -> Light:

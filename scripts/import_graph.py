@@ -131,7 +131,9 @@ def within(graph: Graph, circle: Iterable[str]) -> list[str]:
 
 def main() -> int:
     """Print the figures; return 1 if modules import in a circle."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("root", nargs="?", type=Path, default=Path(__file__).resolve().parents[1])
     parser.add_argument("--check", action="store_true", help="print circles between modules alone")
     options = parser.parse_args()

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.operations.operation import Caller, operation
+from sailenv_ros.operations.targets import BeginsScenes
 from sailenv_ros.scene.entries import read_document
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["ChanceOperations"]
 
@@ -37,7 +35,7 @@ class ChanceOperations(Caller):
     @operation(deadline_s=120.0, seed=_count, index=_count, things=_things)
     @staticmethod
     def randomise(
-        core: SimulationCore,
+        core: BeginsScenes,
         seed: int | None = None,
         *,
         index: int | None = None,

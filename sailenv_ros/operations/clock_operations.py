@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.operations.targets import BeginsScenes, HasClock, RunsTime
 
 __all__ = ["MAX_STEPS", "ClockOperations"]
 
@@ -22,13 +18,13 @@ class ClockOperations(Caller):
 
     @operation(deadline_s=120.0, scene=check.text)
     @staticmethod
-    def change_scene(core: SimulationCore, scene: str) -> None:
+    def change_scene(core: BeginsScenes, scene: str) -> None:
         """Leave the present world for another scene of `scenes`, at simulated time 0."""
         core.begin(scene, core.seed, as_registered=False)
 
     @operation(deadline_s=120.0)
     @staticmethod
-    def reset(core: SimulationCore, seed: int | None = None) -> int:
+    def reset(core: BeginsScenes, seed: int | None = None) -> int:
         """Begin the present scene anew, as it was at its start; return the new epoch.
 
         Parameters
@@ -51,28 +47,28 @@ class ClockOperations(Caller):
 
     @operation()
     @staticmethod
-    def pause(core: SimulationCore) -> None:
+    def pause(core: HasClock) -> None:
         """Stop simulated time; a second call does nothing."""
         if core.clock.set_paused(True):
             core.announce()
 
     @operation()
     @staticmethod
-    def resume(core: SimulationCore) -> None:
+    def resume(core: HasClock) -> None:
         """Let simulated time run again; a second call does nothing."""
         if core.clock.set_paused(False):
             core.announce()
 
     @operation()
     @staticmethod
-    def set_real_time_factor(core: SimulationCore, factor: float) -> None:
+    def set_real_time_factor(core: HasClock, factor: float) -> None:
         """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
         core.clock.set_real_time_factor(factor)
         core.announce()
 
     @operation(deadline_s=600.0)
     @staticmethod
-    def step(core: SimulationCore, count: int = 1) -> int:
+    def step(core: RunsTime, count: int = 1) -> int:
         """Advance a paused or lockstep simulation, with every streamed frame that falls due.
 
         Parameters

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.joints import JointState
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
+from sailenv_ros.operations.targets import HasWorld
 from sailenv_ros.validation import checked_number
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["JointOperations"]
 
@@ -29,7 +27,7 @@ class JointOperations(Caller):
     @operation(obj=check.object_reference, position=_position, seconds=_seconds)
     @staticmethod
     def set_joint_position(
-        core: SimulationCore, obj: int | str, position: float, seconds: float = 0.0
+        core: HasWorld, obj: int | str, position: float, seconds: float = 0.0
     ) -> None:
         """Open or close what moves on a joint.
 
@@ -59,6 +57,6 @@ class JointOperations(Caller):
 
     @operation()
     @staticmethod
-    def get_joints(core: SimulationCore) -> tuple[JointState, ...]:
+    def get_joints(core: HasWorld) -> tuple[JointState, ...]:
         """Return the states of all joints that move, in the order of the ids of the objects."""
         return core.world.joints()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from numpy.typing import ArrayLike
+from typing_extensions import Unpack
 
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.contacts import Contact
@@ -15,10 +16,9 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.objects import ObjectState
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
+from sailenv_ros.operations.targets import BeginsScenes, HasEditor, HasLibrary, HasWorld
+from sailenv_ros.scene.changes import ObjectChanges
 from sailenv_ros.validation import checked_flag, checked_number, vector
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["ObjectOperations"]
 
@@ -73,7 +73,7 @@ class ObjectOperations(Caller):
     )
     @staticmethod
     def spawn_object(
-        core: SimulationCore,
+        core: HasEditor,
         name: str,
         position: ArrayLike = (0.0, 0.0, 0.0),
         rotation: ArrayLike = (0.0, 0.0, 0.0),
@@ -136,7 +136,7 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def despawn_object(core: SimulationCore, obj: int | str) -> None:
+    def despawn_object(core: HasEditor, obj: int | str) -> None:
         """Remove an object from the scene; its id is not used again."""
         number = core.world.find(obj)
         core.editor.require_untaught(number)
@@ -152,7 +152,7 @@ class ObjectOperations(Caller):
     )
     @staticmethod
     def move_object(
-        core: SimulationCore,
+        core: HasWorld,
         obj: int | str,
         position: ArrayLike | None = None,
         rotation: ArrayLike | None = None,
@@ -187,7 +187,7 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def change_object(core: SimulationCore, obj: int | str, /, **changes: Any) -> None:
+    def change_object(core: HasEditor, obj: int | str, /, **changes: Unpack[ObjectChanges]) -> None:
         """Change what an object is; its id, its place and its motion stay.
 
         Parameters
@@ -210,13 +210,13 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def get_object(core: SimulationCore, obj: int | str) -> ObjectState:
+    def get_object(core: HasWorld, obj: int | str) -> ObjectState:
         """Return what and where an object is now."""
         return core.world.object_state(core.world.find(obj))
 
     @operation(obj=check.object_reference, behaviour=check.behaviour)
     @staticmethod
-    def add_behaviour(core: SimulationCore, obj: int | str, behaviour: Mapping[str, Any]) -> None:
+    def add_behaviour(core: HasEditor, obj: int | str, behaviour: Mapping[str, Any]) -> None:
         """Add a behaviour to those that an object has.
 
         Parameters
@@ -230,7 +230,7 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def remove_behaviours(core: SimulationCore, obj: int | str) -> None:
+    def remove_behaviours(core: HasWorld, obj: int | str) -> None:
         """End all behaviours of an object; its speed remains."""
         body = core.world.body(core.world.find(obj))
         if body.behaviours:
@@ -246,7 +246,7 @@ class ObjectOperations(Caller):
     )
     @staticmethod
     def apply_wrench(
-        core: SimulationCore,
+        core: HasEditor,
         obj: int | str,
         force_n: ArrayLike = (0.0, 0.0, 0.0),
         torque_nm: ArrayLike = (0.0, 0.0, 0.0),
@@ -286,7 +286,7 @@ class ObjectOperations(Caller):
 
     @operation(seconds=_contact_time)
     @staticmethod
-    def contacts(core: SimulationCore, seconds: float = 0.0) -> tuple[Contact, ...]:
+    def contacts(core: HasWorld, seconds: float = 0.0) -> tuple[Contact, ...]:
         """Return what touched what in the last physics step, or in some time before now.
 
         Parameters
@@ -310,7 +310,7 @@ class ObjectOperations(Caller):
     @operation(deadline_s=120.0, scenario=_scenario)
     @staticmethod
     def load_scenario(
-        core: SimulationCore, scenario: Mapping[str, Any] | str | Path
+        core: BeginsScenes, scenario: Mapping[str, Any] | str | Path
     ) -> tuple[int, ...]:
         """Begin a scene with more objects than its own; return their instance ids, in order.
 
@@ -321,10 +321,10 @@ class ObjectOperations(Caller):
             `timings`, or `lessons` as in a scene file: as a mapping, as YAML or JSON text, or as
             the path of a file with it. A text that is only a name is that of the scene.
         """
-        return core.editor.load_scenario(_scenario("scenario", scenario))
+        return core.begin_scenario(_scenario("scenario", scenario))
 
     @operation()
     @staticmethod
-    def spawnable_display_names(core: SimulationCore) -> tuple[str, ...]:
+    def spawnable_display_names(core: HasLibrary) -> tuple[str, ...]:
         """Return the names of what can be spawned as people write them, e.g. ``Chair 01``."""
         return core.library.spawnable_display_names

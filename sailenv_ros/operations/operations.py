@@ -21,6 +21,7 @@ from sailenv_ros.operations.models import ModelOperations
 from sailenv_ros.operations.movers import MoverOperations
 from sailenv_ros.operations.object_operations import ObjectOperations
 from sailenv_ros.operations.operation import Operation
+from sailenv_ros.operations.sailenv_names import SailenvNames
 from sailenv_ros.operations.saving_operations import SavingOperations
 from sailenv_ros.operations.scene_tables import SceneTables
 from sailenv_ros.operations.space_operations import SpaceOperations
@@ -47,7 +48,7 @@ class WorldOperations(
     """Every operation on the world and its agents."""
 
 
-class Operations(WorldOperations, ModelOperations, SceneTables, FramePictures):
+class Operations(SailenvNames, WorldOperations, ModelOperations, SceneTables, FramePictures):
     """Every operation; what `Simulation` and `Agent` have in common."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,12 +12,10 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
+from sailenv_ros.operations.targets import HasSpace
 from sailenv_ros.space import FreeSpace, RayCast
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.validation import checked_integer, vector
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["SpaceOperations"]
 
@@ -82,7 +80,7 @@ class SpaceOperations(Caller):
     @operation(**_BODY)
     @staticmethod
     def free_space(
-        core: SimulationCore,
+        core: HasSpace,
         height_m: float = 1.8,
         radius_m: float = 0.25,
         *,
@@ -122,7 +120,7 @@ class SpaceOperations(Caller):
     @operation(start=_place, goal=_place, **_BODY)
     @staticmethod
     def find_path(
-        core: SimulationCore,
+        core: HasSpace,
         start: ArrayLike,
         goal: ArrayLike,
         height_m: float = 1.8,
@@ -166,7 +164,7 @@ class SpaceOperations(Caller):
     )
     @staticmethod
     def random_pose(
-        core: SimulationCore,
+        core: HasSpace,
         name: str = "",
         height_m: float = 1.8,
         radius_m: float = 0.25,
@@ -215,7 +213,7 @@ class SpaceOperations(Caller):
     @operation(origins=_rays, directions=_directions, max_distance_m=_reach)
     @staticmethod
     def cast_rays(
-        core: SimulationCore,
+        core: HasSpace,
         origins: ArrayLike,
         directions: ArrayLike,
         *,

@@ -7,13 +7,14 @@ was drawn is kept as a record, from which the same can be made again.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sailenv_ros.assets.arranging import arranged
+from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import light_named
@@ -22,11 +23,10 @@ from sailenv_ros.scene.randomise.random_values import sampled
 from sailenv_ros.scene.randomise.thing import RandomTargets, Thing, Values
 from sailenv_ros.scene.serialisation import PLACE_KEYS
 from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
-from sailenv_ros.simulation.material_edits import set_material
-from sailenv_ros.simulation.rule_places import agent_specs, placed_by_rules
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.editor import SceneEditor
+from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.simulation.rule_places import placed_by_rules
+from sailenv_ros.viewpoints import ViewScene
 
 __all__ = ["Chance", "Randomiser"]
 
@@ -56,14 +56,29 @@ class Chance:
 class Randomiser:
     """What is drawn at random in one simulation.
 
+    Parameters
+    ----------
+    scene : LiveScene
+    editor : SceneEditor
+        Of that scene.
+    view_scene : callable
+        Returns the scene as it stands now, as a lens sees it.
+
     Attributes
     ----------
     chance : Chance
         Of the present epoch.
     """
 
-    def __init__(self, core: SimulationCore) -> None:
-        self._core = core
+    def __init__(
+        self,
+        scene: LiveScene,
+        editor: SceneEditor,
+        view_scene: Callable[[CameraIntrinsics], ViewScene],
+    ) -> None:
+        self._scene = scene
+        self._editor = editor
+        self._view_scene = view_scene
         self.chance = Chance()
         self._things: tuple[Thing, ...] = ()
         self._epoch: Values = {}
@@ -73,7 +88,7 @@ class Randomiser:
     def begin(self, chance: Chance) -> None:
         """Draw what is drawn for an epoch, and change the world that has just been built."""
         self.chance = chance
-        described = self._core.world.described
+        described = self._scene.world.described
         of_scene = () if described is None else described.randomise
         self._things = of_scene if chance.things is None else chance.things
         self._frame, self._drawn_at = {}, None
@@ -81,11 +96,11 @@ class Randomiser:
             self._epoch = dict(chance.record.get("epoch", {}))
         else:
             self._epoch = self._sampled("epoch", 0)
-        with self._core.announced_once():
+        with self._scene.announce.once():
             self._change_objects(self._epoch)
             self._change_looks(self._epoch)
         # A rule looks at the scene as it was drawn.
-        self._epoch = placed_by_rules(self._epoch, self._core)
+        self._epoch = self._placed(self._epoch)
 
     def place_cameras(self) -> None:
         """Put the agents where the epoch has drawn them; those that come later stay."""
@@ -93,16 +108,16 @@ class Randomiser:
 
     def before_frame(self) -> None:
         """Draw what is drawn for each instant that is rendered, once."""
-        step = self._core.world.step_count
+        step = self._scene.world.step_count
         if self._drawn_at == step or not self._is_drawn_for_frames:
             return
         record = self.chance.record
         self._frame = (
             dict(record.get("frame", {})) if record is not None else self._sampled("frame", step)
         )
-        with self._core.announced_once():
+        with self._scene.announce.once():
             self._change_looks(self._frame)
-            self._frame = placed_by_rules(self._frame, self._core)
+            self._frame = self._placed(self._frame)
             self._change_cameras(self._frame)
         self._drawn_at = step
 
@@ -112,9 +127,9 @@ class Randomiser:
         if not self._epoch and not self._frame:
             return None
         return {
-            "seed": self._core.seed,
+            "seed": self._scene.seed,
             "index": self.chance.index,
-            "step": self._core.world.step_count,
+            "step": self._scene.world.step_count,
             "epoch": self._epoch,
             "frame": self._frame,
         }
@@ -136,7 +151,7 @@ class Randomiser:
                 record=_record(record),
             )
         chosen = self.chance.things if things is None else self._checked(things)
-        described = self._core.world.described
+        described = self._scene.world.described
         if not (chosen or (described is not None and described.randomise)):
             raise InvalidState(
                 "the scene has nothing under randomise; say what is to be drawn by things"
@@ -164,37 +179,40 @@ class Randomiser:
         return sampled(
             self._things,
             self._targets(),
-            seed=self._core.seed,
+            seed=self._scene.seed,
             index=self.chance.index,
             every=every,
             step=step,
         )
 
+    def _placed(self, values: Values) -> Values:
+        return placed_by_rules(values, self._scene.agent_specs, self._view_scene)
+
     def _targets(self) -> RandomTargets:
-        core, described = self._core, self._core.world.described
+        scene, described = self._scene, self._scene.world.described
         objects = () if described is None else tuple(entry.name for entry in described.objects)
         lights = () if described is None else described.lights
-        surfaces = [b.placement.name for b in core.world.bodies if b.placement.entry is None]
+        surfaces = [b.placement.name for b in scene.world.bodies if b.placement.entry is None]
         return RandomTargets(
             objects=objects,
             surfaces=tuple(surfaces),
-            agents=tuple(agent_specs(core)),
+            agents=tuple(scene.agent_specs),
             lights={light.name: light.to_light().position_m for light in lights},
         )
 
     def _checked(self, things: object) -> tuple[Thing, ...]:
-        described = self._core.world.described
+        described = self._scene.world.described
         assert described is not None
         data = described.model_dump(mode="json", exclude_unset=True, exclude={"name"})
         data["randomise"] = plain_value(things)
-        known = self._core.library.knowledge_of(self._core.world.scene)
+        known = self._scene.library.knowledge_of(self._scene.world.scene)
         return checked_scene(data, known, what="things").randomise
 
     # -- what is changed -------------------------------------------------------------------
 
     def _change_objects(self, values: Values) -> None:
         drawn: Mapping[str, Mapping[str, Any]] = values.get("objects", {})
-        world = self._core.world
+        world = self._scene.world
         if drawn:
             assert world.described is not None
             self._arrange(world.described, drawn)
@@ -202,11 +220,11 @@ class Randomiser:
             place = {key: value for key, value in entry.items() if key != "orientation"}
             pose = Pose(tuple(entry["position"]), tuple(entry["orientation"]))
             del place["position"]
-            self._core.editor.spawn(place, pose)
+            self._editor.spawn(place, pose)
 
     def _arrange(self, spec: SceneSpec, drawn: Mapping[str, Mapping[str, Any]]) -> None:
         """Bring objects to where a file would put them that says what was drawn."""
-        core, world, library = self._core, self._core.world, self._core.library
+        world, library = self._scene.world, self._scene.library
         absent = {name for name, keys in drawn.items() if keys.get("there") is False}
         entries: list[ObjectSpec] = []
         for entry in _carriers_first(spec.objects):
@@ -235,11 +253,11 @@ class Randomiser:
                 keys = entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS})
                 place = {"position": pose.position_m, "orientation": pose.orientation_xyzw}
                 world.spawn(
-                    library.placement({**keys, **place}, world, seed=core.seed, start_s=0.0)
+                    library.placement({**keys, **place}, world, seed=self._scene.seed, start_s=0.0)
                 )
                 continue
             if entry.scale != begun[entry.name].scale:
-                core.editor.change_object(number, {"scale": entry.scale})
+                self._editor.change_object(number, {"scale": entry.scale})
             if not np.allclose(pose.matrix(), world.body(number).entry_pose.matrix(), atol=1e-12):
                 world.put_body(number, pose, teleport=True)
 
@@ -247,13 +265,13 @@ class Randomiser:
         self, number: int, entry: ObjectSpec, begun: ObjectSpec, pose: Pose
     ) -> None:
         """Let an object that waits enter as it was drawn."""
-        core, world = self._core, self._core.world
+        scene, world = self._scene, self._scene.world
         placement = world.waiting[number]
         if entry.asset != begun.asset or entry.scale != begun.scale:
             keys = entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, "appear", "leave"})
             place = {"position": pose.position_m, "orientation": pose.orientation_xyzw}
-            drawn = core.library.placement(
-                {**keys, **place, "scale": entry.scale}, world, seed=core.seed, start_s=0.0
+            drawn = scene.library.placement(
+                {**keys, **place, "scale": entry.scale}, world, seed=scene.seed, start_s=0.0
             )
             placement = replace(drawn, entry=entry)
         elif np.allclose(pose.matrix(), placement.pose.matrix(), atol=1e-12):
@@ -262,19 +280,19 @@ class Randomiser:
 
     def dress(self, number: int) -> None:
         """Apply the looks that were drawn for an object that has just entered."""
-        name = self._core.world.body(number).placement.name
+        name = self._scene.world.body(number).placement.name
         for values in (self._epoch, self._frame):
             for part, keys in values.get("materials", {}).get(name, {}).items():
                 if keys:
-                    set_material(self._core, number, part, keys)
+                    self._editor.set_material(number, part, keys)
 
     def _change_looks(self, values: Values) -> None:
-        core, world = self._core, self._core.world
+        world = self._scene.world
         names = {body.placement.name: number for number, body in world.numbered_bodies}
         for name, parts in values.get("materials", {}).items():
             for part, keys in parts.items():
                 if name in names and keys:
-                    set_material(core, names[name], part, keys)
+                    self._editor.set_material(names[name], part, keys)
         drawn: Mapping[str, Mapping[str, Any]] = values.get("lights", {})
         if drawn:
             lights = list(world.contents.lights)
@@ -284,26 +302,26 @@ class Randomiser:
                     after = replace(before, **{k: _tuple(v) for k, v in keys.items()})
                     lights[lights.index(before)] = after
             world.set_lights(lights)
-            core.announce()
+            self._scene.announce()
         if values.get("environment"):
-            core.editor.change_environment(values["environment"])
+            self._editor.change_environment(values["environment"])
 
     def _change_cameras(self, values: Values) -> None:
-        core = self._core
-        present = {record.spec.name: record for record in core.agents}
+        agents = self._scene.agents
+        present = {record.spec.name: record for record in agents}
         for name, keys in values.get("agents", {}).items():
             if name not in present:
                 continue
             spec = present[name].spec
             if "position" in keys:
-                core.agents.put(name, _camera_pose(keys), core.world, teleport=True)
+                agents.put(name, _camera_pose(keys), self._scene.world, teleport=True)
             if "vertical_fov" in keys:
                 lens = replace(spec.intrinsics, vertical_fov_deg=keys["vertical_fov"])
-                core.agents.set_intrinsics(name, lens)
+                agents.set_intrinsics(name, lens)
             picture = {key: keys[key] for key in _PICTURE if key in keys}
             if picture:
-                core.agents.set_picture(name, spec.picture.changed(picture))
-            core.announce()
+                agents.set_picture(name, spec.picture.changed(picture))
+            self._scene.announce()
 
 
 def _with_drawn(entry: ObjectSpec, keys: Mapping[str, Any]) -> ObjectSpec:

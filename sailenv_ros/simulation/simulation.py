@@ -224,7 +224,7 @@ class Simulation(Operations):
     @property
     def skipped_frames(self) -> int:
         """How many frames were never rendered because the wall clock was ahead; never blocks."""
-        return 0 if self._core is None else self._core.skipped_frames
+        return 0 if self._core is None else self._core.streams.skipped_frames
 
     @property
     def closed(self) -> bool:
@@ -243,11 +243,10 @@ class Simulation(Operations):
         SimulationClosed
             If the simulation has ended.
         """
-        args, kwargs = arguments.args, arguments.kwargs
         if operation.background:
-            future: Future[Any] = operation.run(self._workers, *args, **kwargs)
+            future: Future[Any] = operation.run(self._workers, *arguments.args, **arguments.kwargs)
             return future
-        return self._submit(lambda core: operation.run(core, *args, **kwargs))
+        return self._submit(lambda core: operation.carry_out(core, arguments))
 
     def frames(
         self, rate_hz: float = 30.0, *, agent: str | None = None, timeout_s: float = 30.0
@@ -380,7 +379,7 @@ class Simulation(Operations):
         self._core = core
         core.on_info, core.on_step = self._take_info, self._take_step
         core.on_free_space = self._take_map
-        core.run_later = self._run_in_loop
+        core.frames.run_later = self._run_in_loop
         self._take_info(core.info)
         why = "it was closed"
         self._pacer.restart(core.world.step_count)
@@ -418,7 +417,7 @@ class Simulation(Operations):
             if target > core.world.step_count:
                 core.advance_to(target, every_frame=False)
         else:
-            core.render_due()
+            core.streams.render_due()
 
     def _rest(self, core: SimulationCore) -> None:
         """Wait until there is something to do."""
@@ -428,7 +427,7 @@ class Simulation(Operations):
             if not core.clock.runs_by_itself:
                 self._wake.wait()
                 return
-            due = core.next_due_step()
+            due = core.streams.next_due_step()
             goal = core.world.step_count + TICK_STEPS
             self._wake.wait(self._pacer.wait_s(goal if due is None else min(goal, due)))
 

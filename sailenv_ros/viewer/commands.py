@@ -16,7 +16,7 @@ from sailenv_ros.camera import CameraIntrinsics
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.geometry import Pose
 from sailenv_ros.operations import Operations
-from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.viewer.chance_commands import CHANCE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.joint_commands import JOINT_COMMANDS

@@ -13,12 +13,10 @@ from typing import ParamSpec, Protocol, TypeAlias, TypeVar
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.operations import Operation
 from sailenv_ros.scene_info import SceneInfo
-from sailenv_ros.simulation.edit_records import (
-    EditOperations,
-    ObjectRecord,
-    SurroundingsRecord,
-)
-from sailenv_ros.simulation.room_edits import RoomOperations, RoomRecord
+from sailenv_ros.simulation.edit_operations import EditOperations
+from sailenv_ros.simulation.edit_records import ObjectRecord, SurroundingsRecord
+from sailenv_ros.simulation.room_edits import RoomRecord
+from sailenv_ros.simulation.room_operations import RoomOperations
 
 __all__ = ["EditHistory", "EditStep", "Record"]
 

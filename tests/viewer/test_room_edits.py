@@ -14,7 +14,7 @@ from playwright.sync_api import Browser, expect
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken
 from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.room_edits import RoomOperations
+from sailenv_ros.simulation.room_operations import RoomOperations
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium
 from tests.viewer.test_undo import in_a_loop, page_of

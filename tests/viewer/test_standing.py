@@ -9,7 +9,7 @@ from sailenv_ros.assets import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.geometry import Pose
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.simulation.edit_operations import EditOperations
 
 EMPTY = """
 version: 1

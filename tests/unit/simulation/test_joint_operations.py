@@ -14,7 +14,7 @@ import yaml
 from sailenv_ros import Simulation
 from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
 from sailenv_ros.geometry import Pose
-from sailenv_ros.simulation.edit_records import EditOperations
+from sailenv_ros.simulation.edit_operations import EditOperations
 from tests.support.plain_doors import SCENE
 
 
