@@ -12,7 +12,7 @@ from sailenv_ros.errors import UnknownName
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.operations.targets import HasEditor, HasWorld
-from sailenv_ros.scene.changes import EnvironmentChanges
+from sailenv_ros.scene.requested_changes import EnvironmentChanges
 from sailenv_ros.validation import vector
 
 __all__ = ["EnvironmentOperations"]

@@ -15,7 +15,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.operations.targets import HasEditor, HasLibrary
-from sailenv_ros.scene.changes import MaterialChanges
+from sailenv_ros.scene.requested_changes import MaterialChanges
 
 __all__ = ["MaterialOperations"]
 

@@ -17,7 +17,7 @@ from sailenv_ros.objects import ObjectState
 from sailenv_ros.operations import argument_checks as check
 from sailenv_ros.operations.operation import Caller, operation
 from sailenv_ros.operations.targets import BeginsScenes, HasEditor, HasLibrary, HasWorld
-from sailenv_ros.scene.changes import ObjectChanges
+from sailenv_ros.scene.requested_changes import ObjectChanges
 from sailenv_ros.validation import checked_flag, checked_number, vector
 
 __all__ = ["ObjectOperations"]

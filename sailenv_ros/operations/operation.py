@@ -206,7 +206,8 @@ def _keywords_of(function: Callable[..., Any]) -> Mapping[str, str]:
     for parameter in inspect.signature(function).parameters.values():
         if parameter.kind is inspect.Parameter.VAR_KEYWORD:
             declared = inspect.get_annotations(function, eval_str=True)[parameter.name]
-            if get_origin(declared) is Unpack:
+            origin: Any = get_origin(declared)
+            if origin is Unpack:
                 (keys,) = get_args(declared)
                 types = keys.__annotations__.items()
                 return MappingProxyType({k: getattr(t, "__forward_arg__", t) for k, t in types})

@@ -25,6 +25,7 @@ from sailenv_ros.operations.sailenv_names import SailenvNames
 from sailenv_ros.operations.saving_operations import SavingOperations
 from sailenv_ros.operations.scene_tables import SceneTables
 from sailenv_ros.operations.space_operations import SpaceOperations
+from sailenv_ros.operations.viewpoint_operations import ViewpointOperations
 
 __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 
@@ -40,6 +41,7 @@ class WorldOperations(
     MoverOperations,
     BodyOperations,
     SpaceOperations,
+    ViewpointOperations,
     SavingOperations,
     ClockOperations,
     ChanceOperations,

@@ -18,12 +18,13 @@ from sailenv_ros.camera import Camera, CameraIntrinsics
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.scene_info import MoverInfo, SceneInfo, TimeMode
+from sailenv_ros.scene_info import SceneInfo, TimeMode
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editor import SceneEditor
 from sailenv_ros.simulation.frame_maker import FrameMaker
 from sailenv_ros.simulation.frame_stream import FrameStream
+from sailenv_ros.simulation.live_info import scene_info_of
 from sailenv_ros.simulation.live_scene import LiveScene, SceneAnnouncer
 from sailenv_ros.simulation.orchestrator import Orchestrator
 from sailenv_ros.simulation.present_scene import PresentScene
@@ -148,36 +149,11 @@ class SimulationCore:
     @property
     def info(self) -> SceneInfo:
         """The scene as clients see it; a new object with the present revision."""
-        contents = self.world.contents
-        return SceneInfo(
-            scene=self.world.scene,
-            scenes=self.library.scene_names,
+        return scene_info_of(
+            self.scene,
+            self.clock,
             epoch=self.epoch,
             revision=self._revision,
-            sim_time_ns=self.world.sim_time_ns,
-            mode=self.clock.mode,
-            paused=self.clock.paused,
-            real_time_factor=self.clock.real_time_factor,
-            seed=self.seed,
-            categories=contents.categories,
-            instances=tuple(drawn.instance for drawn in contents.instances),
-            moving=self.world.moving_ids,
-            spawnables=self.library.spawnables,
-            lights=contents.lights,
-            environment=contents.environment,
-            agents=self.agents.specs,
-            movers=tuple(
-                MoverInfo(
-                    name=mover.name,
-                    controller=mover.controller,
-                    waypoints=mover.waypoints,
-                    total_time_s=mover.total_time_s,
-                    loop=mover.loop,
-                    body=None if mover.body is None else mover.body.rigid,
-                    look_at=mover.look_at,
-                )
-                for mover in self.world.movers.values()
-            ),
             renderer=self.frames.description,
         )
 

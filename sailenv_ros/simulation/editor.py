@@ -14,8 +14,8 @@ from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.geometry import Pose
 from sailenv_ros.model import Asset
-from sailenv_ros.scene.changes import ObjectChanges
 from sailenv_ros.scene.entries import checked_scene, free_name, plain_value
+from sailenv_ros.scene.requested_changes import ObjectChanges
 from sailenv_ros.scene.serialisation import MOTION_KEYS, PLACE_KEYS
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.simulation.live_scene import LiveScene
@@ -50,10 +50,11 @@ class SceneEditor:
         return free_name(self.scene.library.canonical_asset(asset), taken)
 
     def spawn(self, entry: Mapping[str, Any], pose: Pose) -> int:
-        """Add an object with the keys of a scene file at a pose; return its instance id."""
+        """Add an object with keys of a scene file, but for its place; return its instance id."""
         world = self.scene.world
         placement = self.scene.library.placement(
-            {**entry, **_place(pose)},
+            entry,
+            pose,
             world,
             seed=self.scene.seed,
             start_s=self.scene.now_s,
@@ -78,7 +79,8 @@ class SceneEditor:
         if changes.get("materials", ()) is None:
             changes = {**changes, "materials": ()}
         placement = self.scene.library.placement(
-            {**entry_without_place(present), **_place_of(body, present), **changes},
+            {**entry_without_place(present), **changes},
+            _pose_of(body, present),
             world,
             seed=self.scene.seed,
             start_s=0.0,
@@ -184,10 +186,6 @@ def entry_without_place(entry: ObjectSpec) -> dict[str, Any]:
     return entry.model_dump(exclude_unset=True, exclude={*PLACE_KEYS, *MOTION_KEYS})
 
 
-def _place_of(body: Body, entry: ObjectSpec) -> dict[str, Any]:
+def _pose_of(body: Body, entry: ObjectSpec) -> Pose:
     """Return where a body is; of one on a joint, where it is while the joint's position is 0."""
-    return _place(body.pose() if entry.joint is None else entry.pose)
-
-
-def _place(pose: Pose) -> dict[str, Any]:
-    return {"position": pose.position_m, "orientation": pose.orientation_xyzw}
+    return body.pose() if entry.joint is None else entry.pose

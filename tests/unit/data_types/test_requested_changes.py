@@ -11,7 +11,7 @@ import pytest
 from sailenv_ros.lights import Light, LightAttributes, LightChanges
 from sailenv_ros.operations import Operations
 from sailenv_ros.picture_settings import PictureChanges, PictureSettings
-from sailenv_ros.scene.changes import EnvironmentChanges, MaterialChanges, ObjectChanges
+from sailenv_ros.scene.requested_changes import EnvironmentChanges, MaterialChanges, ObjectChanges
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec
 from sailenv_ros.scene.spec_materials import MaterialSpec
 
