@@ -86,7 +86,7 @@ def _lockstep(args: argparse.Namespace, output: Path, options: RecordingOptions)
     from sailenv_ros.recording.lockstep import record_lockstep
     from sailenv_ros.recording.writer import RecordingWriter, check_free
     from sailenv_ros.simulation import Simulation
-    from sailenv_ros.simulation.scenes import default_scene
+    from sailenv_ros.simulation.first_scene import default_scene
     from sailenv_ros.types.agents import AgentSpec
     from sailenv_ros.types.camera import CameraIntrinsics
 

@@ -163,6 +163,11 @@ class ObjectSpec(Turned):
         """Initial pose."""
         return self.pose_at(self.position)
 
+    def placed(self, pose: Pose) -> ObjectSpec:
+        """Return the entry of the same object in free space at a pose."""
+        place = {"position": pose.position_m, "orientation": pose.orientation_xyzw}
+        return self.model_copy(update=place)
+
     @property
     def angular_velocity_rad_s(self) -> tuple[float, float, float]:
         """Initial angular velocity, about the world's axes [rad/s]."""

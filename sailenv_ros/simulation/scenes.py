@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from hashlib import blake2b
@@ -11,15 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.fit import ObjectFit
-from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.material_stock import MaterialStock
-from sailenv_ros.assets.own_pack import add_to_own_pack
-from sailenv_ros.assets.pack import PACK_FILE, AssetPack
-from sailenv_ros.assets.pictures import Pictures
-from sailenv_ros.assets.skies import sky_files
-from sailenv_ros.assets.sources import BUILD_COMMAND, installed_packs, installed_sources
+from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.authoring.generation.names import PREFIX as GENERATED
 from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
@@ -30,24 +23,26 @@ from sailenv_ros.behaviours import (
     refusing_behaviour_errors,
 )
 from sailenv_ros.behaviours.durations import lesson_errors
-from sailenv_ros.errors import InvalidState
 from sailenv_ros.light.bake.settings import BAKE_VERSION
 from sailenv_ros.scene.entries import (
     checked_lessons,
-    checked_object,
     checked_objects,
     checked_scene,
-    free_name,
 )
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.scene_catalogue import SceneCatalogue
 from sailenv_ros.scene.serialisation import light_entry
 from sailenv_ros.scene.spec import EnvironmentSpec, ObjectSpec, SceneSpec
 from sailenv_ros.scene.user_scenes import user_scene_folder
+from sailenv_ros.simulation.entry_checks import checked_alone, named_entries
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
+from sailenv_ros.simulation.open_packs import OpenPacks
+from sailenv_ros.simulation.scene_materials import SceneMaterials
 from sailenv_ros.simulation.script.scenario import NOTHING_MORE, Additions
+from sailenv_ros.simulation.uploaded_models import UploadedModels
 from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Asset, Model
@@ -55,31 +50,7 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
 
-__all__ = ["DEFAULT_SCENE", "SCENE_WITHOUT_FURNITURE", "SceneLibrary", "default_scene"]
-
-MAX_UPLOADS = 256
-"""Models that users may add, so that they cannot fill the memory without end."""
-
-DEFAULT_SCENE = "room_01"
-SCENE_WITHOUT_FURNITURE = "optical"
-
-_log = logging.getLogger(__name__)
-
-
-def default_scene() -> str:
-    """Return the scene to begin with if none is asked for.
-
-    `DEFAULT_SCENE`, or one without furniture where that has not been built, with a warning.
-    """
-    if any(pack.folder == standard_pack_folder() for pack in installed_packs()):
-        return DEFAULT_SCENE
-    _log.warning(
-        "beginning with the scene %s, because %s needs the furniture; fetch it with: %s",
-        SCENE_WITHOUT_FURNITURE,
-        DEFAULT_SCENE,
-        BUILD_COMMAND,
-    )
-    return SCENE_WITHOUT_FURNITURE
+__all__ = ["SceneLibrary"]
 
 
 class SceneLibrary:
@@ -113,16 +84,14 @@ class SceneLibrary:
         self._allow_modules = allow_modules
         self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
-        self._open_packs()
-        self._assets = AssetLibrary(installed_sources(self._packs))
+        self._packs = OpenPacks()
+        self._assets = AssetLibrary(self._packs.sources())
         self._light_cache = LightCache(wanted=baked_light, drafts=drafts, required=require_light)
         self._generated = GeneratedScenes(self._assets)
-        self._uploads = 0
-        self._uploaded: set[str] = set()
-        self._unkept: set[str] = set()
+        self._uploads = UploadedModels(self._assets)
         self._files: dict[str, Path] = {}
-        self._scene_folders: dict[str, Path] = {}
-        self.pictures = Pictures()
+        self._materials = SceneMaterials(self._assets, self._own_folder)
+        self.pictures = self._materials.pictures
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
 
     @property
@@ -144,8 +113,7 @@ class SceneLibrary:
     @cached_property
     def categories(self) -> CategoryTable:
         """The fixed table, and what the packs add to it."""
-        added = [entry.to_category() for pack in self._packs for entry in pack.content.categories]
-        return CategoryTable([*load_categories().values(), *added])
+        return self._packs.categories()
 
     @property
     def knowledge(self) -> SceneKnowledge:
@@ -158,7 +126,7 @@ class SceneLibrary:
             lesson_errors=lesson_errors,
             camera_errors=rule_errors,
             surfaces=surface_names(),
-            skies=tuple(self._skies),
+            skies=tuple(self._packs.skies),
         )
 
     @property
@@ -183,7 +151,7 @@ class SceneLibrary:
             If its file has errors.
         """
         path = self.path(scene)
-        known = self._with_materials(self.knowledge, self._stock_beside(path))
+        known = self._with_materials(self.knowledge, self._materials.beside(path))
         return load_scene(path, knowledge=known)
 
     def build(
@@ -200,14 +168,14 @@ class SceneLibrary:
         Uses the furniture that is built by now. See `load`, `scene.entries.checked_objects` and
         `world.build.build_world` for errors.
         """
-        if _standard_pack_version() != self._pack_version:
+        if not self._packs.are_newest:
             self.refresh()
         path = self.path(scene)
-        known = self._with_materials(self._knowledge_to_build, self._stock_beside(path))
+        known = self._with_materials(self._knowledge_to_build, self._materials.beside(path))
         spec = load_scene(path, knowledge=known)
-        self._scene_folders[spec.name] = path.absolute().parent
+        self._materials.note(spec.name, path)
         spec = spec.model_copy(
-            update={"objects": (*spec.objects, *self._described(more.objects, spec))}
+            update={"objects": (*spec.objects, *self._added(more.objects, spec))}
         )
         if more.lessons is not None:
             lessons = checked_lessons(more.lessons, spec.objects, known)
@@ -219,7 +187,7 @@ class SceneLibrary:
             seed=seed,
             epoch=epoch,
             next_revision=next_revision,
-            skies=self._skies,
+            skies=self._packs.skies,
             materials=self.materials_of(spec.name),
         )
         try:
@@ -234,8 +202,8 @@ class SceneLibrary:
 
     def refresh(self) -> None:
         """Take up what was built since this was made: furniture, skies and the user's packs."""
-        self._open_packs()
-        self._assets.renew(installed_sources(self._packs))
+        self._packs = OpenPacks()
+        self._assets.renew(self._packs.sources())
 
     def load_light(self, world: World) -> None:
         """Load the light that was baked since a world was built, if there is any."""
@@ -253,7 +221,7 @@ class SceneLibrary:
         digest = blake2b(digest_size=16)
         path = self.path(scene)
         digest.update(f"{path} {BAKE_VERSION}".encode())
-        files = [path, *(pack.folder / PACK_FILE for pack in self._packs)]
+        files = [path, *self._packs.files]
         for file in files:
             if file.is_file():
                 digest.update(file.read_bytes())
@@ -274,7 +242,7 @@ class SceneLibrary:
         source = self._assets.source(name)
         if isinstance(source, AssetPack):
             return source.fingerprint(name)
-        return "" if name in self._uploaded else "of the package itself"
+        return "" if name in self._uploads else "of the package itself"
 
     def peek_asset(self, name: str) -> Asset:
         """Return an asset without keeping one that no world needs; see `AssetLibrary.get`."""
@@ -299,31 +267,19 @@ class SceneLibrary:
         InvalidRequest
             If there are `MAX_UPLOADS` already.
         """
-        if self._uploads >= MAX_UPLOADS:
-            raise InvalidState(
-                f"{MAX_UPLOADS} models have been uploaded, which is the most in a simulator's life"
-            )
-        taken = {*self._assets.all_names}
-        names = ((asset.name, asset.display_name), *_numbered(asset)) if rename else ()
-        for name, display_name in names:
-            if not taken & {name, display_name}:
-                asset = replace(asset, name=name, display_name=display_name)
-                break
-        self._assets.add(asset)
-        self._uploads += 1
-        self._uploaded.add(asset.name)
-        self._unkept.add(asset.name)
-        return asset.name
+        return self._uploads.add(asset, rename=rename)
 
     def placement(
-        self, entry: Mapping[str, Any], world: World, *, seed: int, start_s: float
+        self, entry: Mapping[str, Any], pose: Pose, world: World, *, seed: int, start_s: float
     ) -> Placement:
         """Check an object's description and make of it what a world can spawn.
 
         Parameters
         ----------
         entry : mapping
-            With the keys of an object in a scene file.
+            With the keys of an object in a scene file, but for those of its place.
+        pose : Pose
+            Where it stands.
         world : World
             Its categories are those that the entry may name.
         seed : int
@@ -339,11 +295,11 @@ class SceneLibrary:
         names = tuple(category.name for category in world.categories.values())
         stock = self.materials_of(world.scene)
         known = replace(self._knowledge_of_strangers, categories=names)
-        spec = _checked_alone(entry, self._with_materials(known, stock))
+        spec = checked_alone(entry, self._with_materials(known, stock)).placed(pose)
         return make_placement(
             spec,
             self._assets.get(spec.asset),
-            spec.pose,
+            pose,
             world.categories,
             seed,
             start_s=start_s,
@@ -356,7 +312,7 @@ class SceneLibrary:
 
     def materials_of(self, scene: str) -> MaterialStock:
         """Return where the materials of a scene that was built come from."""
-        return MaterialStock(self._assets, self.pictures, self._picture_folders(scene))
+        return self._materials.of(scene)
 
     def picture_content(self, picture: str, scene: str) -> bytes:
         """Return the bytes of a picture that a scene shows.
@@ -366,7 +322,7 @@ class SceneLibrary:
         AssetError
             If it is there no more.
         """
-        return self.pictures.content(picture, self._picture_folders(scene))
+        return self._materials.picture_content(picture, scene)
 
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Return the agents that a scene that was built brings along."""
@@ -379,7 +335,7 @@ class SceneLibrary:
 
     def is_uploaded(self, asset: str) -> bool:
         """Return whether an asset's model lies in no pack, so that a scene file cannot name it."""
-        return asset in self._unkept
+        return self._uploads.is_unkept(asset)
 
     def keep_model(self, asset: str) -> None:
         """Put an uploaded model into the user's own pack, so that scene files can name it.
@@ -389,8 +345,7 @@ class SceneLibrary:
         NameTaken, AssetError
             If the pack cannot take it.
         """
-        add_to_own_pack(self._assets.get(asset), source="uploaded to a running simulator")
-        self._unkept.discard(asset)
+        self._uploads.keep(asset)
 
     def path(self, scene: str | Path) -> Path:
         """Find a scene's file; see `load`.
@@ -410,7 +365,7 @@ class SceneLibrary:
         UnknownName, AssetError
             If there is no such sky, or it cannot be read.
         """
-        return make_environment(spec, self._skies)
+        return make_environment(spec, self._packs.skies)
 
     def check_lights(self, lights: Iterable[Light]) -> None:
         """Check that a scene file can describe these lights: names, ranges, number.
@@ -424,21 +379,6 @@ class SceneLibrary:
 
     # -- inside ----------------------------------------------------------------------------
 
-    def _open_packs(self) -> None:
-        self._pack_version = _standard_pack_version()
-        self._packs = installed_packs()
-        self._skies = sky_files(pack.folder for pack in self._packs)
-
-    def _picture_folders(self, scene: str) -> tuple[Path, ...]:
-        """Return where pictures of a scene that was built lie: beside it, or beside saved ones."""
-        beside = self._scene_folders.get(scene)
-        return tuple(dict.fromkeys((beside or self._own_folder, self._own_folder)))
-
-    def _stock_beside(self, path: Path) -> MaterialStock:
-        return MaterialStock(
-            self._assets, self.pictures, (path.absolute().parent, self._own_folder)
-        )
-
     def _with_materials(self, known: SceneKnowledge, stock: MaterialStock) -> SceneKnowledge:
         return replace(known, material_fault=stock.fault, picture_fault=stock.picture_fault)
 
@@ -446,44 +386,11 @@ class SceneLibrary:
         if world.described is not None and world.described.room is not None:
             self._light_cache.apply(world, scene)
 
-    def _described(
-        self, more: Sequence[Mapping[str, Any]], spec: SceneSpec
+    def _added(
+        self, entries: Sequence[Mapping[str, Any]], spec: SceneSpec
     ) -> tuple[ObjectSpec, ...]:
         """Check objects that come on top of a scene's; those without a name are given one."""
-        taken = {entry.name for entry in spec.objects}
-        named: list[Mapping[str, Any]] = []
-        for entry in more:
-            if isinstance(entry, Mapping) and entry.get("name") is None:
-                asset = self.canonical_asset(str(entry.get("asset")))
-                entry = {**entry, "name": free_name(asset, taken)}
-            if isinstance(entry, Mapping):
-                taken.add(str(entry["name"]))
-            named.append(entry)
+        named = named_entries(entries, (entry.name for entry in spec.objects), self.canonical_asset)
         own = tuple(category.name for category in spec.categories)
         known = self._with_materials(self._knowledge_of_strangers, self.materials_of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))
-
-
-def _checked_alone(entry: Mapping[str, Any], known: SceneKnowledge) -> ObjectSpec:
-    """Check an object beside which there are others: what its joint is on, the world knows."""
-    joint = entry.get("joint") if isinstance(entry, Mapping) else None
-    parent = joint.get("parent") if isinstance(joint, Mapping) else None
-    if not isinstance(parent, str) or parent == entry.get("name"):
-        return checked_object(entry, known)
-    stands_in = {"name": parent, "asset": entry.get("asset"), "static": True}
-    return checked_objects([entry, stands_in], known)[0]
-
-
-def _standard_pack_version() -> tuple[int, int]:
-    """Return what changes when the standard pack is built; zeros where there is none."""
-    try:
-        status = (standard_pack_folder() / PACK_FILE).stat()
-    except OSError:
-        return 0, 0
-    return status.st_mtime_ns, status.st_ino
-
-
-def _numbered(asset: Asset) -> Iterator[tuple[str, str]]:
-    """Yield the asset's names with 2, 3, … at their end; more than there can be uploads."""
-    for number in range(2, MAX_UPLOADS + 2):
-        yield f"{asset.name}_{number}", f"{asset.display_name} {number}"

@@ -1,37 +1,34 @@
 """The simulation as its clients use it: one loop thread, operations as futures, frame streams.
 
-The composition root without ROS. One thread owns PyBullet and the GL context; every method here
-may be called from any thread. Operations are carried out between physics steps, in the order they
-came.
+The composition root without ROS; every method here may be called from any thread.
 """
 
 from __future__ import annotations
 
 import atexit
-import collections
 import contextlib
 import inspect
-import logging
-import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from sailenv_ros.errors import DeadlineExceeded, InvalidState, SailenvError, SimulationClosed
+from sailenv_ros.errors import InvalidState, SailenvError, SimulationClosed
 from sailenv_ros.frame.html import scene_html
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.render.selection import make_backend
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.first_scene import default_scene
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.light_cache import LightChoice
+from sailenv_ros.simulation.listeners import Listeners
+from sailenv_ros.simulation.loop import SimulationLoop
 from sailenv_ros.simulation.model_workers import ModelWorkers
 from sailenv_ros.simulation.models.thumbnails import Thumbnails
 from sailenv_ros.simulation.models.upload_queue import UploadQueue
 from sailenv_ros.simulation.operations import Operation, Operations
-from sailenv_ros.simulation.pacing import Pacer
-from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
+from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
@@ -40,20 +37,8 @@ from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.scene_info import SceneInfo, TimeMode
 from sailenv_ros.types.snapshot import SceneContents
-from sailenv_ros.world.world import World
 
 __all__ = ["Simulation"]
-
-_log = logging.getLogger(__name__)
-
-TICK_STEPS = 2
-"""Steps between two looks at the clock while no frame is due (120 per simulated second)."""
-
-_DRAW_TIMEOUT_S = 60.0
-_CLOSE_TIMEOUT_S = 10.0
-_START_TIMEOUT_S = 120.0
-
-T = TypeVar("T")
 
 
 class Simulation(Operations):
@@ -117,30 +102,22 @@ class Simulation(Operations):
         agent: AgentSpec | None = None,
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
-        self._wake = threading.Condition()
-        self._queue: collections.deque[tuple[Future[Any], Callable[[SimulationCore], Any]]] = (
-            collections.deque()
-        )
-        self._core: SimulationCore | None = None
-        self._closing = False
-        self._ended = ""
+        self._loop = loop = SimulationLoop()
         self._own_agent = None if agent is None else agent.name
         self._info: SceneInfo | None = None
         self._sim_time_ns = 0
-        self._info_listeners: list[Callable[[SceneInfo], None]] = []
-        self._step_listeners: list[Callable[[int], None]] = []
-        self._map_listeners: list[Callable[[FreeSpace], None]] = []
+        self._info_listeners = Listeners[SceneInfo]()
+        self._step_listeners = Listeners[int]()
+        self._map_listeners = Listeners[FreeSpace]()
         self.background_task = ""
-        self._pacer = Pacer(real_time_factor)
         self._workers = ModelWorkers(
             uploads=UploadQueue(
-                lambda asset, rename: self._submit(
+                lambda asset, rename: loop.submit(
                     lambda core: core.editor.add_model(asset, rename=rename)
                 )
             ),
-            thumbnails=Thumbnails(self._library, backend, render_device),
+            thumbnails=Thumbnails(lambda: self._core().library, backend, render_device),
         )
-        started: Future[None] = Future()
 
         def make_core() -> SimulationCore:
             renderer = make_backend(backend, render_device)
@@ -160,17 +137,13 @@ class Simulation(Operations):
                     real_time_factor=real_time_factor,
                     seed=seed,
                     paused=paused,
-                    should_end=lambda: self._closing,
+                    should_end=lambda: loop.closing,
                 )
             except BaseException:
                 renderer.close()
                 raise
 
-        self._thread = threading.Thread(
-            target=self._run, args=(make_core, started), name="sailenv-simulation", daemon=True
-        )
-        self._thread.start()
-        wait_for(started, "the simulation to start", _START_TIMEOUT_S)
+        loop.start(make_core, self._listen)
         # The loop thread is a daemon; GL objects and the engine want an orderly end all the same.
         atexit.register(self.close)
         if agent is not None:
@@ -201,7 +174,7 @@ class Simulation(Operations):
     @property
     def supported_views(self) -> tuple[str, ...]:
         """Views that the renderer can make, in the order of `frame.VIEWS`; never blocks."""
-        return () if self._core is None else self._core.supported_views
+        return () if self._loop.core is None else self._loop.core.supported_views
 
     @property
     def contents(self) -> SceneContents:
@@ -212,24 +185,22 @@ class Simulation(Operations):
         SimulationClosed
             If the simulation has ended.
         """
-        if self._core is None:
-            raise SimulationClosed("the simulation has ended")
-        return self._core.world.contents
+        return self._core().world.contents
 
     @property
     def lesson(self) -> LessonState | None:
         """Which lesson of which lap it is now, None if the scene has none; never blocks."""
-        return None if self._core is None else self._core.orchestrator.state
+        return None if self._loop.core is None else self._loop.core.orchestrator.state
 
     @property
     def skipped_frames(self) -> int:
         """How many frames were never rendered because the wall clock was ahead; never blocks."""
-        return 0 if self._core is None else self._core.skipped_frames
+        return 0 if self._loop.core is None else self._loop.core.streams.skipped_frames
 
     @property
     def closed(self) -> bool:
         """True once the simulation has ended or is ending."""
-        return self._closing
+        return self._loop.closing
 
     # -- operations ------------------------------------------------------------------------
 
@@ -243,11 +214,10 @@ class Simulation(Operations):
         SimulationClosed
             If the simulation has ended.
         """
-        args, kwargs = arguments.args, arguments.kwargs
         if operation.background:
-            future: Future[Any] = operation.run(self._workers, *args, **kwargs)
+            future: Future[Any] = operation.run(self._workers, *arguments.args, **arguments.kwargs)
             return future
-        return self._submit(lambda core: operation.run(core, *args, **kwargs))
+        return self._loop.submit(lambda core: operation.carry_out(core, arguments))
 
     def frames(
         self, rate_hz: float = 30.0, *, agent: str | None = None, timeout_s: float = 30.0
@@ -293,10 +263,7 @@ class Simulation(Operations):
         """Open a newest-wins stream of an agent's frames at its rate; close it after use."""
         wanted = tuple(views)
 
-        def changed(_: FrameStream) -> None:
-            self._nudge()
-
-        future = self._submit(lambda core: core.open_stream(agent, wanted, changed))
+        future = self._loop.submit(lambda core: core.open_stream(agent, wanted, self._changed))
         return wait_for(future, f"a stream of agent {agent!r}", timeout_s)
 
     def on_info(self, listener: Callable[[SceneInfo], None]) -> Callable[[], None]:
@@ -304,19 +271,17 @@ class Simulation(Operations):
 
         Changes are told from the loop thread, before any frame that depends on them.
         """
-        self._info_listeners.append(listener)
+        end = self._info_listeners.add(listener)
         listener(self.info)
-        return lambda: _discard(self._info_listeners, listener)
+        return end
 
     def on_step(self, listener: Callable[[int], None]) -> Callable[[], None]:
         """Have a quick function called with the simulated time [ns] after physics advanced."""
-        self._step_listeners.append(listener)
-        return lambda: _discard(self._step_listeners, listener)
+        return self._step_listeners.add(listener)
 
     def on_free_space(self, listener: Callable[[FreeSpace], None]) -> Callable[[], None]:
         """Have a quick function called with each map that `free_space` makes."""
-        self._map_listeners.append(listener)
-        return lambda: _discard(self._map_listeners, listener)
+        return self._map_listeners.add(listener)
 
     def contacts_of_steps(self, seconds: float) -> tuple[Contact, ...]:
         """Return what touched what in the last time [s]; for listeners of `on_step` alone.
@@ -326,9 +291,9 @@ class Simulation(Operations):
         InvalidState
             If it is called from another thread than theirs, which has the operation `contacts`.
         """
-        if self._core is None or threading.current_thread() is not self._thread:
+        if self._loop.core is None or not self._loop.is_mine:
             raise InvalidState("this is for listeners of on_step; others call contacts(seconds)")
-        return self._core.world.contacts(seconds)
+        return self._loop.core.world.contacts(seconds)
 
     def joints_now(self) -> tuple[JointState, ...]:
         """Return the states of all joints; for listeners of `on_step` alone.
@@ -338,24 +303,20 @@ class Simulation(Operations):
         InvalidState
             If it is called from another thread than theirs, which has the operation `get_joints`.
         """
-        if self._core is None or threading.current_thread() is not self._thread:
+        if self._loop.core is None or not self._loop.is_mine:
             raise InvalidState("this is for listeners of on_step; others call get_joints()")
-        return self._core.world.joints()
+        return self._loop.core.world.joints()
 
     def refresh(self) -> Future[None]:
         """Begin to take up furniture and baked light that were built since the start."""
-        return self._submit(lambda core: core.refresh())
+        return self._loop.submit(lambda core: core.refresh())
 
     def close(self) -> None:
         """End the simulation: break off what runs, free everything; a second call does nothing."""
-        self._closing = True
+        self._loop.closing = True
         self._workers.close()
-        self._nudge()
         atexit.unregister(self.close)
-        if threading.current_thread() is not self._thread:
-            self._thread.join(_CLOSE_TIMEOUT_S)
-            if self._thread.is_alive():
-                raise DeadlineExceeded("the simulation's thread to end", _CLOSE_TIMEOUT_S)
+        self._loop.close()
 
     def _repr_html_(self) -> str:
         """Return a table of what is simulated, for notebooks."""
@@ -367,127 +328,23 @@ class Simulation(Operations):
     def __exit__(self, *exc: object) -> None:
         self.close()
 
-    # -- the loop --------------------------------------------------------------------------
-
-    def _run(self, make_core: Callable[[], SimulationCore], started: Future[None]) -> None:
-        try:
-            core = make_core()
-        except BaseException as error:
-            self._closing = True
-            self._ended = str(error)
-            started.set_exception(error)
-            return
-        self._core = core
+    def _listen(self, core: SimulationCore) -> None:
         core.on_info, core.on_step = self._take_info, self._take_step
-        core.on_free_space = self._take_map
-        core.run_later = self._run_in_loop
+        core.on_free_space = self._map_listeners
         self._take_info(core.info)
-        why = "it was closed"
-        self._pacer.restart(core.world.step_count)
-        started.set_result(None)
-        try:
-            while not self._closing:
-                self._serve(core)
-                self._advance(core)
-                self._rest(core)
-        except Exception as error:
-            why = f"{type(error).__name__}: {error}"
-            _log.exception("the simulation ends because of an internal error")
-        finally:
-            self._end(core, why)
-
-    def _serve(self, core: SimulationCore) -> None:
-        """Execute the requests that are queued now."""
-        while self._queue and not self._closing:
-            future, call = self._queue.popleft()
-            if not future.set_running_or_notify_cancel():
-                continue
-            before = _pace(core)
-            try:
-                result = call(core)
-            except Exception as error:
-                future.set_exception(error)
-            else:
-                future.set_result(result)
-            if _pace(core) != before:
-                self._pacer.restart(core.world.step_count, factor=core.clock.real_time_factor)
-
-    def _advance(self, core: SimulationCore) -> None:
-        if core.clock.runs_by_itself:
-            target = self._pacer.target(core.world.step_count)
-            if target > core.world.step_count:
-                core.advance_to(target, every_frame=False)
-        else:
-            core.render_due()
-
-    def _rest(self, core: SimulationCore) -> None:
-        """Wait until there is something to do."""
-        with self._wake:
-            if self._queue or self._closing:
-                return
-            if not core.clock.runs_by_itself:
-                self._wake.wait()
-                return
-            due = core.next_due_step()
-            goal = core.world.step_count + TICK_STEPS
-            self._wake.wait(self._pacer.wait_s(goal if due is None else min(goal, due)))
-
-    def _end(self, core: SimulationCore, why: str) -> None:
-        with self._wake:
-            self._closing = True
-            self._ended = why
-            waiting = list(self._queue)
-            self._queue.clear()
-        for future, _ in waiting:
-            if future.set_running_or_notify_cancel():
-                future.set_exception(SimulationClosed(why))
-        core.close(why)
 
     def _take_info(self, info: SceneInfo) -> None:
         self._info = info
-        for listener in tuple(self._info_listeners):
-            listener(info)
+        self._info_listeners(info)
 
     def _take_step(self, sim_time_ns: int) -> None:
         self._sim_time_ns = sim_time_ns
-        for listener in tuple(self._step_listeners):
-            listener(sim_time_ns)
+        self._step_listeners(sim_time_ns)
 
-    def _take_map(self, space: FreeSpace) -> None:
-        for listener in tuple(self._map_listeners):
-            listener(space)
+    def _core(self) -> SimulationCore:
+        if self._loop.core is None:
+            raise SimulationClosed(self._loop.ended or "it has not begun")
+        return self._loop.core
 
-    def _submit(self, call: Callable[[SimulationCore], T]) -> Future[T]:
-        future: Future[T] = Future()
-        with self._wake:
-            if self._closing:
-                raise SimulationClosed(self._ended or "it was closed")
-            self._queue.append((future, call))
-            self._wake.notify_all()
-        return future
-
-    def _run_in_loop(self, call: Callable[[], T]) -> T:
-        """Run a function in the loop's thread and return its result."""
-        if threading.current_thread() is self._thread:
-            return call()
-        future = self._submit(lambda core: call())
-        return wait_for(future, "objects to be drawn alone", _DRAW_TIMEOUT_S)
-
-    def _library(self) -> SceneLibrary:
-        if self._core is None:
-            raise SimulationClosed(self._ended or "it has not begun")
-        return self._core.library
-
-    def _nudge(self) -> None:
-        with self._wake:
-            self._wake.notify_all()
-
-
-def _pace(core: SimulationCore) -> tuple[World, bool, float]:
-    """Return what time's pace depends on: when it changes, the clock begins anew."""
-    return core.world, core.clock.runs_by_itself, core.clock.real_time_factor
-
-
-def _discard(listeners: list[Any], listener: Any) -> None:
-    if listener in listeners:
-        listeners.remove(listener)
+    def _changed(self, stream: FrameStream) -> None:
+        self._loop.nudge()

@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import TypedDict
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag, vector
@@ -24,6 +25,8 @@ __all__ = [
     "MAX_RADIANCE",
     "Environment",
     "Light",
+    "LightAttributes",
+    "LightChanges",
     "LightType",
     "SkyMap",
     "lamp_rows",
@@ -182,6 +185,27 @@ def lamp_rows(
         row["inner_cosine"] = np.cos(np.radians(light.inner_cone_deg))
         row["outer_cosine"] = np.cos(np.radians(light.outer_cone_deg))
     return rows
+
+
+class LightAttributes(TypedDict, total=False):
+    """Attributes of a light of a given type, by their names in `Light`."""
+
+    colour: ArrayLike
+    intensity: float
+    indirect_multiplier: float
+    position_m: ArrayLike
+    direction: ArrayLike
+    range_m: float
+    inner_cone_deg: float
+    outer_cone_deg: float
+    width_m: float
+    height_m: float
+
+
+class LightChanges(LightAttributes, total=False):
+    """Everything that can be changed of a light, by its names in `Light`."""
+
+    type: LightType
 
 
 def light_named(name: str, lights: Iterable[Light]) -> Light:

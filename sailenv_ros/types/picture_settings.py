@@ -9,10 +9,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args
 
+from typing_extensions import TypedDict
+
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag
 
-__all__ = ["LIMITS", "NAMES", "PictureSettings", "ToneCurve"]
+__all__ = ["LIMITS", "NAMES", "PictureChanges", "PictureSettings", "ToneCurve"]
 
 ToneCurve = Literal["filmic", "linear"]
 
@@ -98,6 +100,20 @@ class PictureSettings:
             if name not in NAMES:
                 raise UnknownName("setting of a picture", str(name), NAMES)
         return replace(self, **changes)
+
+
+class PictureChanges(TypedDict, total=False):
+    """Some settings, by their names in `PictureSettings`."""
+
+    exposure: float
+    tone_curve: ToneCurve
+    occlusion_strength: float
+    occlusion_radius_m: float
+    smooth_edges: bool
+    supersampling: int
+    bloom: float
+    full_well: float
+    read_noise: float
 
 
 NAMES: tuple[str, ...] = tuple(setting.name for setting in fields(PictureSettings))

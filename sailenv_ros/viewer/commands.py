@@ -14,7 +14,7 @@ from typing import Any
 
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.simulation.editing.edit_records import EditOperations
+from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose

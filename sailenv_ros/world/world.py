@@ -7,13 +7,11 @@ the same bytes.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.spec import RoomSpec, SceneSpec
@@ -22,19 +20,19 @@ from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.joints import JointState
-from sailenv_ros.types.labels import PART_MARK, CategoryTable, Instance, Keypoint
+from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.types.rigid_body import RigidBody
-from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Placement
-from sailenv_ros.world.body_table import BodyTable, LabelledPiece
+from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.contact_log import ContactLog
+from sailenv_ros.world.contents_maker import ContentsMaker
 from sailenv_ros.world.gaze import Gaze
 from sailenv_ros.world.jointed_bodies import JointedBody
-from sailenv_ros.world.lit_lamps import lit_by
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_motion import MoverCommand
 from sailenv_ros.world.moving_stands import MovingStands
@@ -104,10 +102,6 @@ class World:
         self.categories = categories
         self.described = described
         self._first_room = described.room if described is not None else None
-        self._next_revision = next_revision
-        self._lights = tuple(lights)
-        self._environment = environment or Environment()
-        self._baked: BakedLight | None = None
         self._client = BulletClient()
         self._stands = MovingStands(self._client, movers)
         self._contact_log = ContactLog(self._client, self._stands.gain)
@@ -115,7 +109,6 @@ class World:
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
         self._changed_step = 0
-        self._lit_by: Mapping[int, tuple[str, ...]] = {}
         self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
             self._configure()
@@ -127,7 +120,16 @@ class World:
         except BaseException:
             self.close()
             raise
-        self._contents = self._make_contents()
+        self._shown = ContentsMaker(
+            scene=scene,
+            epoch=epoch,
+            categories=categories,
+            lights=tuple(lights),
+            environment=environment or Environment(),
+            bodies=self._bodies,
+            described=lambda: self.described,
+            next_revision=next_revision,
+        )
 
     # -- time ------------------------------------------------------------------------------
 
@@ -163,7 +165,7 @@ class World:
     @property
     def contents(self) -> SceneContents:
         """Contents of the world at present, apart from poses."""
-        return self._contents
+        return self._shown.current
 
     @property
     def changed_ns(self) -> int:
@@ -225,11 +227,11 @@ class World:
         """Copy the poses; the same object until something changes."""
         if self._snapshot is None:
             poses = self._bodies.world_from_body()
-            self._light_lamps(poses)
+            self._shown.light_lamps(poses)
             self._snapshot = WorldSnapshot(
                 sim_time_ns=self.sim_time_ns,
                 step=self._step,
-                contents=self._contents,
+                contents=self._shown.current,
                 world_from_body=poses,
                 histories=self._bodies.histories(),
             )
@@ -304,7 +306,7 @@ class World:
             If no instance has that id now.
         """
         piece = self._bodies.piece(instance_id)
-        drawn = self._drawn(piece)
+        drawn = self._shown.drawn(piece)
         model = drawn.model if piece.part else piece.body.placement.asset.model
         return piece.body.state(drawn.instance, self.sim_time_ns, model)
 
@@ -400,7 +402,7 @@ class World:
         self._bodies.rebuild(instance_id, placement)
         if placement.scale != old.placement.scale:
             self._bodies.cut_off_past(instance_id)
-            self._forget_chart(instance_id)
+            self._shown.forget_charts(self._bodies.ids_of(instance_id))
         self.described = described or self.described
         self._changed_step = self._step
         self._changed()
@@ -433,7 +435,7 @@ class World:
         self._bodies.replace_room(placements, without)
         for body in (*self._bodies, *self._stands.bodies):
             body.wake()
-        self._baked = None
+        self._shown.baked = None
         self.described = described
         self._changed()
 
@@ -513,17 +515,17 @@ class World:
 
     def set_lights(self, lights: Sequence[Light]) -> None:
         """Replace the lights."""
-        self._lights = tuple(lights)
+        self._shown.lights = tuple(lights)
         self._changed()
 
     def set_environment(self, environment: Environment) -> None:
         """Replace ambient light, background and exposure."""
-        self._environment = environment
+        self._shown.environment = environment
         self._changed()
 
     def set_baked(self, baked: BakedLight | None) -> None:
         """Replace the light that was worked out beforehand for what stands still."""
-        self._baked = baked and replace(baked, environment=self._environment)
+        self._shown.baked = baked and replace(baked, environment=self._shown.environment)
         self._changed()
 
     @property
@@ -560,106 +562,11 @@ class World:
             self._changed_step = self._step
         self._changed()
 
-    def _forget_chart(self, instance_id: int) -> None:
-        """Take the baked light off an instance whose surface is another now."""
-        if self._baked is not None:
-            gone = self._bodies.ids_of(instance_id)
-            charts = {id_: c for id_, c in self._baked.charts.items() if id_ not in gone}
-            self._baked = replace(self._baked, charts=charts)
-
     def _changed(self) -> None:
-        self._contents = self._make_contents()
+        self._shown.renew()
         self._snapshot = self._states = None
-
-    def _light_lamps(self, poses: NDArray[np.float64]) -> None:
-        """Find the lights that are in lamps now, some of which may have been moved."""
-        found = lit_by(self._bodies.pieces, poses, self._lights)
-        if found != self._lit_by:
-            self._lit_by = found
-            drawn = tuple(self._drawn(piece) for piece in self._bodies.pieces)
-            self._contents = replace(self._contents, instances=drawn)
-
-    def _make_contents(self) -> SceneContents:
-        pieces = self._bodies.pieces
-        self._lit_by = lit_by(pieces, self._bodies.world_from_body(), self._lights)
-        return SceneContents(
-            scene=self.scene,
-            epoch=self.epoch,
-            revision=self._next_revision(),
-            instances=tuple(self._drawn(piece) for piece in pieces),
-            categories=self.categories,
-            lights=self._lights,
-            environment=self._environment,
-            baked=self._baked,
-        )
-
-    def _parent_of(self, placement: Placement) -> int:
-        """Return the id of the object that one is a part of; 0 if there is none (any more)."""
-        name = "" if placement.entry is None else placement.entry.part_of
-        if not name and placement.joint is not None:
-            name = placement.joint.parent
-        return self._bodies.id_of_name(name) if name else 0
-
-    def _drawn(self, piece: LabelledPiece) -> DrawnInstance:
-        placement = piece.body.placement
-        asset, part, category_id = placement.asset, piece.part, placement.category_id
-        model, name, parent = asset.body_model, asset.name, self._parent_of(placement)
-        keypoints = asset.keypoints
-        if part is not None:
-            model, name, parent = (
-                asset.part_model(part),
-                f"{name}{PART_MARK}{part.name}",
-                piece.body_id,
-            )
-            category_id, keypoints = self.categories.named(part.category).id, ()
-        low, high = model.bounds().tolist()
-        instance = Instance(
-            id=piece.id,
-            name=piece.name,
-            asset=name,
-            category_id=category_id,
-            category=self.categories[category_id].name,
-            static=placement.static,
-            low_m=_scaled(low, placement.scale),
-            high_m=_scaled(high, placement.scale),
-            parent=parent,
-            materials=_material_names(placement) if part is None else (),
-            painted=_painted(placement, self.described) if part is None else "",
-            keypoints=tuple(
-                Keypoint(name=point, position_m=_scaled(place, placement.scale))
-                for point, place in keypoints
-            ),
-        )
-        return DrawnInstance(
-            instance=instance,
-            model=model,
-            scale=placement.scale,
-            lit_by=self._lit_by.get(piece.body_id, ()),
-            stands=placement.static or (placement.joint is not None and not placement.behaviours),
-        )
-
-
-def _material_names(placement: Placement) -> tuple[str, ...]:
-    """Return the names of an object's own materials; none of a part of a room."""
-    if placement.entry is None:
-        return ()
-    return placement.materials
-
-
-def _painted(placement: Placement, described: SceneSpec | None) -> str:
-    """Return as JSON what a scene file says of an object's materials; empty for the asset's own."""
-    if placement.entry is not None:
-        entries = [m.model_dump(mode="json", exclude_unset=True) for m in placement.entry.materials]
-        return json.dumps(entries, sort_keys=True) if entries else ""
-    look = None if described is None else described.room and described.room.look_of(placement.name)
-    return "" if not look else json.dumps([look], sort_keys=True)
 
 
 def _walls_of(room: RoomSpec | None) -> tuple[object, ...] | None:
     """Return what decides where things at a room's walls stand."""
     return None if room is None else (room.size, room.skirting and room.skirting.depth)
-
-
-def _scaled(point: Sequence[float], scale: Sequence[float]) -> tuple[float, float, float]:
-    x, y, z = (float(a) * float(b) for a, b in zip(point, scale, strict=True))
-    return x, y, z

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.render.cpu.renderer import NativeRenderer
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from tests.render.test_flow_of_behaviours import WALLS, scene_of
@@ -28,7 +28,7 @@ def test_flow_is_exact_before_a_body_that_bounces(tmp_path: Path) -> None:
     scene["movers"] = [{"name": rails["name"], "position": position, "body": {**body, **motion}}]
     path = tmp_path / "box.yaml"
     path.write_text(json.dumps(scene), encoding="utf-8")  # JSON is YAML, too
-    core = SimulationCore(
+    core = SynchronousSimulation(
         SceneLibrary(),
         path,
         NativeRenderer(),

@@ -9,7 +9,7 @@ import pytest
 
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.render.cpu.renderer import NativeRenderer
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -22,13 +22,13 @@ FREE = Pose.from_rpy_deg((-4.0, 0.3, 1.3), (0.0, 2.0, 3.0))
 
 
 @pytest.fixture
-def core() -> Iterator[SimulationCore]:
+def core() -> Iterator[SynchronousSimulation]:
     made = lockstep_core("optical", renderer=NativeRenderer())
     yield made
     made.close()
 
 
-def seen(core: SimulationCore, agent: str) -> tuple[Frame, WorldSnapshot, Camera]:
+def seen(core: SynchronousSimulation, agent: str) -> tuple[Frame, WorldSnapshot, Camera]:
     """Capture a frame together with what it was made from."""
     frame = core.capture(VIEWS, agent=agent)
     return frame, core.world.snapshot(), frame.camera
@@ -55,7 +55,9 @@ def check(
     assert frame["flow_valid"][sure].all()
 
 
-def test_two_cameras_at_different_rates_have_flows_of_their_own(core: SimulationCore) -> None:
+def test_two_cameras_at_different_rates_have_flows_of_their_own(
+    core: SynchronousSimulation,
+) -> None:
     """One camera every 8 steps on the mover, one every 20 steps and free: neither disturbs the
     other's past, and both agree with arithmetic to 1e-3 px per frame."""
     lens = CameraIntrinsics(width=96, height=72)
@@ -74,7 +76,7 @@ def test_two_cameras_at_different_rates_have_flows_of_their_own(core: Simulation
     assert compared == {"quick": 7, "slow": 3}
 
 
-def test_a_set_position_is_seen_as_motion(core: SimulationCore) -> None:
+def test_a_set_position_is_seen_as_motion(core: SynchronousSimulation) -> None:
     """A camera driven by set_position and set_rotation has exact flow; a teleport has none."""
     lens = CameraIntrinsics(width=96, height=72)
     core.register_agent(AgentSpec(name="driven", intrinsics=lens, following=False, pose=FREE))

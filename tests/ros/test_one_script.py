@@ -98,7 +98,7 @@ def test_both_have_the_same_operations() -> None:
     for name, operation in ALL_OPERATIONS.items():
         for owner in (Agent, Simulation):
             assert getattr(owner, name) is operation
-            assert inspect.signature(getattr(owner, name)) == operation.signature
+            assert inspect.signature(getattr(owner, name)) == operation.__signature__
 
 
 def assert_same(one: Any, other: Any, where: str) -> None:

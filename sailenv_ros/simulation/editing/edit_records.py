@@ -1,37 +1,36 @@
 """What an editor takes down of a world so that a change can be undone, and how it is put back.
 
 Objects and lights are known by their names, which last; an object that comes back has another id.
-These operations belong to whoever keeps a history of changes, here the web viewer; a program has
-the operations that make the changes.
+Knows no operation; those of a history of changes are in `edit_operations`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidEntry, UnknownName
 from sailenv_ros.scene.spec import EnvironmentSpec
+from sailenv_ros.simulation.editing.editor import SceneEditor, entry_without_place
 from sailenv_ros.simulation.editing.material_edits import set_surface, surface_keys
-from sailenv_ros.simulation.operations import argument_checks as check
-from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.support import overlap_m, standing_place
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.world.world import World
 
 __all__ = [
-    "EditOperations",
     "ObjectRecord",
     "SurroundingsRecord",
     "bring_back",
+    "change_back",
     "record_of",
+    "restore_surroundings",
+    "set_down",
+    "surroundings_of",
 ]
-
 
 PUSHED_M = 0.004
 """Deeper within another's hull, physics would push an object away rather than settle it [m]."""
@@ -82,17 +81,17 @@ class SurroundingsRecord:
     described: EnvironmentSpec
 
 
-def record_of(core: SimulationCore, number: int) -> ObjectRecord:
+def record_of(world: World, number: int) -> ObjectRecord:
     """Take down the object of an instance id as it is now."""
-    state, spec = core.world.object_state(number), core.world.body(number).placement.entry
+    state, spec = world.object_state(number), world.body(number).placement.entry
     entry, pose = None, state.pose
-    joint = core.world.joint(number)
-    body = core.world.body(number)
+    joint = world.joint(number)
+    body = world.body(number)
     if isinstance(body, JointedBody):
         pose = body.joint.parent_from_rest
     if spec is not None:
         entry = {
-            **core.editor.entry_without_place(spec),
+            **entry_without_place(spec),
             "name": state.name,
             "category": state.category,
             "scale": state.scale,
@@ -103,148 +102,108 @@ def record_of(core: SimulationCore, number: int) -> ObjectRecord:
         entry=entry,
         pose=pose,
         behaviours=state.behaviours,
-        surface=surface_keys(core, number) if spec is None else None,
+        surface=surface_keys(world, number) if spec is None else None,
         joint_position=None if joint is None else joint.position,
     )
 
 
-class EditOperations(Caller):
-    """Operations of a history of changes."""
+def change_back(editor: SceneEditor, present: ObjectRecord, wanted: ObjectRecord) -> int:
+    """Make of an object that is there what a record says; return its instance id.
 
-    @operation(obj=check.object_reference)
-    @staticmethod
-    def object_record(core: SimulationCore, obj: int | str) -> ObjectRecord:
-        """Take down an object as it is now."""
-        return record_of(core, core.world.find(obj))
-
-    @operation()
-    @staticmethod
-    def restore_object(
-        core: SimulationCore, present: ObjectRecord | None, wanted: ObjectRecord | None
-    ) -> int:
-        """Make of an object what a record says; return its instance id, 0 for none.
-
-        Parameters
-        ----------
-        present : ObjectRecord or None
-            As it was after the change that is undone; None if it was taken out.
-        wanted : ObjectRecord or None
-            None takes it out.
-
-        Raises
-        ------
-        UnknownName, NameTaken, InvalidEntry
-            If others have changed it so that it cannot be done; nothing is done then.
-        """
-        if present is None:
-            return 0 if wanted is None else bring_back(core, wanted)
-        number = core.world.find(present.name)
-        if wanted is None:
-            core.world.despawn(number)
-            core.announce()
-            return 0
-        if wanted.entry is not None and present.entry is not None:
-            keys = {*wanted.entry, *present.entry} - {"asset"}
-            changes = {
-                key: wanted.entry.get(key)
-                for key in keys
-                if wanted.entry.get(key) != present.entry.get(key)
-            }
-            if changes:
-                core.editor.change_object(number, changes)
-        if wanted.surface is not None and wanted.surface != present.surface:
-            set_surface(core, number, wanted.surface)
-        if wanted.behaviours != present.behaviours:
-            core.world.body(number).detach()
-            for behaviour in wanted.behaviours:
-                core.editor.add_behaviour(number, behaviour)
-            core.announce()
-        if wanted.joint_position is not None and wanted.joint_position != present.joint_position:
-            core.world.set_joint(number, wanted.joint_position)
-        if wanted.pose != present.pose:
-            core.world.put_body(number, wanted.pose, teleport=True)
-        return number
-
-    @operation(obj=check.object_reference, pose=check.pose)
-    @staticmethod
-    def set_down(core: SimulationCore, obj: int | str, pose: Pose) -> bool:
-        """Stand an object on what is drawn there; tell if it is held there.
-
-        Parameters
-        ----------
-        obj : int or str
-        pose : Pose
-            Where its lowest point is on or just below what shall carry it.
-
-        Returns
-        -------
-        held : bool
-            True if it was made static: hulls are coarser than what is drawn, and physics would
-            have pushed it out of that of its carrier, a shelf for example.
-        """
-        number = core.world.find(obj)
-        x, y, _ = pose.position_m
-        height, carrier = standing_place(core.world, number, pose)
-        core.world.put_body(number, Pose((x, y, height), pose.orientation_xyzw), teleport=True)
-        body = core.world.body(number)
-        held = (
-            not body.placement.static
-            and body.placement.entry is not None
-            and not body.behaviours
-            and carrier is not None
-            and overlap_m(core.world, body, carrier) > PUSHED_M
-        )
-        if held:
-            core.editor.change_object(number, {"static": True})
-        return held
-
-    @operation()
-    @staticmethod
-    def surroundings_record(core: SimulationCore) -> SurroundingsRecord:
-        """Take down lights and surroundings as they are now."""
-        contents, described = core.world.contents, core.world.described
-        assert described is not None
-        return SurroundingsRecord(
-            lights=contents.lights,
-            environment=contents.environment,
-            described=described.environment,
-        )
-
-    @operation()
-    @staticmethod
-    def restore_surroundings(
-        core: SimulationCore, present: SurroundingsRecord, wanted: SurroundingsRecord
-    ) -> None:
-        """Put back what differs between two records, and nothing else."""
-        world = core.world
-        before = {light.name: light for light in present.lights}
-        after = {light.name: light for light in wanted.lights}
-        changed = {name for name in {*before, *after} if before.get(name) != after.get(name)}
-        kept = [after.get(light.name, light) if light.name in changed else light
-                for light in world.contents.lights
-                if light.name not in changed or light.name in after]  # fmt: skip
-        there = {light.name for light in kept}
-        lights = [*kept, *(after[name] for name in sorted(changed & after.keys() - there))]
-        if changed:
-            core.library.check_lights(tuple(lights))
-            world.set_lights(lights)
-        if present.environment != wanted.environment:
-            assert world.described is not None
-            world.set_environment(wanted.environment)
-            update = {"environment": wanted.described}
-            world.described = world.described.model_copy(update=update)
-        core.announce()
+    Raises
+    ------
+    UnknownName, NameTaken, InvalidEntry
+        If others have changed it so that it cannot be done; nothing is done then.
+    """
+    world = editor.scene.world
+    number = world.find(present.name)
+    if wanted.entry is not None and present.entry is not None:
+        keys = {*wanted.entry, *present.entry} - {"asset"}
+        changes = {
+            key: wanted.entry.get(key)
+            for key in keys
+            if wanted.entry.get(key) != present.entry.get(key)
+        }
+        if changes:
+            editor.change_object(number, changes)
+    if wanted.surface is not None and wanted.surface != present.surface:
+        set_surface(editor.scene, number, wanted.surface)
+    if wanted.behaviours != present.behaviours:
+        world.body(number).detach()
+        for behaviour in wanted.behaviours:
+            editor.add_behaviour(number, behaviour)
+        editor.scene.announce()
+    if wanted.joint_position is not None and wanted.joint_position != present.joint_position:
+        world.set_joint(number, wanted.joint_position)
+    if wanted.pose != present.pose:
+        world.put_body(number, wanted.pose, teleport=True)
+    return number
 
 
-def bring_back(core: SimulationCore, wanted: ObjectRecord) -> int:
-    """Spawn what a record says; return its instance id, and see `restore_object` for errors."""
+def bring_back(editor: SceneEditor, wanted: ObjectRecord) -> int:
+    """Spawn what a record says; return its instance id, and see `change_back` for errors."""
     if wanted.entry is None:
         why = [(repr(wanted.name), "is a part of the room: begin the scene anew to have it back")]
         raise InvalidEntry("object", wanted.name, why)
     entry = {**wanted.entry, "behaviours": wanted.behaviours}
-    if entry["asset"] not in core.library.spawnables:
-        raise UnknownName("asset", entry["asset"], core.library.spawnables)
-    number = core.editor.spawn(entry, wanted.pose)
+    spawnables = editor.scene.library.spawnables
+    if entry["asset"] not in spawnables:
+        raise UnknownName("asset", entry["asset"], spawnables)
+    number = editor.spawn(entry, wanted.pose)
     if wanted.joint_position is not None:
-        core.world.set_joint(number, wanted.joint_position)
+        editor.scene.world.set_joint(number, wanted.joint_position)
     return number
+
+
+def set_down(editor: SceneEditor, number: int, pose: Pose) -> bool:
+    """Stand an object on what is drawn there; tell if it is held there."""
+    world = editor.scene.world
+    x, y, _ = pose.position_m
+    height, carrier = standing_place(world, number, pose)
+    world.put_body(number, Pose((x, y, height), pose.orientation_xyzw), teleport=True)
+    body = world.body(number)
+    held = (
+        not body.placement.static
+        and body.placement.entry is not None
+        and not body.behaviours
+        and carrier is not None
+        and overlap_m(world, body, carrier) > PUSHED_M
+    )
+    if held:
+        editor.change_object(number, {"static": True})
+    return held
+
+
+def surroundings_of(world: World) -> SurroundingsRecord:
+    """Take down lights and surroundings as they are now."""
+    contents, described = world.contents, world.described
+    assert described is not None
+    return SurroundingsRecord(
+        lights=contents.lights,
+        environment=contents.environment,
+        described=described.environment,
+    )
+
+
+def restore_surroundings(
+    scene: LiveScene, present: SurroundingsRecord, wanted: SurroundingsRecord
+) -> None:
+    """Put back what differs between two records, and nothing else."""
+    world = scene.world
+    before = {light.name: light for light in present.lights}
+    after = {light.name: light for light in wanted.lights}
+    changed = {name for name in {*before, *after} if before.get(name) != after.get(name)}
+    kept = [after.get(light.name, light) if light.name in changed else light
+            for light in world.contents.lights
+            if light.name not in changed or light.name in after]  # fmt: skip
+    there = {light.name for light in kept}
+    lights = [*kept, *(after[name] for name in sorted(changed & after.keys() - there))]
+    if changed:
+        scene.library.check_lights(tuple(lights))
+        world.set_lights(lights)
+    if present.environment != wanted.environment:
+        assert world.described is not None
+        world.set_environment(wanted.environment)
+        update = {"environment": wanted.described}
+        world.described = world.described.model_copy(update=update)
+    scene.announce()

@@ -8,19 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.entries import checked_scene, plain_value
 from sailenv_ros.scene.room_rules import WALLS, room_part_names
-from sailenv_ros.scene.spec import RoomSpec
+from sailenv_ros.scene.spec import ObjectSpec, RoomSpec
 from sailenv_ros.scene.spec_materials import ALL_PARTS, LookSpec, MaterialSpec
+from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.world.build import room_placements
+from sailenv_ros.world.world import World
 
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
-
-__all__ = ["merged_look", "set_material", "set_surface", "surface_keys"]
+__all__ = ["changed_materials", "changed_surface", "merged_look", "set_surface", "surface_keys"]
 
 _EXCLUSIVE = ("material", "picture")
 """One of them takes the other's place."""
@@ -28,20 +27,12 @@ _EXCLUSIVE = ("material", "picture")
 _WALL = " wall"
 
 
-def set_material(
-    core: SimulationCore, instance_id: int, part: str, changes: Mapping[str, Any]
-) -> None:
-    """Change what an object or a part of the room is made of; see `operations` for arguments."""
-    body = core.world.body(instance_id)
-    present = body.placement.entry
-    if present is None:
-        if part not in ("", ALL_PARTS):
-            raise UnknownName(f"material of {body.placement.name}", part, (ALL_PARTS,))
-        keys = surface_keys(core, instance_id) or {}
-        set_surface(core, instance_id, merged_look(keys, changes, LookSpec) if changes else None)
-        return
+def changed_materials(
+    entry: ObjectSpec, part: str, changes: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Return the materials of an object with one changed; see `operations` for arguments."""
     chosen = part or ALL_PARTS
-    entries = [m.model_dump(mode="json", exclude_unset=True) for m in present.materials]
+    entries = [m.model_dump(mode="json", exclude_unset=True) for m in entry.materials]
     parts = [entry.get("part", ALL_PARTS) for entry in entries]
     if chosen == ALL_PARTS:
         # What is asked for last is what is seen.
@@ -52,7 +43,19 @@ def set_material(
         kept = [entry for entry, name in zip(entries, parts, strict=True) if name != chosen]
     if changes:
         kept.append(merged_look(before, changes, MaterialSpec))
-    core.editor.change_object(instance_id, {"materials": kept})
+    return kept
+
+
+def changed_surface(
+    world: World, instance_id: int, part: str, changes: Mapping[str, Any]
+) -> dict[str, Any] | None:
+    """Return the keys of the changed look of a part of the room; None: the scene file's."""
+    if part not in ("", ALL_PARTS):
+        name = world.body(instance_id).placement.name
+        raise UnknownName(f"material of {name}", part, (ALL_PARTS,))
+    if not changes:
+        return None
+    return merged_look(surface_keys(world, instance_id) or {}, changes, LookSpec)
 
 
 def merged_look(
@@ -77,23 +80,23 @@ def merged_look(
     return {key: value for key, value in merged.items() if value is not None}
 
 
-def surface_keys(core: SimulationCore, instance_id: int) -> dict[str, Any] | None:
+def surface_keys(world: World, instance_id: int) -> dict[str, Any] | None:
     """Return what the scene says of the look of a part of the room; None for what is none.
 
     None for the leaf of a door, too, whose look is that of the door.
     """
-    described = core.world.described
-    name = core.world.body(instance_id).placement.name
+    described = world.described
+    name = world.body(instance_id).placement.name
     if described is None or described.room is None or name not in _part_names(described.room):
         return None
-    if core.world.joint(instance_id) is not None:
+    if world.joint(instance_id) is not None:
         return None
     return _keys_of(described.room, name)
 
 
-def set_surface(core: SimulationCore, instance_id: int, keys: Mapping[str, Any] | None) -> None:
+def set_surface(scene: LiveScene, instance_id: int, keys: Mapping[str, Any] | None) -> None:
     """Change the look of a part of the room to these keys; None: to the scene file's."""
-    world = core.world
+    world = scene.world
     body = world.body(instance_id)
     name = body.placement.name
     described = world.described
@@ -103,10 +106,10 @@ def set_surface(core: SimulationCore, instance_id: int, keys: Mapping[str, Any] 
         keys = _keys_of(_room(world.first_room, name), name)
     entry = _with_keys(room, name, keys)
     spec = checked_scene(
-        {"version": 1, "room": entry}, core.library.knowledge_of(world.scene), what=f"{name!r}"
+        {"version": 1, "room": entry}, scene.library.knowledge_of(world.scene), what=f"{name!r}"
     ).room
     assert spec is not None
-    stock = core.library.materials_of(world.scene)
+    stock = scene.library.materials_of(world.scene)
     made = {p.name: p for p in room_placements(spec, world.categories, stock)}
     described = described.model_copy(update={"room": spec})
     world.replace_body(instance_id, replace(body.placement, asset=made[name].asset), described)
@@ -116,7 +119,7 @@ def set_surface(core: SimulationCore, instance_id: int, keys: Mapping[str, Any] 
         if other.placement.entry is None and leaf == f"{name} leaf" and leaf in made:
             painted = replace(other.placement, asset=made[leaf].asset)
             world.replace_body(number, painted, described)
-    core.announce()
+    scene.announce()
 
 
 def _part_names(room: RoomSpec) -> frozenset[str]:

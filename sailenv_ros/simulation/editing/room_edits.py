@@ -1,8 +1,7 @@
 """The room of a running world: made, resized, put back, and its floor plan.
 
 A room is centred on the world's origin, so a resize moves opposite walls alike; objects stay where
-they are. These operations belong to an editor that keeps a history of changes, as those of
-`edit_records` do.
+they are. Knows no operation; those are in `room_operations`.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,15 +19,21 @@ from sailenv_ros.scene.room_rules import inside_walls, room_part_names, without_
 from sailenv_ros.scene.spec import RoomSpec
 from sailenv_ros.scene.spec_room import OpeningSpec
 from sailenv_ros.simulation.editing.edit_records import ObjectRecord, bring_back, record_of
+from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.editing.saving import room_entry, unsaid
-from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.build import room_placements
+from sailenv_ros.world.world import World
 
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
-    from sailenv_ros.world.bodies import Body
-
-__all__ = ["FloorPlan", "PlanObject", "RoomOperations", "RoomRecord"]
+__all__ = [
+    "FloorPlan",
+    "PlanObject",
+    "RoomRecord",
+    "floor_plan_of",
+    "resize_room",
+    "restore_room",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,88 +88,57 @@ class FloorPlan:
     objects: tuple[PlanObject, ...]
 
 
-class RoomOperations(Caller):
-    """Operations of an editor upon the room."""
-
-    @operation()
-    @staticmethod
-    def floor_plan(core: SimulationCore) -> FloorPlan:
-        """Return the room and its objects as they lie in a plan now."""
-        assert core.world.described is not None
-        room = core.world.described.room
-        return FloorPlan(
-            size_m=None if room is None else room.size,
-            openings=() if room is None else room.openings,
-            objects=tuple(
-                PlanObject(id=id_, name=body.placement.name, corners_m=_corners(body))
-                for id_, body in core.world.bodies_by_id.items()
-                if body.placement.entry is not None
-            ),
-        )
-
-    @operation(deadline_s=60.0)
-    @staticmethod
-    def set_room_size(
-        core: SimulationCore, size_m: tuple[float, float, float]
-    ) -> tuple[RoomRecord, RoomRecord]:
-        """Resize the room, or make one with the usual materials where there is none.
-
-        A new room takes the place of static objects that are called as its parts are.
-
-        Parameters
-        ----------
-        size_m : (3,) tuple of float
-            Inside: along x, along y, height [m].
-
-        Returns
-        -------
-        before, after : RoomRecord
-            For `restore_room`.
-
-        Raises
-        ------
-        InvalidRequest, InvalidEntry, NameTaken
-            If an opening does not fit, a part was moved or taken out, the size is out of range, or
-            an object that moves is called as a part is; nothing is changed then.
-        """
-        world = core.world
-        assert world.described is not None
-        lost = list(unsaid(world))
-        if lost:
-            raise InvalidEntry("room", world.described.room, lost)
-        present = room_entry(world)
-        wanted = {**present, "size": list(size_m)}
-        _require_openings_fit(wanted, size_m)
-        room = _checked(core, wanted)
-        before, parts = world.described.room, set(room_part_names(wanted))
-        if world.missing_parts:
-            before = _checked(core, present)
-        replaced = tuple(
-            record_of(core, id_)
+def floor_plan_of(world: World) -> FloorPlan:
+    """Return the room and its objects as they lie in a plan now."""
+    assert world.described is not None
+    room = world.described.room
+    return FloorPlan(
+        size_m=None if room is None else room.size,
+        openings=() if room is None else room.openings,
+        objects=tuple(
+            PlanObject(id=id_, name=body.placement.name, corners_m=_corners(body))
             for id_, body in world.bodies_by_id.items()
             if body.placement.entry is not None
-            and body.placement.static
-            and body.placement.name in parts
-        )
-        records = RoomRecord(room=before, objects=replaced), RoomRecord(room=room)
-        _exchange(core, *records)
-        return records
-
-    @operation(deadline_s=60.0)
-    @staticmethod
-    def restore_room(core: SimulationCore, present: RoomRecord, wanted: RoomRecord) -> None:
-        """Make of the room what a record says.
-
-        Raises
-        ------
-        UnknownName, NameTaken
-            If others have changed objects so that it cannot be done; nothing is done then.
-        """
-        _exchange(core, present, wanted)
+        ),
+    )
 
 
-def _exchange(core: SimulationCore, present: RoomRecord, wanted: RoomRecord) -> None:
-    world = core.world
+def resize_room(
+    editor: SceneEditor, size_m: tuple[float, float, float]
+) -> tuple[RoomRecord, RoomRecord]:
+    """Resize the room or make one; return it as it was and is.
+
+    See `RoomOperations.set_room_size` for errors.
+    """
+    scene = editor.scene
+    world = scene.world
+    assert world.described is not None
+    lost = list(unsaid(world))
+    if lost:
+        raise InvalidEntry("room", world.described.room, lost)
+    present = room_entry(world)
+    wanted = {**present, "size": list(size_m)}
+    _require_openings_fit(wanted, size_m)
+    room = _checked(scene, wanted)
+    before, parts = world.described.room, set(room_part_names(wanted))
+    if world.missing_parts:
+        before = _checked(scene, present)
+    replaced = tuple(
+        record_of(world, id_)
+        for id_, body in world.bodies_by_id.items()
+        if body.placement.entry is not None
+        and body.placement.static
+        and body.placement.name in parts
+    )
+    records = RoomRecord(room=before, objects=replaced), RoomRecord(room=room)
+    restore_room(editor, *records)
+    return records
+
+
+def restore_room(editor: SceneEditor, present: RoomRecord, wanted: RoomRecord) -> None:
+    """Make of the room what a record says; see `RoomOperations.restore_room` for errors."""
+    scene = editor.scene
+    world = scene.world
     assert world.described is not None
     going = [world.find(record.name) for record in present.objects]
     staying = {
@@ -176,19 +150,19 @@ def _exchange(core: SimulationCore, present: RoomRecord, wanted: RoomRecord) -> 
         if record.name in staying:
             raise NameTaken("object", record.name)
     world.replace_room(
-        room_placements(wanted.room, world.categories, core.library.materials_of(world.scene)),
+        room_placements(wanted.room, world.categories, scene.library.materials_of(world.scene)),
         world.described.model_copy(update={"room": wanted.room}),
         without=going,
     )
     for record in wanted.objects:
-        bring_back(core, record)
-    core.library.load_light(world)
-    core.announce()
+        bring_back(editor, record)
+    scene.library.load_light(world)
+    scene.announce()
 
 
-def _checked(core: SimulationCore, entry: Mapping[str, Any]) -> RoomSpec:
+def _checked(scene: LiveScene, entry: Mapping[str, Any]) -> RoomSpec:
     data = {"version": 1, "room": entry}
-    room = checked_scene(data, core.library.knowledge_of(core.world.scene), what="room").room
+    room = checked_scene(data, scene.library.knowledge_of(scene.world.scene), what="room").room
     assert room is not None
     return room
 

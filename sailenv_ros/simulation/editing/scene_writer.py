@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.assets.pictures import PICTURE_FOLDER
 from sailenv_ros.errors import InvalidEntry, InvalidRequest
@@ -16,10 +16,8 @@ from sailenv_ros.scene.entries import checked_scene
 from sailenv_ros.scene.loader import MAX_BYTES
 from sailenv_ros.scene.user_scenes import checked_scene_name, write_scene
 from sailenv_ros.simulation.editing.saving import described_world, unsaid, uploaded_models
+from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.system.files import make_folder, write_file
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["SceneWriter"]
 
@@ -27,20 +25,20 @@ __all__ = ["SceneWriter"]
 class SceneWriter:
     """Writes the world of one simulation; see `operations.saving` for arguments and errors."""
 
-    def __init__(self, core: SimulationCore) -> None:
-        self._core = core
+    def __init__(self, scene: LiveScene) -> None:
+        self._scene = scene
 
     def text(self, name: str, title: str | None, cameras: Collection[str]) -> str:
         """Return the YAML text of the present world under a scene's name."""
-        world, what = self._core.world, f"scene {name!r}"
-        data: dict[str, Any] = described_world(world, self._core.agents, cameras=cameras)
+        world, what = self._scene.world, f"scene {name!r}"
+        data: dict[str, Any] = described_world(world, self._scene.agents, cameras=cameras)
         if title:
             data["title"] = title
         lost = list(unsaid(world))
         if lost:
             raise InvalidEntry(what, name, lost)
         text = dump_scene(
-            checked_scene(data, self._core.library.knowledge_of(world.scene), what=what)
+            checked_scene(data, self._scene.library.knowledge_of(world.scene), what=what)
         )
         if len(text.encode()) > MAX_BYTES:
             raise InvalidRequest("size of the scene", len(text), f"at most {MAX_BYTES} bytes")
@@ -56,10 +54,10 @@ class SceneWriter:
         keep_models: bool,
     ) -> Path:
         """Write the present world into the folder of the user's own scenes."""
-        library = self._core.library
+        library = self._scene.library
         path = self._own_path(name)
         text = self.text(name, title, cameras)
-        models = uploaded_models(self._core.world, library.is_uploaded)
+        models = uploaded_models(self._scene.world, library.is_uploaded)
         if models and not keep_models:
             named = ", ".join(repr(model) for model in models)
             accepted = "true, so that uploaded models are put into your own pack: no scene file "
@@ -80,8 +78,8 @@ class SceneWriter:
 
     def _pictures(self, folder: Path) -> dict[Path, bytes]:
         """Return the files of pictures that must lie beside the scene and do not yet."""
-        world, library = self._core.world, self._core.library
-        data = described_world(world, self._core.agents)
+        world, library = self._scene.world, self._scene.library
+        data = described_world(world, self._scene.agents)
         missing: dict[Path, bytes] = {}
         for name in sorted(set(_picture_names(data))):
             content = library.picture_content(name, world.scene)
@@ -96,7 +94,7 @@ class SceneWriter:
 
     def _own_path(self, name: str) -> Path:
         """Return the file of a scene of the user's own; no other scene may have its name."""
-        library = self._core.library
+        library = self._scene.library
         path = library.own_folder.absolute() / f"{checked_scene_name(name)}.yaml"
         if name in library.scene_names:
             other = library.path(name).absolute()

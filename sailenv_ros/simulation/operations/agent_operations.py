@@ -7,25 +7,23 @@ first.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from numpy.typing import ArrayLike
+from typing_extensions import Unpack
 
-from sailenv_ros.authoring.viewpoints import CameraView, sample_cameras
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import DrawsFrames, HasAgents
 from sailenv_ros.types.agents import RATE, AgentPose, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.picture_settings import PictureChanges, PictureSettings
 from sailenv_ros.types.validation import Bounds, vector
 from sailenv_ros.types.views import FIVE_VIEWS
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["AgentOperations"]
 
@@ -42,7 +40,7 @@ def _intrinsics(what: str, value: object) -> CameraIntrinsics:
     return value
 
 
-def _put(core: SimulationCore, pose: Pose, agent: str | None, *, teleport: bool) -> None:
+def _put(core: HasAgents, pose: Pose, agent: str | None, *, teleport: bool) -> None:
     before = core.agents[agent].spec
     was_driven = before.following and core.world.mover(before.mover).controller == "waypoint"
     core.agents.put(before.name, pose, core.world, teleport=teleport)
@@ -50,12 +48,25 @@ def _put(core: SimulationCore, pose: Pose, agent: str | None, *, teleport: bool)
         core.announce()
 
 
+def _set_pose(core: HasAgents, pose: Pose, agent: str | None, *, teleport: bool) -> None:
+    ended = core.agents.turn_freely(core.agents[agent].spec.name, core.world)
+    _put(core, pose, agent, teleport=teleport)
+    if ended:
+        core.announce()
+
+
+def _set_follow(core: HasAgents, following: bool, agent: str | None) -> bool:
+    result = core.agents.set_follow(agent, following, core.world)
+    core.announce()
+    return result
+
+
 class AgentOperations(Caller):
     """Cameras in the world. Positions are in metres, rotations in degrees about fixed axes."""
 
     @operation(spec=_agent_spec)
     @staticmethod
-    def register_agent(core: SimulationCore, spec: AgentSpec) -> AgentSpec:
+    def register_agent(core: HasAgents, spec: AgentSpec) -> AgentSpec:
         """Add an agent; return its description as accepted."""
         accepted = core.agents.add(spec, core.world)
         core.announce()
@@ -63,7 +74,7 @@ class AgentOperations(Caller):
 
     @operation(name=check.text)
     @staticmethod
-    def delete_agent(core: SimulationCore, name: str) -> None:
+    def delete_agent(core: HasAgents, name: str) -> None:
         """Remove an agent and end its streams."""
         core.agents.remove(name)
         core.announce()
@@ -72,29 +83,26 @@ class AgentOperations(Caller):
 
     @operation()
     @staticmethod
-    def get_agent_pose(core: SimulationCore, *, agent: str | None = None) -> AgentPose:
+    def get_agent_pose(core: HasAgents, *, agent: str | None = None) -> AgentPose:
         """Return where an agent is, when, and whether it follows a mover."""
         return core.agents.pose(agent, core.world)
 
     @operation(pose=check.pose)
     @staticmethod
     def set_pose(
-        core: SimulationCore, pose: Pose, *, teleport: bool = False, agent: str | None = None
+        core: HasAgents, pose: Pose, *, teleport: bool = False, agent: str | None = None
     ) -> None:
         """Move and turn an agent, or the mover that it follows (which leaves its waypoints then).
 
         A set pose is motion, which flow shows; `teleport` makes the next frame one without flow.
         What agent and mover faced by `set_look_at` and `set_mover_look_at`, they face no more.
         """
-        ended = core.agents.turn_freely(core.agents[agent].spec.name, core.world)
-        _put(core, pose, agent, teleport=teleport)
-        if ended:
-            core.announce()
+        _set_pose(core, pose, agent, teleport=teleport)
 
     @operation(position=vector)
     @staticmethod
     def set_position(
-        core: SimulationCore,
+        core: HasAgents,
         position: ArrayLike,
         *,
         teleport: bool = False,
@@ -111,7 +119,7 @@ class AgentOperations(Caller):
     @operation(rotation=vector)
     @staticmethod
     def set_rotation(
-        core: SimulationCore,
+        core: HasAgents,
         rotation: ArrayLike,
         *,
         teleport: bool = False,
@@ -120,7 +128,7 @@ class AgentOperations(Caller):
         """Turn an agent to roll, pitch, yaw about fixed axes [deg] and leave its position."""
         here = core.agents.pose(agent, core.world).pose
         turned = Pose.from_rpy_deg(here.position_m, rotation)
-        core.set_pose(turned, teleport=teleport, agent=agent)
+        _set_pose(core, turned, agent, teleport=teleport)
 
     def get_pose(self, *, agent: str | None = None) -> Pose:
         """Return the pose of an agent's body (x forward, y left, z up) in the world."""
@@ -136,23 +144,21 @@ class AgentOperations(Caller):
 
     @operation()
     @staticmethod
-    def set_follow(core: SimulationCore, following: bool, *, agent: str | None = None) -> bool:
+    def set_follow(core: HasAgents, following: bool, *, agent: str | None = None) -> bool:
         """Follow the mover or stop following it; return the new state."""
-        result = core.agents.set_follow(agent, following, core.world)
-        core.announce()
-        return result
+        return _set_follow(core, following, agent)
 
     @operation()
     @staticmethod
-    def toggle_follow(core: SimulationCore, *, agent: str | None = None) -> bool:
+    def toggle_follow(core: HasAgents, *, agent: str | None = None) -> bool:
         """Switch between following and not; return the new state."""
-        return core.set_follow(not core.agents[agent].spec.following, agent=agent)
+        return _set_follow(core, not core.agents[agent].spec.following, agent)
 
     # -- camera ----------------------------------------------------------------------------
 
     @operation(rate_hz=RATE.number)
     @staticmethod
-    def set_rate(core: SimulationCore, rate_hz: float, *, agent: str | None = None) -> None:
+    def set_rate(core: HasAgents, rate_hz: float, *, agent: str | None = None) -> None:
         """Change how often an agent's frames are streamed [Hz of simulated time]; 0: never."""
         core.agents.set_rate(agent, rate_hz, core.world)
         core.announce()
@@ -160,7 +166,7 @@ class AgentOperations(Caller):
     @operation(intrinsics=_intrinsics)
     @staticmethod
     def set_intrinsics(
-        core: SimulationCore, intrinsics: CameraIntrinsics, *, agent: str | None = None
+        core: HasAgents, intrinsics: CameraIntrinsics, *, agent: str | None = None
     ) -> None:
         """Change the lens or the size of an agent's camera; its next frame has no flow."""
         core.agents.set_intrinsics(agent, intrinsics)
@@ -168,19 +174,19 @@ class AgentOperations(Caller):
 
     @operation()
     @staticmethod
-    def get_picture(core: SimulationCore, *, agent: str | None = None) -> PictureSettings:
+    def get_picture(core: HasAgents, *, agent: str | None = None) -> PictureSettings:
         """Return how an agent's pictures are made."""
         return core.agents[agent].spec.picture
 
     @operation(settings=check.optional(PictureSettings.checked))
     @staticmethod
     def set_picture(
-        core: SimulationCore,
+        core: HasAgents,
         settings: PictureSettings | None = None,
         /,
         *,
         agent: str | None = None,
-        **changes: Any,
+        **changes: Unpack[PictureChanges],
     ) -> PictureSettings:
         """Change exposure, tone curve and effects of an agent's pictures from the next frame on.
 
@@ -215,7 +221,7 @@ class AgentOperations(Caller):
     @operation(views=check.optional(check.view_names))
     @staticmethod
     def capture(
-        core: SimulationCore, views: Iterable[str] | None = None, *, agent: str | None = None
+        core: DrawsFrames, views: Iterable[str] | None = None, *, agent: str | None = None
     ) -> Frame:
         """Render one frame of an agent now.
 
@@ -238,7 +244,7 @@ class AgentOperations(Caller):
     @operation(sequence=Bounds(least=0, most=2**63 - 1, whole=True).integer)
     @staticmethod
     def get_amodal_masks(
-        core: SimulationCore, sequence: int = 0, *, agent: str | None = None
+        core: DrawsFrames, sequence: int = 0, *, agent: str | None = None
     ) -> AmodalMasks:
         """Draw each object of an agent's last frame alone: what it covers, whatever hides it.
 
@@ -294,56 +300,3 @@ class AgentOperations(Caller):
         name = agent or self.own_agent
         chosen = [spec for spec in self.info.agents if name in (None, spec.name)]
         return chosen[0].views if chosen else FIVE_VIEWS
-
-    @operation(
-        deadline_s=300.0,
-        rule=check.text,
-        name=check.text,
-        seed=check.optional(check.seed),
-        agent=check.optional(check.text),
-    )
-    @staticmethod
-    def sample_cameras(
-        core: SimulationCore,
-        rule: str,
-        /,
-        count: int = 1,
-        *,
-        name: str = "",
-        seed: int | None = None,
-        agent: str | None = None,
-        **settings: Any,
-    ) -> tuple[CameraView, ...]:
-        """Choose camera poses by a rule, for an agent's lens; nothing moves.
-
-        Parameters
-        ----------
-        rule : str
-            ``object_view``, ``free_view`` or ``coverage``; see docs/space.md.
-        count : int
-            How many, 1 to 10,000.
-        name : str
-            What they are for: the same rule, settings, name and seed give the same poses in the
-            same scene.
-        seed : int or None
-            None takes that of the scene.
-        agent : str or None
-            Whose lens it is.
-        **settings
-            Of the rule, those that shall differ from its own.
-
-        Returns
-        -------
-        views : tuple of CameraView
-            Pose, and the id of the object that it looks at; fewer than `count` if no more were
-            found.
-
-        Raises
-        ------
-        UnknownName, InvalidEntry, InvalidRequest
-            If there is no such rule, or a setting is wrong.
-        """
-        scene = core.view_scene(core.agents[agent].spec.intrinsics)
-        used = core.seed if seed is None else seed
-        views = sample_cameras(scene, rule, count, seed=used, name=name, settings=settings)
-        return tuple(views)

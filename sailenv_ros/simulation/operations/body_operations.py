@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import HasWorld
 from sailenv_ros.types.rigid_body import RigidBody
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["BodyOperations"]
 
@@ -29,7 +27,7 @@ class BodyOperations(Caller):
 
     @operation(body=check.optional(_rigid_body), mover=check.text)
     @staticmethod
-    def set_mover_body(core: SimulationCore, body: RigidBody | None, mover: str = "") -> None:
+    def set_mover_body(core: HasWorld, body: RigidBody | None, mover: str = "") -> None:
         """Make a mover a rigid body, which forces and collisions move; with None, none any more.
 
         It stays where it is, and what follows it goes on doing so. One that is a body already keeps
@@ -59,7 +57,7 @@ class BodyOperations(Caller):
 
     @operation(mover=check.text)
     @staticmethod
-    def get_mover_velocity(core: SimulationCore, mover: str = "") -> tuple[Vector3, Vector3]:
+    def get_mover_velocity(core: HasWorld, mover: str = "") -> tuple[Vector3, Vector3]:
         """Return the velocity [m/s] and the angular velocity [rad/s] of a mover that is a body.
 
         Both are in the world's axes.

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.entries import read_document
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.operations.targets import BeginsScenes
 
 __all__ = ["ChanceOperations"]
 
@@ -35,7 +33,7 @@ class ChanceOperations(Caller):
     )
     @staticmethod
     def randomise(
-        core: SimulationCore,
+        core: BeginsScenes,
         seed: int | None = None,
         *,
         index: int | None = None,

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import BeginsScenes, HasClock, RunsTime
 from sailenv_ros.types.validation import checked_integer
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["MAX_STEPS", "ClockOperations"]
 
@@ -27,13 +23,13 @@ class ClockOperations(Caller):
 
     @operation(deadline_s=120.0, scene=check.text)
     @staticmethod
-    def change_scene(core: SimulationCore, scene: str) -> None:
+    def change_scene(core: BeginsScenes, scene: str) -> None:
         """Leave the present world for another scene of `scenes`, at simulated time 0."""
         core.begin(scene, core.seed, as_registered=False)
 
     @operation(deadline_s=120.0, seed=check.optional(check.seed))
     @staticmethod
-    def reset(core: SimulationCore, seed: int | None = None) -> int:
+    def reset(core: BeginsScenes, seed: int | None = None) -> int:
         """Begin the present scene anew, as it was at its start; return the new epoch.
 
         Parameters
@@ -54,28 +50,28 @@ class ClockOperations(Caller):
 
     @operation()
     @staticmethod
-    def pause(core: SimulationCore) -> None:
+    def pause(core: HasClock) -> None:
         """Stop simulated time; a second call does nothing."""
         if core.clock.set_paused(True):
             core.announce()
 
     @operation()
     @staticmethod
-    def resume(core: SimulationCore) -> None:
+    def resume(core: HasClock) -> None:
         """Let simulated time run again; a second call does nothing."""
         if core.clock.set_paused(False):
             core.announce()
 
     @operation()
     @staticmethod
-    def set_real_time_factor(core: SimulationCore, factor: float) -> None:
+    def set_real_time_factor(core: HasClock, factor: float) -> None:
         """Change how many simulated seconds per wall second are aimed at, 0.1 to 10."""
         core.clock.set_real_time_factor(factor)
         core.announce()
 
     @operation(deadline_s=600.0, count=_steps)
     @staticmethod
-    def step(core: SimulationCore, count: int = 1) -> int:
+    def step(core: RunsTime, count: int = 1) -> int:
         """Advance a paused or lockstep simulation, with every streamed frame that falls due.
 
         Parameters

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from numpy.typing import ArrayLike
+from typing_extensions import Unpack
 
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.scene.requested_changes import EnvironmentChanges
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
-from sailenv_ros.types.colour import linear_from_srgb8, srgb8_from_linear
+from sailenv_ros.simulation.operations.targets import HasEditor, HasWorld
 from sailenv_ros.types.validation import vector
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["EnvironmentOperations"]
 
@@ -35,17 +34,17 @@ def _gravity(what: str, value: ArrayLike) -> tuple[float, float, float]:
 
 
 class EnvironmentOperations(Caller):
-    """Surroundings. Colours are linear unless they are red, green, blue from 0 to 255 (sRGB)."""
+    """Surroundings; colours are linear."""
 
     @operation()
     @staticmethod
-    def get_ambient_light(core: SimulationCore) -> tuple[float, float, float]:
+    def get_ambient_light(core: HasWorld) -> tuple[float, float, float]:
         """Return the linear radiance that arrives from everywhere."""
         return core.world.contents.environment.ambient
 
     @operation(colour=check.radiance)
     @staticmethod
-    def set_ambient_light(core: SimulationCore, colour: ArrayLike) -> None:
+    def set_ambient_light(core: HasWorld, colour: ArrayLike) -> None:
         """Set the linear radiance that arrives from everywhere."""
         environment: Any = core.world.contents.environment
         core.world.set_environment(replace(environment, ambient=colour))
@@ -54,7 +53,7 @@ class EnvironmentOperations(Caller):
     @operation(kind=_background, colour=check.optional(check.radiance))
     @staticmethod
     def set_background(
-        core: SimulationCore, kind: Literal["sky", "colour"], colour: ArrayLike | None = None
+        core: HasWorld, kind: Literal["sky", "colour"], colour: ArrayLike | None = None
     ) -> None:
         """Show the sky, or a linear colour, where nothing is hit; None keeps the last colour."""
         environment: Any = core.world.contents.environment
@@ -65,7 +64,7 @@ class EnvironmentOperations(Caller):
 
     @operation()
     @staticmethod
-    def set_environment(core: SimulationCore, /, **changes: Any) -> None:
+    def set_environment(core: HasEditor, /, **changes: Unpack[EnvironmentChanges]) -> None:
         """Change the surroundings, by the keys of `environment` in a scene file.
 
         Raises
@@ -79,13 +78,13 @@ class EnvironmentOperations(Caller):
 
     @operation()
     @staticmethod
-    def get_gravity(core: SimulationCore) -> tuple[float, float, float]:
+    def get_gravity(core: HasWorld) -> tuple[float, float, float]:
         """Return the acceleration that pulls every body with gravity, world frame [m/s²]."""
         return core.world.gravity
 
     @operation(gravity=_gravity)
     @staticmethod
-    def set_gravity(core: SimulationCore, gravity: ArrayLike) -> None:
+    def set_gravity(core: HasWorld, gravity: ArrayLike) -> None:
         """Change the acceleration that pulls every body with gravity, until the next reset.
 
         Parameters
@@ -94,20 +93,3 @@ class EnvironmentOperations(Caller):
             World frame, each within 1000 [m/s²]. What sleeps wakes.
         """
         core.world.set_gravity(vector("gravity", gravity))
-
-    # -- by the names of the SAILenv client ------------------------------------------------
-
-    def get_ambient_light_color(self) -> tuple[int, int, int]:
-        """Return red, green, blue, 0 to 255, of the light that arrives from everywhere."""
-        return srgb8_from_linear(self.get_ambient_light())
-
-    def set_ambient_light_color(self, r: int, g: int, b: int) -> None:
-        """Set red, green, blue, 0 to 255, of the light that arrives from everywhere."""
-        self.set_ambient_light(linear_from_srgb8("colour", (r, g, b)))
-
-    def change_main_camera_clear_flags(self, r: int, g: int, b: int) -> None:
-        """Show a colour (0 to 255 each) where nothing is hit; the sky if one is negative."""
-        if min(r, g, b) < 0:
-            self.set_background("sky")
-        else:
-            self.set_background("colour", linear_from_srgb8("colour", (r, g, b)))

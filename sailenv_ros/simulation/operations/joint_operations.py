@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import HasWorld
 from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.validation import Bounds
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["JointOperations"]
 
@@ -25,7 +21,7 @@ class JointOperations(Caller):
     )
     @staticmethod
     def set_joint_position(
-        core: SimulationCore, obj: int | str, position: float, seconds: float = 0.0
+        core: HasWorld, obj: int | str, position: float, seconds: float = 0.0
     ) -> None:
         """Open or close what moves on a joint.
 
@@ -55,6 +51,6 @@ class JointOperations(Caller):
 
     @operation()
     @staticmethod
-    def get_joints(core: SimulationCore) -> tuple[JointState, ...]:
+    def get_joints(core: HasWorld) -> tuple[JointState, ...]:
         """Return the states of all joints that move, in the order of the ids of the objects."""
         return core.world.joints()

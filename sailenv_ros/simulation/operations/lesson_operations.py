@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.entries import read_document
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import HasLessons
 from sailenv_ros.types.lessons import LessonState
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["LessonOperations"]
 
@@ -30,7 +28,7 @@ class LessonOperations(Caller):
     @operation(deadline_s=60.0, lessons=_lessons)
     @staticmethod
     def start_lessons(
-        core: SimulationCore, lessons: Mapping[str, Any] | str | None = None
+        core: HasLessons, lessons: Mapping[str, Any] | str | None = None
     ) -> LessonState:
         """Begin lessons now, in the present world.
 
@@ -65,7 +63,7 @@ class LessonOperations(Caller):
 
     @operation()
     @staticmethod
-    def stop_lessons(core: SimulationCore) -> None:
+    def stop_lessons(core: HasLessons) -> None:
         """Stop the lessons: what is there stays, what waits stays away.
 
         Raises
@@ -77,6 +75,6 @@ class LessonOperations(Caller):
 
     @operation()
     @staticmethod
-    def get_lesson(core: SimulationCore) -> LessonState | None:
+    def get_lesson(core: HasLessons) -> LessonState | None:
         """Return where the lessons are; None if the scene has none."""
         return core.orchestrator.state

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import HasAgents, HasWorld
 from sailenv_ros.types.geometry import POSITION_LIMIT_M
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.validation import vector
 
 if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
     from sailenv_ros.world.gaze import Gaze
 
 __all__ = ["LookOperations"]
@@ -24,7 +24,7 @@ def _point(what: str, value: ArrayLike) -> tuple[float, float, float]:
     return vector(what, value, limit=POSITION_LIMIT_M)
 
 
-def _gaze(core: SimulationCore, obj: int | str | None, point_m: ArrayLike | None) -> Gaze | None:
+def _gaze(core: HasWorld, obj: int | str | None, point_m: ArrayLike | None) -> Gaze | None:
     if obj is None and point_m is None:
         return None
     point = (0.0, 0.0, 0.0) if point_m is None else _point("point_m", point_m)
@@ -43,7 +43,7 @@ class LookOperations(Caller):
     )
     @staticmethod
     def set_look_at(
-        core: SimulationCore,
+        core: HasAgents,
         obj: int | str | None = None,
         point_m: ArrayLike | None = None,
         *,
@@ -100,7 +100,7 @@ class LookOperations(Caller):
     )
     @staticmethod
     def set_mover_look_at(
-        core: SimulationCore,
+        core: HasWorld,
         obj: int | str | None = None,
         point_m: ArrayLike | None = None,
         mover: str = "",

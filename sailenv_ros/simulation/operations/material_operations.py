@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+from typing_extensions import Unpack
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.scene.requested_changes import MaterialChanges
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.operations.targets import HasEditor, HasLibrary
 
 __all__ = ["MaterialOperations"]
 
@@ -26,7 +26,7 @@ class MaterialOperations(Caller):
     @operation(deadline_s=60.0, obj=check.object_reference, part=check.text)
     @staticmethod
     def set_material(
-        core: SimulationCore, obj: int | str, part: str = "", /, **changes: Any
+        core: HasEditor, obj: int | str, part: str = "", /, **changes: Unpack[MaterialChanges]
     ) -> None:
         """Change what an object, a wall, the floor or the ceiling is made of; its shape stays.
 
@@ -55,7 +55,7 @@ class MaterialOperations(Caller):
 
     @operation(deadline_s=60.0)
     @staticmethod
-    def upload_picture(core: SimulationCore, data: bytes) -> str:
+    def upload_picture(core: HasLibrary, data: bytes) -> str:
         """Take a picture for materials; return the name that `set_material` takes.
 
         Parameters

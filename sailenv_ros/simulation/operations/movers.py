@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import HasWorld
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.scene_info import MoverInfo
 from sailenv_ros.types.validation import Bounds, vector
 
 if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
     from sailenv_ros.world.mover import Mover
 
 __all__ = ["MoverOperations"]
@@ -26,7 +26,7 @@ MAX_TIME_S = 1e6
 
 
 @contextmanager
-def _telling_what_is_faced(core: SimulationCore, name: str) -> Iterator[Mover]:
+def _telling_what_is_faced(core: HasWorld, name: str) -> Iterator[Mover]:
     """Announce the scene if what is done to a mover ends what it faces."""
     mover = core.world.mover(name)
     before = mover.gaze
@@ -49,7 +49,7 @@ class MoverOperations(Caller):
     @operation(controller=check.text, mover=check.text)
     @staticmethod
     def set_mover_controller(
-        core: SimulationCore, controller: Literal["waypoint", "rigidbody"], mover: str = ""
+        core: HasWorld, controller: Literal["waypoint", "rigidbody"], mover: str = ""
     ) -> None:
         """Choose what drives a mover.
 
@@ -68,7 +68,7 @@ class MoverOperations(Caller):
     @operation(linear_m_s=vector, angular_rad_s=vector, mover=check.text)
     @staticmethod
     def drive_mover(
-        core: SimulationCore,
+        core: HasWorld,
         linear_m_s: ArrayLike = (0.0, 0.0, 0.0),
         angular_rad_s: ArrayLike = (0.0, 0.0, 0.0),
         mover: str = "",
@@ -92,7 +92,7 @@ class MoverOperations(Caller):
     @operation(pitch_rad=check.number, yaw_rad=check.number, mover=check.text)
     @staticmethod
     def turn_mover(
-        core: SimulationCore, pitch_rad: float = 0.0, yaw_rad: float = 0.0, mover: str = ""
+        core: HasWorld, pitch_rad: float = 0.0, yaw_rad: float = 0.0, mover: str = ""
     ) -> None:
         """Turn a mover at once: pitch (down is positive), yaw (left is positive) [rad]."""
         with _telling_what_is_faced(core, mover) as found:
@@ -103,7 +103,7 @@ class MoverOperations(Caller):
     )
     @staticmethod
     def set_waypoints(
-        core: SimulationCore,
+        core: HasWorld,
         waypoints: Sequence[Pose | tuple[ArrayLike, ArrayLike]],
         mover: str = "",
         *,
@@ -152,6 +152,6 @@ class MoverOperations(Caller):
 
     @operation(mover=check.text)
     @staticmethod
-    def get_mover_pose(core: SimulationCore, mover: str = "") -> Pose:
+    def get_mover_pose(core: HasWorld, mover: str = "") -> Pose:
         """Return where a mover is (x forward, z up, world frame)."""
         return core.world.mover(mover).pose_at(core.world.sim_time_ns)

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from numpy.typing import ArrayLike
+from typing_extensions import Unpack
 
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.scene.requested_changes import ObjectChanges
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import BeginsScenes, HasEditor, HasLibrary, HasWorld
 from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.types.validation import Bounds, vector
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["ObjectOperations"]
 
@@ -64,7 +64,7 @@ class ObjectOperations(Caller):
     )
     @staticmethod
     def spawn_object(
-        core: SimulationCore,
+        core: HasEditor,
         name: str,
         position: ArrayLike = (0.0, 0.0, 0.0),
         rotation: ArrayLike = (0.0, 0.0, 0.0),
@@ -127,7 +127,7 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def despawn_object(core: SimulationCore, obj: int | str) -> None:
+    def despawn_object(core: HasEditor, obj: int | str) -> None:
         """Remove an object from the scene; its id is not used again."""
         number = core.world.find(obj)
         core.editor.require_untaught(number)
@@ -142,7 +142,7 @@ class ObjectOperations(Caller):
     )
     @staticmethod
     def move_object(
-        core: SimulationCore,
+        core: HasWorld,
         obj: int | str,
         position: ArrayLike | None = None,
         rotation: ArrayLike | None = None,
@@ -177,7 +177,7 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def change_object(core: SimulationCore, obj: int | str, /, **changes: Any) -> None:
+    def change_object(core: HasEditor, obj: int | str, /, **changes: Unpack[ObjectChanges]) -> None:
         """Change what an object is; its id, its place and its motion stay.
 
         Parameters
@@ -200,13 +200,13 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def get_object(core: SimulationCore, obj: int | str) -> ObjectState:
+    def get_object(core: HasWorld, obj: int | str) -> ObjectState:
         """Return what and where an object is now."""
         return core.world.object_state(core.world.find(obj))
 
     @operation(obj=check.object_reference, behaviour=check.behaviour)
     @staticmethod
-    def add_behaviour(core: SimulationCore, obj: int | str, behaviour: Mapping[str, Any]) -> None:
+    def add_behaviour(core: HasEditor, obj: int | str, behaviour: Mapping[str, Any]) -> None:
         """Add a behaviour to those that an object has.
 
         Parameters
@@ -220,7 +220,7 @@ class ObjectOperations(Caller):
 
     @operation(obj=check.object_reference)
     @staticmethod
-    def remove_behaviours(core: SimulationCore, obj: int | str) -> None:
+    def remove_behaviours(core: HasWorld, obj: int | str) -> None:
         """End all behaviours of an object; its speed remains."""
         body = core.world.body(core.world.find(obj))
         if body.behaviours:
@@ -236,7 +236,7 @@ class ObjectOperations(Caller):
     )
     @staticmethod
     def apply_wrench(
-        core: SimulationCore,
+        core: HasEditor,
         obj: int | str,
         force_n: ArrayLike = (0.0, 0.0, 0.0),
         torque_nm: ArrayLike = (0.0, 0.0, 0.0),
@@ -276,7 +276,7 @@ class ObjectOperations(Caller):
 
     @operation(seconds=Bounds(least=0.0, most=1.0, unit="s").number)
     @staticmethod
-    def contacts(core: SimulationCore, seconds: float = 0.0) -> tuple[Contact, ...]:
+    def contacts(core: HasWorld, seconds: float = 0.0) -> tuple[Contact, ...]:
         """Return what touched what in the last physics step, or in some time before now.
 
         Parameters
@@ -300,7 +300,7 @@ class ObjectOperations(Caller):
     @operation(deadline_s=120.0, scenario=_scenario)
     @staticmethod
     def load_scenario(
-        core: SimulationCore, scenario: Mapping[str, Any] | str | Path
+        core: BeginsScenes, scenario: Mapping[str, Any] | str | Path
     ) -> tuple[int, ...]:
         """Begin a scene with more objects than its own; return their instance ids, in order.
 
@@ -311,10 +311,10 @@ class ObjectOperations(Caller):
             `timings`, or `lessons` as in a scene file: as a mapping, as YAML or JSON text, or as
             the path of a file with it. A text that is only a name is that of the scene.
         """
-        return core.editor.load_scenario(_scenario("scenario", scenario))
+        return core.begin_scenario(_scenario("scenario", scenario))
 
     @operation()
     @staticmethod
-    def spawnable_display_names(core: SimulationCore) -> tuple[str, ...]:
+    def spawnable_display_names(core: HasLibrary) -> tuple[str, ...]:
         """Return the names of what can be spawned as people write them, e.g. ``Chair 01``."""
         return core.library.spawnable_display_names

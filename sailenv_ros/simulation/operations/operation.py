@@ -12,15 +12,27 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar, overload
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Concatenate,
+    Generic,
+    ParamSpec,
+    TypeVar,
+    get_args,
+    get_origin,
+    overload,
+)
+
+from typing_extensions import Unpack
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.simulation.operations.argument_checks import flags_of
 from sailenv_ros.system.futures import wait_for
 
 if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
     from sailenv_ros.simulation.model_workers import ModelWorkers
+    from sailenv_ros.simulation.operations.targets import OperationTarget
     from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["BoundOperation", "Caller", "Check", "Operation", "background_operation", "operation"]
@@ -83,6 +95,8 @@ class Operation(Generic[P, R]):
     name : str
     signature : inspect.Signature
         As a caller sees it.
+    keywords : mapping of str to str
+        Types of the keywords that its ``**changes`` take, as their TypedDict declares them.
     """
 
     def __init__(
@@ -103,7 +117,8 @@ class Operation(Generic[P, R]):
         self.checks = MappingProxyType({**flags_of(self.signature), **checks})
         self.__doc__ = function.__doc__
         self.__name__ = self.name
-        self.__signature__ = self.signature
+        self.keywords = _keywords_of(function)
+        self.__signature__ = _with_keywords(self.signature, self.keywords)
         self._positional = frozenset(
             parameter.name
             for parameter in self.signature.parameters.values()
@@ -170,6 +185,10 @@ class Operation(Generic[P, R]):
         )
         return args, {**values, **changes}
 
+    def carry_out(self, target: OperationTarget, arguments: inspect.BoundArguments) -> Any:
+        """Do it now, with arguments that were checked; return its result."""
+        return self.run(target, *arguments.args, **arguments.kwargs)
+
     def bind(
         self, caller: Caller, args: tuple[Any, ...], kwargs: dict[str, Any]
     ) -> inspect.BoundArguments:
@@ -206,7 +225,7 @@ class BoundOperation(Generic[P, R]):
         self._timeout_s = timeout_s
         self.__doc__ = operation.__doc__
         self.__name__ = operation.name
-        self.__signature__ = operation.signature
+        self.__signature__ = operation.__signature__
 
     def __call__(self, /, *args: P.args, **kwargs: P.kwargs) -> R:
         """Do it and return its result, within its deadline."""
@@ -226,10 +245,34 @@ class BoundOperation(Generic[P, R]):
         return f"<operation {self._operation.name}{self._operation.signature}>"
 
 
+def _keywords_of(function: Callable[..., Any]) -> Mapping[str, str]:
+    """Return what a function's ``**keywords: Unpack[...]`` may be, by their names."""
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.kind is inspect.Parameter.VAR_KEYWORD:
+            declared = inspect.get_annotations(function, eval_str=True)[parameter.name]
+            origin: Any = get_origin(declared)
+            if origin is Unpack:
+                (keys,) = get_args(declared)
+                types = keys.__annotations__.items()
+                return MappingProxyType({k: getattr(t, "__forward_arg__", t) for k, t in types})
+    return MappingProxyType({})
+
+
+def _with_keywords(signature: inspect.Signature, keywords: Mapping[str, str]) -> inspect.Signature:
+    """Return a signature that shows each keyword instead of all of them as one."""
+    if not keywords:
+        return signature
+    named = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=..., annotation=type_)
+        for name, type_ in keywords.items()
+    ]
+    return signature.replace(parameters=[*list(signature.parameters.values())[:-1], *named])
+
+
 def operation(
     deadline_s: float = 30.0, **checks: Check
-) -> Callable[[Callable[Concatenate[SimulationCore, P], R]], Operation[P, R]]:
-    """Declare an operation: decorate a static method whose first argument is the core.
+) -> Callable[[Callable[Concatenate[OperationTarget, P], R]], Operation[P, R]]:
+    """Declare an operation: decorate a static method whose first argument is what it works on.
 
     The method either does all of it or raises and leaves everything as it was.
 
@@ -241,7 +284,7 @@ def operation(
         Of arguments, by their names.
     """
 
-    def declare(run: Callable[Concatenate[SimulationCore, P], R]) -> Operation[P, R]:
+    def declare(run: Callable[Concatenate[OperationTarget, P], R]) -> Operation[P, R]:
         return Operation(run, deadline_s, checks)
 
     return declare

@@ -21,9 +21,11 @@ from sailenv_ros.simulation.operations.models import ModelOperations
 from sailenv_ros.simulation.operations.movers import MoverOperations
 from sailenv_ros.simulation.operations.object_operations import ObjectOperations
 from sailenv_ros.simulation.operations.operation import Operation
+from sailenv_ros.simulation.operations.sailenv_names import SailenvNames
 from sailenv_ros.simulation.operations.saving_operations import SavingOperations
 from sailenv_ros.simulation.operations.scene_tables import SceneTables
 from sailenv_ros.simulation.operations.space_operations import SpaceOperations
+from sailenv_ros.simulation.operations.viewpoint_operations import ViewpointOperations
 
 __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 
@@ -39,6 +41,7 @@ class WorldOperations(
     MoverOperations,
     BodyOperations,
     SpaceOperations,
+    ViewpointOperations,
     SavingOperations,
     ClockOperations,
     ChanceOperations,
@@ -47,7 +50,7 @@ class WorldOperations(
     """Every operation on the world and its agents."""
 
 
-class Operations(WorldOperations, ModelOperations, SceneTables, FramePictures):
+class Operations(SailenvNames, WorldOperations, ModelOperations, SceneTables, FramePictures):
     """Every operation; what `Simulation` and `Agent` have in common."""
 
 

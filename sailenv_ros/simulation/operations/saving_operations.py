@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.operations.targets import HasSceneWriter
 
 __all__ = ["SavingOperations"]
 
@@ -20,7 +17,7 @@ class SavingOperations(Caller):
     @operation(title=check.optional(check.text), cameras=check.texts)
     @staticmethod
     def scene_text(
-        core: SimulationCore, *, title: str | None = None, cameras: Collection[str] = ()
+        core: HasSceneWriter, *, title: str | None = None, cameras: Collection[str] = ()
     ) -> str:
         """Return the YAML text that `save_scene` would write; see there for the arguments."""
         return core.scene_writer.text(core.world.scene, title, cameras)
@@ -32,7 +29,7 @@ class SavingOperations(Caller):
     )
     @staticmethod
     def save_scene(
-        core: SimulationCore,
+        core: HasSceneWriter,
         name: str,
         *,
         overwrite: bool = False,

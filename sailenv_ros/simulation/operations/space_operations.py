@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,13 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
+from sailenv_ros.simulation.operations.targets import HasSpace
 from sailenv_ros.space import FreeSpace, RayCast
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import vector
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["SpaceOperations"]
 
@@ -77,7 +75,7 @@ class SpaceOperations(Caller):
     @operation(**_BODY)
     @staticmethod
     def free_space(
-        core: SimulationCore,
+        core: HasSpace,
         height_m: float = 1.8,
         radius_m: float = 0.25,
         *,
@@ -117,7 +115,7 @@ class SpaceOperations(Caller):
     @operation(start=_place, goal=_place, **_BODY)
     @staticmethod
     def find_path(
-        core: SimulationCore,
+        core: HasSpace,
         start: ArrayLike,
         goal: ArrayLike,
         height_m: float = 1.8,
@@ -161,7 +159,7 @@ class SpaceOperations(Caller):
     )
     @staticmethod
     def random_pose(
-        core: SimulationCore,
+        core: HasSpace,
         name: str = "",
         height_m: float = 1.8,
         radius_m: float = 0.25,
@@ -210,7 +208,7 @@ class SpaceOperations(Caller):
     @operation(origins=_rays, directions=_directions, max_distance_m=_reach)
     @staticmethod
     def cast_rays(
-        core: SimulationCore,
+        core: HasSpace,
         origins: ArrayLike,
         directions: ArrayLike,
         *,

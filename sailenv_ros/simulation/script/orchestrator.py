@@ -11,26 +11,38 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.scene.entries import checked_lessons, read_document
 from sailenv_ros.scene.spec import LessonsSpec, ObjectSpec
+from sailenv_ros.simulation.clock import Clock
+from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.simulation.script.lesson_plan import LessonPlan, Turn, steps_of
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.world.bullet import sim_time_ns
-
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
 
 __all__ = ["Orchestrator"]
 
 
 class Orchestrator:
-    """What comes and goes in one simulation; used by one thread alone."""
+    """What comes and goes in one simulation; used by one thread alone.
 
-    def __init__(self, core: SimulationCore) -> None:
-        self._core = core
+    Parameters
+    ----------
+    scene : LiveScene
+    clock : Clock
+        Stopped as lessons end, where it runs by itself.
+    on_enter : callable
+        Told the instance id of each object that has just come.
+    """
+
+    def __init__(
+        self, scene: LiveScene, clock: Clock, on_enter: Callable[[int], None] = lambda id_: None
+    ) -> None:
+        self._scene = scene
+        self._clock = clock
+        self._on_enter = on_enter
         self._order = itertools.count()
         self._events: list[tuple[int, int, Callable[[], None]]] = []
         self._lesson_events: list[tuple[int, int, Callable[[], None]]] = []
@@ -57,7 +69,7 @@ class Orchestrator:
 
     def begin(self) -> None:
         """Begin with a world that has just been built."""
-        world, described = self._core.world, self._core.world.described
+        world, described = self._scene.world, self._scene.world.described
         self._events, self._lesson_events = [], []
         self._plan, self._turn, self._state, self._ids = None, None, None, {}
         if described is None:
@@ -80,20 +92,20 @@ class Orchestrator:
 
     def act(self) -> None:
         """Do what is due at the present step."""
-        step = self._core.world.step_count
+        step = self._scene.world.step_count
         due = self.next_step
         if due is None or due > step:
             return
-        with self._core.announced_once():
+        with self._scene.announce.once():
             for events in (self._events, self._lesson_events):
                 # What a lesson does may end with the beginning of the next one.
                 while events and events[0][0] <= step:
                     heapq.heappop(events)[2]()
-            self._core.announce()
+            self._scene.announce()
 
     def start(self, lessons: Mapping[str, Any] | str | None) -> None:
         """Begin lessons now, in the present world; see the operation `start_lessons`."""
-        world = self._core.world
+        world = self._scene.world
         assert world.described is not None
         objects, of_scene = self._present_entries(), world.described.lessons
         if isinstance(lessons, str):
@@ -102,19 +114,19 @@ class Orchestrator:
             raise InvalidState("the scene has no lessons; say by lessons what comes when")
         if lessons is None and of_scene is not None:
             lessons = of_scene.model_dump(mode="json", exclude_unset=True)
-        knowledge = self._core.library.knowledge_of(world.scene)
+        knowledge = self._scene.library.knowledge_of(world.scene)
         spec = checked_lessons(lessons, objects.values(), knowledge)
         ids = self._all_ids()
         for name in sorted(spec.names):
             world.require_free(ids[name])
         before = frozenset(self._ids)
         world.described = world.described.model_copy(update={"lessons": spec})
-        with self._core.announced_once():
+        with self._scene.announce.once():
             for name in sorted(before | spec.names):
                 self._leave(ids[name])
             self._start(spec, objects, ids, at_step=world.step_count)
             self.act()
-            self._core.announce()
+            self._scene.announce()
 
     def stop(self) -> None:
         """Let lessons come to no end: what is there stays, what waits stays away."""
@@ -122,7 +134,7 @@ class Orchestrator:
             raise InvalidState("there are no lessons that could be stopped")
         self._lesson_events = []
         self._state = replace(self._state, phase="stopped", ends_ns=0)
-        self._core.announce()
+        self._scene.announce()
 
     # -- inside ----------------------------------------------------------------------------
 
@@ -134,19 +146,19 @@ class Orchestrator:
         *,
         at_step: int,
     ) -> None:
-        self._plan = LessonPlan(spec, objects, self._core.seed)
+        self._plan = LessonPlan(spec, objects, self._scene.seed)
         self._ids = {name: ids[name] for name in spec.names if name in ids}
         self._turns, self._lesson_events = self._plan.turns(), []
         self._at(self._lesson_events, at_step, self._next_turn)
 
     def _next_turn(self) -> None:
-        now = self._core.world.step_count
+        now = self._scene.world.step_count
         turn = next(self._turns, None)
         if turn is None:
             assert self._state is not None
             self._state = replace(self._state, phase="ended")
-            if self._core.clock.runs_by_itself:
-                self._core.clock.set_paused(True)
+            if self._clock.runs_by_itself:
+                self._clock.set_paused(True)
             return
         self._turn = turn
         lesson = turn.lesson
@@ -193,15 +205,15 @@ class Orchestrator:
             self._leave(instance_id)
 
     def _enter(self, instance_id: int, draw: int) -> None:
-        core, world = self._core, self._core.world
+        scene, world = self._scene, self._scene.world
         if instance_id in world.waiting:
-            seed = core.seed if self._plan is None else self._plan.seed_of(draw, core.seed)
+            seed = scene.seed if self._plan is None else self._plan.seed_of(draw, scene.seed)
             world.enter(instance_id, seed=seed)
-            core.randomiser.dress(instance_id)
+            self._on_enter(instance_id)
 
     def _leave(self, instance_id: int) -> None:
-        if instance_id in self._core.world.bodies_by_id:
-            self._core.world.leave(instance_id)
+        if instance_id in self._scene.world.bodies_by_id:
+            self._scene.world.leave(instance_id)
 
     def _at_lesson(self, step: int, do: Callable[[], None]) -> None:
         self._at(self._lesson_events, step, do)
@@ -212,13 +224,13 @@ class Orchestrator:
         heapq.heappush(events, (step, next(self._order), do))
 
     def _all_ids(self) -> dict[str, int]:
-        world = self._core.world
+        world = self._scene.world
         there = {body.placement.name: id_ for id_, body in world.numbered_bodies}
         return {**there, **world.waiting.names()}
 
     def _present_entries(self) -> dict[str, ObjectSpec]:
         """Return what a scene file says of each object, also of those that wait."""
-        world = self._core.world
+        world = self._scene.world
         there = [body.placement for body in world.bodies]
         waiting = [world.waiting[id_] for id_ in world.waiting]
         return {p.name: p.entry for p in (*there, *waiting) if p.entry is not None}

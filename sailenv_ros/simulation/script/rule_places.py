@@ -5,34 +5,38 @@ A record holds the place, so a frame is made again without the rule.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from sailenv_ros.authoring.viewpoints import sample_cameras
+from sailenv_ros.authoring.viewpoints import ViewScene, sample_cameras
 from sailenv_ros.scene.randomise.thing import Values
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 
-if TYPE_CHECKING:
-    from sailenv_ros.simulation.core import SimulationCore
-
-__all__ = ["agent_specs", "placed_by_rules"]
+__all__ = ["placed_by_rules"]
 
 LOOK_PX = 160
 """Longer side of the pictures that rules look at."""
 
 
-def agent_specs(core: SimulationCore) -> dict[str, AgentSpec]:
-    """Return the agents by name, those too that the scene brings and that come right after."""
-    specs = (*core.library.agents_of(core.world.scene), *core.agents.specs)
-    return {spec.name: spec for spec in specs}
-
-
-def placed_by_rules(values: Values, core: SimulationCore) -> Values:
+def placed_by_rules(
+    values: Values,
+    specs: Mapping[str, AgentSpec],
+    view_scene: Callable[[CameraIntrinsics], ViewScene],
+) -> Values:
     """Return drawn values with a position and a rotation instead of each rule.
 
     A camera for which its rule finds no place keeps the one that it has.
+
+    Parameters
+    ----------
+    values : mapping
+        As `random_values.sampled` draws them.
+    specs : mapping of str to AgentSpec
+        The agents by name.
+    view_scene : callable
+        Returns the scene as it stands now, as a lens sees it.
 
     Raises
     ------
@@ -42,7 +46,6 @@ def placed_by_rules(values: Values, core: SimulationCore) -> Values:
     agents: Mapping[str, Mapping[str, Any]] = values.get("agents", {})
     if not any("rule" in keys for keys in agents.values()):
         return values
-    specs = agent_specs(core)
     placed: dict[str, Any] = {}
     for name, given in agents.items():
         keys = dict(given)
@@ -50,7 +53,7 @@ def placed_by_rules(values: Values, core: SimulationCore) -> Values:
         if rule is not None and name in specs:
             lens = _small(specs[name].intrinsics, keys.get("vertical_fov"))
             views = sample_cameras(
-                core.view_scene(lens), rule["name"], seed=rule["seed"], settings=rule["settings"]
+                view_scene(lens), rule["name"], seed=rule["seed"], settings=rule["settings"]
             )
             for view in views:
                 keys["position"] = list(view.pose.position_m)

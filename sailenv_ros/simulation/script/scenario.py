@@ -12,10 +12,17 @@ from typing import Any
 
 from sailenv_ros.behaviours.durations import moving_time_s
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
-from sailenv_ros.scene.entries import plain_value
+from sailenv_ros.scene.entries import plain_value, read_document
 from sailenv_ros.types.validation import checked_flag, checked_number
 
-__all__ = ["NOTHING_MORE", "SCENARIO_KEYS", "Additions", "scenario_additions", "scenario_entries"]
+__all__ = [
+    "NOTHING_MORE",
+    "SCENARIO_KEYS",
+    "Additions",
+    "scenario_additions",
+    "scenario_entries",
+    "wanted_scenario",
+]
 
 SCENARIO_KEYS = ("scene", "scene_name", "objects", "timings", "frustum", "lessons")
 
@@ -46,6 +53,32 @@ class Additions:
 
 
 NOTHING_MORE = Additions()
+
+
+def wanted_scenario(
+    scenario: str | Mapping[str, Any], *, present: str, viewer: str
+) -> tuple[str, Additions]:
+    """Return the scene that a scenario is played in, and what it adds to that.
+
+    Parameters
+    ----------
+    scenario : mapping or str
+        Or its text; a text that is only a name is that of the scene.
+    present : str
+        The scene where it names none.
+    viewer : str
+        See `scenario_entries`.
+    """
+    wanted = read_document(scenario) if isinstance(scenario, str) else scenario
+    if isinstance(wanted, str):
+        wanted = {"scene": wanted}
+    if not isinstance(wanted, Mapping):
+        raise InvalidRequest("scenario", wanted, "a mapping with scene, objects, timings")
+    names = [wanted[key] for key in ("scene", "scene_name") if key in wanted]
+    scene = names[0] if names else present
+    if not isinstance(scene, str) or len(names) > 1:
+        raise InvalidRequest("scene", names, "the name of a scene")
+    return scene, scenario_additions(wanted, viewer=viewer)
 
 
 def scenario_additions(scenario: Mapping[str, Any], *, viewer: str) -> Additions:

@@ -13,8 +13,8 @@ import yaml
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, SceneError, UnknownName
 from sailenv_ros.scene.loader import load_scene
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.editing.saving import described_world
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.rigid_body import RigidBody
 from tests.unit.simulation.test_look_at import make
@@ -56,13 +56,13 @@ def stage(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def core(stage: Path) -> Iterator[SimulationCore]:
+def core(stage: Path) -> Iterator[SynchronousSimulation]:
     made = make(stage)
     yield made
     made.close()
 
 
-def test_a_scene_file_makes_a_body_and_a_reset_begins_anew(core: SimulationCore) -> None:
+def test_a_scene_file_makes_a_body_and_a_reset_begins_anew(core: SynchronousSimulation) -> None:
     """Its constants are announced, its motion is told; who follows sees from it."""
     bodies = {mover.name: mover.body for mover in core.info.movers}
     assert bodies == {"puck": PUCK, "rail": None, "stand": None, "ball": RigidBody(gravity=False)}
@@ -80,7 +80,7 @@ def test_a_scene_file_makes_a_body_and_a_reset_begins_anew(core: SimulationCore)
     assert core.get_mover_pose("puck").position_m == (0.0, 0.0, 0.5)
 
 
-def test_a_request_makes_a_body_and_tells_it(core: SimulationCore) -> None:
+def test_a_request_makes_a_body_and_tells_it(core: SynchronousSimulation) -> None:
     revision = core.info.revision
     core.set_mover_body(RigidBody(mass_kg=2.0), "stand")
     assert core.info.revision > revision
@@ -101,7 +101,7 @@ def test_a_request_makes_a_body_and_tells_it(core: SimulationCore) -> None:
     assert core.get_mover_pose("stand").position_m == (0.0, -3.0, 4.0)
 
 
-def test_the_same_call_pushes_objects_and_movers(core: SimulationCore) -> None:
+def test_the_same_call_pushes_objects_and_movers(core: SynchronousSimulation) -> None:
     """By name; where both have it, the object is meant. A point is one of the ball's own frame."""
     core.apply_wrench("ball", force_n=(0.0, 0.0, 96.0), point_m=None)
     core.apply_wrench("puck", force_n=(0.0, 4.8, 0.0), point_m=(0.0, 0.0, 0.1))
@@ -114,7 +114,7 @@ def test_the_same_call_pushes_objects_and_movers(core: SimulationCore) -> None:
     assert angular[0] == pytest.approx(-0.1 * 4.8 / 240 / inertia, rel=1e-6)
 
 
-def test_a_body_faces_things_and_tells_what(core: SimulationCore) -> None:
+def test_a_body_faces_things_and_tells_what(core: SynchronousSimulation) -> None:
     """Whether it spins or not, what sees from it is turned; it goes on as it went."""
     core.set_mover_look_at("ball", mover="puck")
     assert core.get_mover_look_at("puck") == LookAt(obj="ball")
@@ -149,8 +149,8 @@ def test_a_body_faces_things_and_tells_what(core: SimulationCore) -> None:
     ],
 )
 def test_what_is_refused_changes_nothing(
-    core: SimulationCore,
-    ask: Callable[[SimulationCore], Any],
+    core: SynchronousSimulation,
+    ask: Callable[[SynchronousSimulation], Any],
     error: type[Exception],
     words: str,
 ) -> None:
@@ -198,11 +198,11 @@ def test_a_body_with_waypoints_is_one_until_it_is_none(tmp_path: Path) -> None:
     core.close()
 
 
-def saved(core: SimulationCore) -> dict[str, Any]:
+def saved(core: SynchronousSimulation) -> dict[str, Any]:
     return {entry["name"]: entry for entry in described_world(core.world, core.agents)["movers"]}
 
 
-def test_a_saved_scene_has_bodies_as_they_move(core: SimulationCore, tmp_path: Path) -> None:
+def test_a_saved_scene_has_bodies_as_they_move(core: SynchronousSimulation, tmp_path: Path) -> None:
     """Untouched ones keep the words of the file; others are written as they are now."""
     begun = {entry["name"]: entry for entry in yaml.safe_load(STAGE)["movers"]}
     assert saved(core)["puck"]["body"] == begun["puck"]["body"]

@@ -20,7 +20,7 @@ from sailenv_ros.errors import (
     SceneError,
     UnknownName,
 )
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -32,13 +32,13 @@ from tests.support.lockstep_core import lockstep_core
 SMALL = CameraIntrinsics(width=16, height=12)
 
 
-def make_core(**kwargs: object) -> tuple[SimulationCore, BlankRenderer]:
+def make_core(**kwargs: object) -> tuple[SynchronousSimulation, BlankRenderer]:
     renderer = BlankRenderer()
     return lockstep_core(renderer=renderer, **kwargs), renderer
 
 
 @pytest.fixture
-def core() -> Iterator[SimulationCore]:
+def core() -> Iterator[SynchronousSimulation]:
     made, _ = make_core()
     yield made
     made.close()
@@ -53,7 +53,7 @@ def test_streamed_frames_fall_on_the_rate_s_grid() -> None:
     core, renderer = make_core()
     core.register_agent(spec())
     stream = core.open_stream("eye", ("depth",), lambda _: None)
-    core.render_due()
+    core.streams.render_due()
     core.step(240)
     steps = [snapshot.step for snapshot, *_ in renderer.calls]
     assert steps == list(range(0, 241, 8))
@@ -74,7 +74,7 @@ def test_views_that_the_renderer_cannot_make_are_refused_where_they_are_asked_fo
     stream = core.open_stream("eye", ("depth",), lambda _: None)
     with refused:
         stream.set_views(("normals",))
-    core.render_due()
+    core.streams.render_due()
     assert [views for *_, views in renderer.calls] == [("depth",)]
     assert list(stream.get(0.0).views) == ["depth"]
 
@@ -113,10 +113,10 @@ def test_a_late_loop_renders_the_last_frame_and_counts_the_others() -> None:
     core, renderer = make_core()
     core.register_agent(spec())
     core.open_stream("eye", ("depth",), lambda _: None)
-    core.render_due()
+    core.streams.render_due()
     core.advance_to(48, every_frame=False)
     assert [snapshot.step for snapshot, *_ in renderer.calls] == [0, 48]
-    assert core.skipped_frames == 5
+    assert core.streams.skipped_frames == 5
 
 
 def test_flow_refers_to_the_last_frame_of_an_earlier_instant() -> None:
@@ -137,7 +137,7 @@ def test_flow_refers_to_the_last_frame_of_an_earlier_instant() -> None:
     assert [frame.sequence for frame in (first, again, third, fourth)] == [1, 2, 3, 4]
 
 
-def test_a_set_pose_is_motion_and_a_teleport_is_not(core: SimulationCore) -> None:
+def test_a_set_pose_is_motion_and_a_teleport_is_not(core: SynchronousSimulation) -> None:
     """After set_position the next frame keeps its past; after a teleport it has none."""
     core.register_agent(spec(following=False))
     core.capture(["depth"], agent="eye")
@@ -149,7 +149,7 @@ def test_a_set_pose_is_motion_and_a_teleport_is_not(core: SimulationCore) -> Non
     assert core.capture(["depth"], agent="eye").dt_ns == 0
 
 
-def test_a_following_agent_moves_its_mover_and_all_who_follow(core: SimulationCore) -> None:
+def test_a_following_agent_moves_its_mover_and_all_who_follow(core: SynchronousSimulation) -> None:
     """set_position on a follower moves every follower; a free agent stays."""
     for name, following in (("a", True), ("b", True), ("free", False)):
         core.register_agent(spec(name, following=following))
@@ -162,7 +162,7 @@ def test_a_following_agent_moves_its_mover_and_all_who_follow(core: SimulationCo
     assert core.info.movers[0].controller == "rigidbody"
 
 
-def test_an_agent_that_stops_following_stays_where_it_is(core: SimulationCore) -> None:
+def test_an_agent_that_stops_following_stays_where_it_is(core: SynchronousSimulation) -> None:
     """toggle_follow leaves the agent in place; toggled back it is at the mover again."""
     core.register_agent(spec())
     core.step(100)
@@ -174,7 +174,7 @@ def test_an_agent_that_stops_following_stays_where_it_is(core: SimulationCore) -
     assert core.get_pose(agent="eye") != here
 
 
-def test_rotation_and_position_leave_each_other_alone(core: SimulationCore) -> None:
+def test_rotation_and_position_leave_each_other_alone(core: SynchronousSimulation) -> None:
     """set_rotation keeps the position, set_position the rotation, to the bit."""
     core.register_agent(spec(following=False, pose=Pose.from_rpy_deg((1, 2, 3), (10, 20, 30))))
     core.set_rotation((0.0, 0.0, 90.0), agent="eye")
@@ -200,7 +200,7 @@ def test_a_new_scene_and_a_reset_have_no_past() -> None:
     assert renderer.calls[-1][1] is None
 
 
-def test_a_reset_puts_every_byte_back(core: SimulationCore) -> None:
+def test_a_reset_puts_every_byte_back(core: SynchronousSimulation) -> None:
     """After a reset the same steps give the same poses, whatever was done meanwhile."""
     core.register_agent(spec())
     core.step(200)
@@ -229,7 +229,7 @@ def test_no_frame_is_newer_than_the_scene_info_told() -> None:
     assert [info.revision for info in told] == sorted({info.revision for info in told})
 
 
-def test_a_frame_keeps_the_instances_of_its_own_instant(core: SimulationCore) -> None:
+def test_a_frame_keeps_the_instances_of_its_own_instant(core: SynchronousSimulation) -> None:
     """What is spawned or removed later changes no frame that was taken before."""
     core.register_agent(spec())
     before = core.capture(["instance"], agent="eye")
@@ -276,7 +276,9 @@ BAD_REQUESTS = [
 
 
 @pytest.mark.parametrize(("call", "error", "sentence"), BAD_REQUESTS)
-def test_a_refused_request_changes_nothing(core: SimulationCore, call, error, sentence) -> None:  # type: ignore[no-untyped-def]  # three columns of a table
+def test_a_refused_request_changes_nothing(
+    core: SynchronousSimulation, call, error, sentence
+) -> None:  # type: ignore[no-untyped-def]  # three columns of a table
     """Each bad request gets one sentence, and world, agents and info are as before."""
     core.register_agent(spec())
     info, snapshot, pose = core.info, core.world.snapshot(), core.get_agent_pose(agent="eye")
@@ -289,7 +291,7 @@ def test_a_refused_request_changes_nothing(core: SimulationCore, call, error, se
 
 
 def test_a_scene_file_with_faults_leaves_the_present_one(
-    core: SimulationCore, tmp_path: Path
+    core: SynchronousSimulation, tmp_path: Path
 ) -> None:
     """Changing to a broken file raises all its errors and the old world goes on."""
     broken = tmp_path / "broken.yaml"
@@ -302,7 +304,7 @@ def test_a_scene_file_with_faults_leaves_the_present_one(
     core.step(1)
 
 
-def test_at_most_sixteen_agents(core: SimulationCore) -> None:
+def test_at_most_sixteen_agents(core: SynchronousSimulation) -> None:
     """The seventeenth is refused in words."""
     for number in range(16):
         core.register_agent(spec(f"agent_{number}"))
@@ -321,9 +323,9 @@ def test_a_running_simulation_is_not_stepped_by_hand() -> None:
     assert renderer.closed
 
 
-def test_picture_settings_go_to_the_camera_and_survive_a_reset(core: SimulationCore) -> None:
+def test_picture_settings_go_to_the_camera_and_survive_a_reset(core: SynchronousSimulation) -> None:
     """As registered, then as set; the camera carries its agent's name; wrong ones are refused."""
-    renderer = core._renderer
+    renderer = core.frames._renderer
     assert isinstance(renderer, BlankRenderer)
     first, second = PictureSettings(exposure=1.0), PictureSettings(full_well=500.0)
     core.register_agent(spec(rate_hz=0.0, picture=first))
@@ -342,7 +344,7 @@ def test_picture_settings_go_to_the_camera_and_survive_a_reset(core: SimulationC
     assert core.info.agents[-1].picture == second
 
 
-def test_some_settings_of_a_picture_are_changed(core: SimulationCore) -> None:
+def test_some_settings_of_a_picture_are_changed(core: SynchronousSimulation) -> None:
     """The others stay; what is refused, or names nothing, changes nothing and is not announced."""
     begun = PictureSettings(bloom=0.5, smooth_edges=False)
     core.register_agent(spec(rate_hz=0.0, picture=begun))
@@ -380,7 +382,7 @@ def test_an_agent_s_picture_is_an_object_of_settings() -> None:
         AgentSpec(name="eye", picture={"exposure": 1.0})  # type: ignore[arg-type]  # on purpose
 
 
-def test_a_picture_of_too_many_samples_changes_nothing(core: SimulationCore) -> None:
+def test_a_picture_of_too_many_samples_changes_nothing(core: SynchronousSimulation) -> None:
     """Neither by its settings nor by its size, whichever comes second."""
     wide = CameraIntrinsics(width=2048, height=16)
     core.register_agent(spec(rate_hz=0.0))
@@ -395,7 +397,7 @@ def test_a_picture_of_too_many_samples_changes_nothing(core: SimulationCore) -> 
     assert core.info.agents == before
 
 
-def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
+def test_a_changed_rate_begins_on_its_own_grid(core: SynchronousSimulation) -> None:
     """Frames fall on multiples of the new interval, from the next on; a reset keeps the rate."""
     core.register_agent(spec(rate_hz=30.0))
     stream = core.open_stream("eye", ("depth",), lambda _: None)
@@ -415,7 +417,7 @@ def test_a_changed_rate_begins_on_its_own_grid(core: SimulationCore) -> None:
         stream.get(0.0)
 
 
-def test_another_lens_begins_without_a_past(core: SimulationCore) -> None:
+def test_another_lens_begins_without_a_past(core: SynchronousSimulation) -> None:
     """The next frame has the new size and refers to no earlier one; a reset keeps the lens."""
     core.register_agent(spec())
     core.capture(("depth",), agent="eye")
@@ -433,7 +435,7 @@ def test_another_lens_begins_without_a_past(core: SimulationCore) -> None:
 
 
 @pytest.mark.parametrize("rate", [-1.0, 241.0, float("nan"), "often"])
-def test_a_rate_out_of_range_changes_nothing(core: SimulationCore, rate: object) -> None:
+def test_a_rate_out_of_range_changes_nothing(core: SynchronousSimulation, rate: object) -> None:
     """The old rate stays."""
     core.register_agent(spec(rate_hz=30.0))
     with pytest.raises(InvalidRequest, match="a number from 0 to 240"):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken, UnknownName
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.baked_light import BakedLight, LightChart, ProbeGrid, Unwrapping
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.scene_info import SceneInfo
@@ -36,7 +36,7 @@ mover:
 
 
 @pytest.fixture(scope="module")
-def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimulationCore]:
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SynchronousSimulation]:
     folder: Path = tmp_path_factory.mktemp("scenes")
     (folder / "den.yaml").write_text(ROOM, encoding="utf-8")
     core = lockstep_core("den", folder)
@@ -45,25 +45,25 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimulationCore]
 
 
 @pytest.fixture
-def core(shared: SimulationCore) -> SimulationCore:
+def core(shared: SynchronousSimulation) -> SynchronousSimulation:
     shared.reset()
     return shared
 
 
 @pytest.fixture
-def told(core: SimulationCore) -> Iterator[list[SceneInfo]]:
+def told(core: SynchronousSimulation) -> Iterator[list[SceneInfo]]:
     infos: list[SceneInfo] = []
     core.on_info = infos.append
     yield infos
     core.on_info = lambda info: None
 
 
-def row(core: SimulationCore, obj: str) -> int:
+def row(core: SynchronousSimulation, obj: str) -> int:
     names = [drawn.instance.name for drawn in core.world.contents.instances]
     return names.index(obj)
 
 
-def history(core: SimulationCore, obj: str) -> int:
+def history(core: SynchronousSimulation, obj: str) -> int:
     return int(core.world.snapshot().histories[row(core, obj)])
 
 
@@ -71,7 +71,7 @@ def history(core: SimulationCore, obj: str) -> int:
 
 
 def test_a_changed_object_keeps_its_id_and_its_place(
-    core: SimulationCore, told: list[SceneInfo]
+    core: SynchronousSimulation, told: list[SceneInfo]
 ) -> None:
     """All that it was not asked to change stays; clients are told at once, the order is kept."""
     ids = [drawn.instance.id for drawn in core.world.contents.instances]
@@ -98,7 +98,7 @@ def test_a_changed_object_keeps_its_id_and_its_place(
     assert looks.base_colour[:3] == (1.0, 0.0, 0.0)
 
 
-def test_another_scale_cuts_the_past_off(core: SimulationCore) -> None:
+def test_another_scale_cuts_the_past_off(core: SynchronousSimulation) -> None:
     """A point of a surface that has another size has no place of before: no flow there."""
     before = history(core, "toy"), history(core, "cup")
     core.change_object("toy", category="chair")
@@ -108,7 +108,7 @@ def test_another_scale_cuts_the_past_off(core: SimulationCore) -> None:
     assert history(core, "cup") == before[1]
 
 
-def test_another_scale_takes_the_baked_light_off(core: SimulationCore) -> None:
+def test_another_scale_takes_the_baked_light_off(core: SynchronousSimulation) -> None:
     """Light was baked for a surface of another size; that of the others stays."""
     table, floor = core.world.find("table"), core.world.find("floor")
     chart = LightChart(
@@ -126,7 +126,7 @@ def test_another_scale_takes_the_baked_light_off(core: SimulationCore) -> None:
     assert set(core.world.contents.baked.charts) == {floor}
 
 
-def test_a_changed_object_goes_on_as_it_moved(core: SimulationCore) -> None:
+def test_a_changed_object_goes_on_as_it_moved(core: SynchronousSimulation) -> None:
     """Velocity and behaviours survive; a behaviour's time goes on."""
     core.step(24)
     before = core.get_object("toy")
@@ -139,7 +139,7 @@ def test_a_changed_object_goes_on_as_it_moved(core: SimulationCore) -> None:
     assert turned == pytest.approx(4.5, abs=0.05)
 
 
-def test_a_mass_is_the_asset_s_again_when_it_is_left_out(core: SimulationCore) -> None:
+def test_a_mass_is_the_asset_s_again_when_it_is_left_out(core: SynchronousSimulation) -> None:
     """None takes the asset's own, scaled by the volume."""
     own_kg = core.get_object("cup").mass_kg
     core.change_object("cup", mass=5.0)
@@ -162,7 +162,7 @@ def test_a_mass_is_the_asset_s_again_when_it_is_left_out(core: SimulationCore) -
     ],
 )
 def test_a_refused_change_changes_nothing(
-    core: SimulationCore,
+    core: SynchronousSimulation,
     told: list[SceneInfo],
     obj: str,
     changes: dict[str, Any],
@@ -178,7 +178,9 @@ def test_a_refused_change_changes_nothing(
 
 
 @pytest.mark.parametrize("how", ["despawn", "move", "shrink"])
-def test_what_slept_upon_an_object_falls_when_it_goes(core: SimulationCore, how: str) -> None:
+def test_what_slept_upon_an_object_falls_when_it_goes(
+    core: SynchronousSimulation, how: str
+) -> None:
     """Nothing hangs in the air because the engine had put it to sleep."""
     core.step(960)
     asleep = core.get_object("cup").pose
@@ -197,7 +199,7 @@ def test_what_slept_upon_an_object_falls_when_it_goes(core: SimulationCore, how:
     )
 
 
-def test_what_nothing_collides_with_can_go_too(core: SimulationCore) -> None:
+def test_what_nothing_collides_with_can_go_too(core: SynchronousSimulation) -> None:
     """Curtains have no collision shape: there is nothing that they could wake."""
     core.despawn_object("curtains 1")
     assert "curtains 1" not in {i.name for i in core.info.instances}
@@ -207,7 +209,7 @@ def test_what_nothing_collides_with_can_go_too(core: SimulationCore) -> None:
 
 
 def test_surroundings_change_by_the_keys_of_a_scene_file(
-    core: SimulationCore, told: list[SceneInfo]
+    core: SynchronousSimulation, told: list[SceneInfo]
 ) -> None:
     """Those that are not named stay, also what `set_background` has set since the start."""
     core.set_background("colour", (0.1, 0.2, 0.3))
@@ -227,7 +229,7 @@ def test_surroundings_change_by_the_keys_of_a_scene_file(
     ],
 )
 def test_refused_surroundings_change_nothing(
-    core: SimulationCore, changes: dict[str, Any], error: type[Exception], words: str
+    core: SynchronousSimulation, changes: dict[str, Any], error: type[Exception], words: str
 ) -> None:
     before = core.info.environment
     with pytest.raises(error, match=words):
@@ -238,7 +240,7 @@ def test_refused_surroundings_change_nothing(
 # -- lights ------------------------------------------------------------------------------------
 
 
-def test_lights_come_and_go(core: SimulationCore, told: list[SceneInfo]) -> None:
+def test_lights_come_and_go(core: SynchronousSimulation, told: list[SceneInfo]) -> None:
     """A new one is announced as it was asked for, and is saved."""
     lamp = core.add_light("lamp", "point", position_m=(0.0, 0.0, 2.0), intensity=3.0)
     assert told[-1].lights == (lamp,)
@@ -260,7 +262,7 @@ def test_lights_come_and_go(core: SimulationCore, told: list[SceneInfo]) -> None
     ],
 )
 def test_a_light_that_cannot_be_saved_is_refused(
-    core: SimulationCore, name: str, type_: Any, attributes: dict[str, Any], error: str
+    core: SynchronousSimulation, name: str, type_: Any, attributes: dict[str, Any], error: str
 ) -> None:
     core.add_light("lamp", "spot")
     before = core.lights
@@ -274,7 +276,9 @@ def test_a_light_that_cannot_be_saved_is_refused(
 # -- tracks ------------------------------------------------------------------------------------
 
 
-def test_waypoints_are_told_and_driven_through(core: SimulationCore, told: list[SceneInfo]) -> None:
+def test_waypoints_are_told_and_driven_through(
+    core: SynchronousSimulation, told: list[SceneInfo]
+) -> None:
     """A new track of two legs in 4 s is run through from its beginning; scene_info has it."""
     track = [Pose((0.0, 0.0, 1.0)), Pose((1.0, 0.0, 1.0))]
     core.set_waypoints(track, total_time_s=4.0)
@@ -284,7 +288,7 @@ def test_waypoints_are_told_and_driven_through(core: SimulationCore, told: list[
     assert core.get_mover_pose().position_m == pytest.approx((0.5, 0.0, 1.0))
 
 
-def test_a_waypoint_more_leaves_the_mover_where_it_is(core: SimulationCore) -> None:
+def test_a_waypoint_more_leaves_the_mover_where_it_is(core: SynchronousSimulation) -> None:
     """On its second leg it is as far on it as before; only the way home is another."""
     core.step(3 * 240)
     here = core.get_mover_pose()
@@ -294,7 +298,7 @@ def test_a_waypoint_more_leaves_the_mover_where_it_is(core: SimulationCore) -> N
     assert len(core.info.movers[0].waypoints) == 5
 
 
-def test_without_waypoints_it_stays_where_it_is(core: SimulationCore) -> None:
+def test_without_waypoints_it_stays_where_it_is(core: SynchronousSimulation) -> None:
     """And waypoints that come later are run through in the time that was set before."""
     core.step(240)
     here = core.get_mover_pose()
@@ -306,7 +310,7 @@ def test_without_waypoints_it_stays_where_it_is(core: SimulationCore) -> None:
     assert core.get_mover_pose() == here
 
 
-def test_a_driven_mover_is_not_moved_by_a_new_track(core: SimulationCore) -> None:
+def test_a_driven_mover_is_not_moved_by_a_new_track(core: SynchronousSimulation) -> None:
     """Only once the waypoints are given control it goes there."""
     core.set_mover_controller("rigidbody")
     here = core.get_mover_pose()
@@ -316,7 +320,7 @@ def test_a_driven_mover_is_not_moved_by_a_new_track(core: SimulationCore) -> Non
     assert core.get_mover_pose() == Pose((0.0, 0.0, 2.0))
 
 
-def test_an_open_track_that_grows_is_gone_on_with(core: SimulationCore) -> None:
+def test_an_open_track_that_grows_is_gone_on_with(core: SynchronousSimulation) -> None:
     """At its end it waits, and leaves for a waypoint that is added."""
     core.set_waypoints([Pose((0.0, 0.0, 1.0)), Pose((1.0, 0.0, 1.0))], total_time_s=1.0, loop=False)
     core.step(480)
@@ -340,7 +344,7 @@ def test_an_open_track_that_grows_is_gone_on_with(core: SimulationCore) -> None:
     ],
 )
 def test_a_refused_track_changes_nothing(
-    core: SimulationCore, told: list[SceneInfo], given: dict[str, Any], error: str
+    core: SynchronousSimulation, told: list[SceneInfo], given: dict[str, Any], error: str
 ) -> None:
     with pytest.raises(InvalidRequest, match=error):
         core.set_waypoints(**given)

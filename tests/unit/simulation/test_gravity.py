@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.geometry import Pose
 from tests.unit.simulation.test_core import make_core
 
@@ -15,14 +15,14 @@ OF_THE_EARTH = (0.0, 0.0, -9.81)
 
 
 @pytest.fixture
-def core() -> Iterator[SimulationCore]:
+def core() -> Iterator[SynchronousSimulation]:
     """An empty scene in lockstep."""
     core, _ = make_core()
     yield core
     core.close()
 
 
-def fallen_m(core: SimulationCore, obj: int, steps: int = 48) -> tuple[float, float, float]:
+def fallen_m(core: SynchronousSimulation, obj: int, steps: int = 48) -> tuple[float, float, float]:
     """Return how far an object moves in some steps."""
     before = core.get_object(obj).pose.position_m
     core.step(steps)
@@ -30,7 +30,7 @@ def fallen_m(core: SimulationCore, obj: int, steps: int = 48) -> tuple[float, fl
     return tuple(b - a for a, b in zip(before, after, strict=True))  # type: ignore[return-value]
 
 
-def test_bodies_fall_by_the_gravity_that_is_set(core: SimulationCore) -> None:
+def test_bodies_fall_by_the_gravity_that_is_set(core: SynchronousSimulation) -> None:
     """By g t² / 2 along any axis, in a fifth of a second, to the integrator's step."""
     assert core.get_gravity() == OF_THE_EARTH
     for axis, pull in ((2, -9.81), (2, -1.62), (1, 4.0)):
@@ -44,7 +44,7 @@ def test_bodies_fall_by_the_gravity_that_is_set(core: SimulationCore) -> None:
         core.despawn_object(ball)
 
 
-def test_what_sleeps_wakes_and_what_floats_floats(core: SimulationCore) -> None:
+def test_what_sleeps_wakes_and_what_floats_floats(core: SynchronousSimulation) -> None:
     """A cube at rest on a floor takes off; one without gravity stays where it was put."""
     core.spawn_object("cube", pose=Pose((0.0, 0.0, 99.5)), scale=(4.0, 4.0, 1.0))
     cube = core.spawn_object("cube", pose=Pose((0.0, 0.0, 100.501)), mass_kg=1.0)
@@ -57,7 +57,7 @@ def test_what_sleeps_wakes_and_what_floats_floats(core: SimulationCore) -> None:
     assert fallen_m(core, floating) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
-def test_a_reset_restores_it_and_a_saved_scene_says_it(core: SimulationCore) -> None:
+def test_a_reset_restores_it_and_a_saved_scene_says_it(core: SynchronousSimulation) -> None:
     """Until then it holds; the file of the present world has the present gravity."""
     core.set_gravity((0.0, 1.5, -3.0))
     assert "gravity: [0, 1.5, -3]" in core.scene_text()
@@ -69,7 +69,7 @@ def test_a_reset_restores_it_and_a_saved_scene_says_it(core: SimulationCore) -> 
 @pytest.mark.parametrize(
     "gravity", [(0.0, 0.0), (0.0, 0.0, 1001.0), (0.0, 0.0, float("nan")), "up"]
 )
-def test_what_no_file_can_say_is_refused(core: SimulationCore, gravity: object) -> None:
+def test_what_no_file_can_say_is_refused(core: SynchronousSimulation, gravity: object) -> None:
     """Three finite numbers within 1000; the old gravity stays."""
     with pytest.raises(InvalidRequest, match="gravity must be three finite numbers"):
         core.set_gravity(gravity)  # type: ignore[arg-type]  # on purpose

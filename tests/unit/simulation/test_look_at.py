@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, SceneError, UnknownName
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, facing
@@ -59,12 +59,12 @@ def stage(tmp_path: Path) -> Path:
     return path
 
 
-def make(scene: str | Path, *paths: Path) -> SimulationCore:
+def make(scene: str | Path, *paths: Path) -> SynchronousSimulation:
     return lockstep_core(scene, *paths)
 
 
 @pytest.fixture
-def core(stage: Path) -> Iterator[SimulationCore]:
+def core(stage: Path) -> Iterator[SynchronousSimulation]:
     made = make(stage)
     yield made
     made.close()
@@ -79,11 +79,11 @@ def away(pose: Pose, target_m: tuple[float, float, float]) -> float:
     return math.atan2(math.hypot(offset[1], offset[2]), offset[0])
 
 
-def place(core: SimulationCore, name: str) -> tuple[float, float, float]:
+def place(core: SynchronousSimulation, name: str) -> tuple[float, float, float]:
     return core.get_object(name).pose.position_m
 
 
-def faced(core: SimulationCore, agent: str, target_m: tuple[float, float, float]) -> bool:
+def faced(core: SynchronousSimulation, agent: str, target_m: tuple[float, float, float]) -> bool:
     return away(core.get_pose(agent=agent), target_m) < 1e-9
 
 
@@ -138,7 +138,7 @@ def test_straight_above_and_below_the_heading_is_kept(up: float, beside: float) 
 # -- who is faced ------------------------------------------------------------------------------
 
 
-def test_a_standing_agent_faces_what_moves_in_every_step(core: SimulationCore) -> None:
+def test_a_standing_agent_faces_what_moves_in_every_step(core: SynchronousSimulation) -> None:
     """That of a scene file from the start, that of a request at once."""
     assert faced(core, "watcher", place(core, "ball"))
     before = place(core, "ball")
@@ -153,7 +153,7 @@ def test_a_standing_agent_faces_what_moves_in_every_step(core: SimulationCore) -
     assert faced(core, "watcher", (-1.0, -2.0, 0.5))
 
 
-def test_one_that_is_carried_faces_a_point_from_wherever_it_is(core: SimulationCore) -> None:
+def test_one_that_is_carried_faces_a_point_from_wherever_it_is(core: SynchronousSimulation) -> None:
     """The agent's position is its mover's, which is not turned; another agent is left alone."""
     core.set_look_at(point_m=(0.5, 0.0, 0.2), agent="rider")
     for _ in range(10):
@@ -164,7 +164,7 @@ def test_one_that_is_carried_faces_a_point_from_wherever_it_is(core: SimulationC
         assert rail.rpy_deg == (0.0, 0.0, 0.0)
 
 
-def test_a_mover_faces_and_turns_what_follows_it(core: SimulationCore) -> None:
+def test_a_mover_faces_and_turns_what_follows_it(core: SynchronousSimulation) -> None:
     """A point of an object, in its own frame; where it walks to is seen from there."""
     target = (3.1, 0.2, 1.3)
     assert faced(core, "porter", target)
@@ -181,14 +181,14 @@ def test_a_mover_faces_and_turns_what_follows_it(core: SimulationCore) -> None:
     assert math.dist(there, (0.0, 2.0, 1.5)) > 1.0
 
 
-def test_an_agent_may_face_another_thing_than_its_mover(core: SimulationCore) -> None:
+def test_an_agent_may_face_another_thing_than_its_mover(core: SynchronousSimulation) -> None:
     core.set_look_at("ball", agent="porter")
     assert faced(core, "porter", place(core, "ball"))
     core.set_look_at(agent="porter")
     assert faced(core, "porter", (3.1, 0.2, 1.3))
 
 
-def test_who_is_gone_is_looked_for_where_it_was_last(core: SimulationCore) -> None:
+def test_who_is_gone_is_looked_for_where_it_was_last(core: SynchronousSimulation) -> None:
     """Whether anybody asked meanwhile or not; also who leaves, and who has not come yet."""
     core.set_mover_look_at("ball", mover="rail")
     core.step(100)
@@ -211,7 +211,7 @@ def test_who_is_gone_is_looked_for_where_it_was_last(core: SimulationCore) -> No
     assert core.get_pose(agent="host") == gone
 
 
-def test_one_that_is_renamed_is_the_same(core: SimulationCore) -> None:
+def test_one_that_is_renamed_is_the_same(core: SynchronousSimulation) -> None:
     core.change_object("ball", name="football")
     core.step(60)
     assert faced(core, "watcher", place(core, "football"))
@@ -220,7 +220,7 @@ def test_one_that_is_renamed_is_the_same(core: SimulationCore) -> None:
 # -- what ends it ------------------------------------------------------------------------------
 
 
-def test_to_be_turned_ends_it_and_to_be_moved_does_not(core: SimulationCore) -> None:
+def test_to_be_turned_ends_it_and_to_be_moved_does_not(core: SynchronousSimulation) -> None:
     core.set_position((0.5, 0.5, 2.0), agent="watcher")
     assert core.get_position(agent="watcher") == (0.5, 0.5, 2.0)
     assert faced(core, "watcher", place(core, "ball"))
@@ -234,7 +234,7 @@ def test_to_be_turned_ends_it_and_to_be_moved_does_not(core: SimulationCore) -> 
     assert core.get_pose(agent="watcher") == given
 
 
-def test_to_be_released_leaves_it_turned_as_it_is(core: SimulationCore) -> None:
+def test_to_be_released_leaves_it_turned_as_it_is(core: SynchronousSimulation) -> None:
     """One that a track turns goes on as its track says."""
     core.step(20)
     seen = core.get_pose(agent="watcher")
@@ -251,7 +251,9 @@ def test_to_be_released_leaves_it_turned_as_it_is(core: SimulationCore) -> None:
 
 
 @pytest.mark.parametrize("how", ["turn", "drive", "set_pose", "set_rotation"])
-def test_a_mover_that_is_turned_by_hand_faces_nothing(core: SimulationCore, how: str) -> None:
+def test_a_mover_that_is_turned_by_hand_faces_nothing(
+    core: SynchronousSimulation, how: str
+) -> None:
     core.set_look_at("ball", agent="porter")
     before = core.get_mover_pose("cart")
     if how == "turn":
@@ -273,7 +275,7 @@ def test_a_mover_that_is_turned_by_hand_faces_nothing(core: SimulationCore, how:
         assert core.get_pose(agent="porter") == turned
 
 
-def test_a_carried_agent_that_is_moved_does_not_turn_its_mover(core: SimulationCore) -> None:
+def test_a_carried_agent_that_is_moved_does_not_turn_its_mover(core: SynchronousSimulation) -> None:
     core.set_mover_look_at(mover="cart")
     core.set_look_at("ball", agent="porter")
     turned = core.get_mover_pose("cart").orientation_xyzw
@@ -282,7 +284,7 @@ def test_a_carried_agent_that_is_moved_does_not_turn_its_mover(core: SimulationC
     assert faced(core, "porter", place(core, "ball"))
 
 
-def test_a_reset_begins_as_the_scene_does(core: SimulationCore) -> None:
+def test_a_reset_begins_as_the_scene_does(core: SynchronousSimulation) -> None:
     core.set_look_at("ball", agent="rider")
     core.set_look_at(agent="watcher")
     core.set_mover_look_at(mover="cart")
@@ -313,7 +315,7 @@ def test_another_scene_keeps_points_and_objects_of_the_same_name(
 # -- files and determinism ---------------------------------------------------------------------
 
 
-def test_saved_scenes_keep_it(core: SimulationCore, tmp_path: Path) -> None:
+def test_saved_scenes_keep_it(core: SynchronousSimulation, tmp_path: Path) -> None:
     """That of the file as it was, that of requests, and of one that is gone where it was."""
     core.set_look_at("post", (0.0, 0.1, 0.2), agent="rider")
     core.set_mover_look_at("ball", mover="rail")
@@ -377,7 +379,7 @@ def test_the_same_requests_give_the_same_poses(stage: Path) -> None:
     ],
 )
 def test_what_cannot_be_faced_is_refused_and_changes_nothing(
-    core: SimulationCore, obj: object, point: object, error: type[Exception]
+    core: SynchronousSimulation, obj: object, point: object, error: type[Exception]
 ) -> None:
     before = core.get_pose(agent="watcher"), core.get_mover_pose("cart")
     with pytest.raises(error):
@@ -391,7 +393,7 @@ def test_what_cannot_be_faced_is_refused_and_changes_nothing(
         core.set_mover_look_at("ball", mover="nobody")
 
 
-def test_an_agent_is_registered_with_what_it_faces(core: SimulationCore) -> None:
+def test_an_agent_is_registered_with_what_it_faces(core: SynchronousSimulation) -> None:
     lens = CameraIntrinsics(width=16, height=12)
     unknown = AgentSpec(name="one", intrinsics=lens, look_at=LookAt(obj="bal"))
     with pytest.raises(UnknownName):

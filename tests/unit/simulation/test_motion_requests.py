@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, SailenvError, UnknownName
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.types.agents import MAX_AGENTS, AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -72,12 +72,12 @@ def hall(tmp_path: Path) -> Path:
     return path
 
 
-def make_core(scene: str | Path, *paths: Path) -> SimulationCore:
+def make_core(scene: str | Path, *paths: Path) -> SynchronousSimulation:
     return lockstep_core(scene, *paths)
 
 
 @pytest.fixture
-def core(hall: Path) -> Iterator[SimulationCore]:
+def core(hall: Path) -> Iterator[SynchronousSimulation]:
     made = make_core(hall)
     yield made
     made.close()
@@ -87,14 +87,14 @@ def spec(name: str, **kwargs: Any) -> AgentSpec:
     return AgentSpec(name=name, intrinsics=SMALL, **kwargs)
 
 
-def position(core: SimulationCore, agent: str) -> tuple[float, float, float]:
+def position(core: SynchronousSimulation, agent: str) -> tuple[float, float, float]:
     return core.get_pose(agent=agent).position_m
 
 
 # -- behaviours --------------------------------------------------------------------------------
 
 
-def test_an_attached_behaviour_begins_now_and_is_announced(core: SimulationCore) -> None:
+def test_an_attached_behaviour_begins_now_and_is_announced(core: SynchronousSimulation) -> None:
     """Its clock starts at the request, `moving` tells; detached, the object is left alone."""
     told: list[SceneInfo] = []
     core.on_info = told.append
@@ -138,7 +138,7 @@ def test_an_attached_behaviour_begins_now_and_is_announced(core: SimulationCore)
     ],
 )
 def test_a_refused_behaviour_changes_nothing(
-    core: SimulationCore, arguments: tuple[Any, ...], words: str
+    core: SynchronousSimulation, arguments: tuple[Any, ...], words: str
 ) -> None:
     """One sentence with the user's own word; the same scene as before."""
     before = core.info
@@ -150,7 +150,7 @@ def test_a_refused_behaviour_changes_nothing(
     assert len(core.get_object("ball").behaviours) == 1
 
 
-def test_a_reset_puts_every_byte_back(core: SimulationCore) -> None:
+def test_a_reset_puts_every_byte_back(core: SynchronousSimulation) -> None:
     """Attached, driven, spawned, and reset: 300 steps have the same bytes as at the start."""
 
     def run() -> bytes:
@@ -192,7 +192,7 @@ def test_planes_enclose_what_a_camera_sees(
     assert bool((planes @ point > 0.0).all()) == (min(margins) > 0.0)
 
 
-def test_an_object_is_kept_in_an_agents_view(core: SimulationCore) -> None:
+def test_an_object_is_kept_in_an_agents_view(core: SynchronousSimulation) -> None:
     """30 s of bouncing about: its middle is never further outside than it goes in a step or two."""
     record = core.info.agents[0]
     assert record.name == "watcher"
@@ -208,7 +208,7 @@ def test_an_object_is_kept_in_an_agents_view(core: SimulationCore) -> None:
     assert np.ptp(places, axis=0).min() > 0.5
 
 
-def test_a_view_that_is_gone_holds_nothing(core: SimulationCore) -> None:
+def test_a_view_that_is_gone_holds_nothing(core: SynchronousSimulation) -> None:
     """Without the agent the object goes where it likes, within the walls."""
     core.delete_agent("watcher")
     places = []
@@ -222,7 +222,7 @@ def test_a_view_that_is_gone_holds_nothing(core: SimulationCore) -> None:
 # -- movers ------------------------------------------------------------------------------------
 
 
-def test_agents_follow_movers_of_their_own(core: SimulationCore) -> None:
+def test_agents_follow_movers_of_their_own(core: SynchronousSimulation) -> None:
     """Each mover moves its followers alone; a set pose of one moves all that follow with it."""
     core.register_agent(spec("first", mover="rail"))
     core.register_agent(spec("second", mover="cart"))
@@ -239,7 +239,7 @@ def test_agents_follow_movers_of_their_own(core: SimulationCore) -> None:
     assert position(core, "second") == pytest.approx((0.75, 0.5, 1.0), abs=1e-6)
 
 
-def test_a_controller_is_switched_while_running(core: SimulationCore) -> None:
+def test_a_controller_is_switched_while_running(core: SynchronousSimulation) -> None:
     """Waypoints stop where they are, commands drive, waypoints go on; each change is announced."""
     core.register_agent(spec("eye", mover="rail"))
     told: list[SceneInfo] = []
@@ -268,7 +268,7 @@ def test_a_controller_is_switched_while_running(core: SimulationCore) -> None:
 # -- many agents -------------------------------------------------------------------------------
 
 
-def test_a_mover_is_turned_at_once_and_walks_on(core: SimulationCore) -> None:
+def test_a_mover_is_turned_at_once_and_walks_on(core: SynchronousSimulation) -> None:
     """Angles add up, pitch ends before the zenith, and a command that moves it goes on."""
     core.drive_mover(linear_m_s=(-0.5, 0.0, 0.0), mover="cart")
     core.step(24)
@@ -294,7 +294,7 @@ def test_a_mover_is_turned_at_once_and_walks_on(core: SimulationCore) -> None:
     ],
 )
 def test_a_turn_that_is_none_is_refused(
-    core: SimulationCore, mover: str, angles: dict[str, float], error: type[Exception]
+    core: SynchronousSimulation, mover: str, angles: dict[str, float], error: type[Exception]
 ) -> None:
     """Waypoints turn a mover themselves; more than half a turn is a mistake."""
     before = core.get_mover_pose("cart")
@@ -303,7 +303,7 @@ def test_a_turn_that_is_none_is_refused(
     assert core.get_mover_pose("cart") == before
 
 
-def test_sixteen_agents_each_at_their_own_rate(core: SimulationCore) -> None:
+def test_sixteen_agents_each_at_their_own_rate(core: SynchronousSimulation) -> None:
     """All 16 get the frames of their own rate; one whose consumer sleeps takes none from others."""
     rates = {f"agent_{number}": 5.0 * (number + 1) for number in range(MAX_AGENTS - 2)}
     streams = {}
@@ -328,7 +328,7 @@ def test_sixteen_agents_each_at_their_own_rate(core: SimulationCore) -> None:
     assert sleeper.dropped == pytest.approx(5, abs=1)
 
 
-def test_agents_come_and_go_while_others_stream(core: SimulationCore) -> None:
+def test_agents_come_and_go_while_others_stream(core: SynchronousSimulation) -> None:
     """A deleted agent ends its own stream; another's frames go on without a gap."""
     core.register_agent(spec("stays"))
     stream = core.open_stream("stays", ("depth",), lambda _: None)

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
 from sailenv_ros.scene.serialisation import light_entry
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.models.uploads import asset_from_upload
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -65,30 +65,30 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def shared(folder: Path) -> Iterator[SimulationCore]:
+def shared(folder: Path) -> Iterator[SynchronousSimulation]:
     made = make_core(folder)
     yield made
     made.close()
 
 
 @pytest.fixture
-def core(shared: SimulationCore) -> SimulationCore:
+def core(shared: SynchronousSimulation) -> SynchronousSimulation:
     begin(shared, "studio")
     return shared
 
 
-def make_core(folder: Path) -> SimulationCore:
+def make_core(folder: Path) -> SynchronousSimulation:
     return lockstep_core("studio", folder)
 
 
-def begin(core: SimulationCore, scene: str) -> None:
+def begin(core: SynchronousSimulation, scene: str) -> None:
     """Begin a scene with its own agents alone, as a simulator that has just started does."""
     for agent in core.info.agents:
         core.delete_agent(agent.name)
     core.change_scene(scene)
 
 
-def told(core: SimulationCore) -> dict[str, Any]:
+def told(core: SynchronousSimulation) -> dict[str, Any]:
     """All that a scene file may say, as the world has it, but for poses."""
     world, info = core.world, core.info
     objects = {}
@@ -127,7 +127,7 @@ def told(core: SimulationCore) -> dict[str, Any]:
     }
 
 
-def poses(core: SimulationCore) -> dict[str, Pose]:
+def poses(core: SynchronousSimulation) -> dict[str, Pose]:
     """Poses of objects, waypoints, movers that are not led, and agents that do not follow."""
     found = {
         # Told by the point that it looks at: straight down, every heading is the same.
@@ -156,7 +156,7 @@ def assert_same_poses(first: dict[str, Pose], second: dict[str, Pose]) -> None:
         assert turned > 1.0 - 1e-12, name
 
 
-def assert_comes_back(core: SimulationCore) -> str:
+def assert_comes_back(core: SynchronousSimulation) -> str:
     """Save, begin what was saved, and compare; return the text."""
     contents, places = told(core), poses(core)
     text = Path(core.save_scene("again", overwrite=True)).read_text(encoding="utf-8")
@@ -169,7 +169,7 @@ def assert_comes_back(core: SimulationCore) -> str:
 # -- what was not changed ----------------------------------------------------------------------
 
 
-def test_an_untouched_scene_keeps_the_words_of_its_file(core: SimulationCore) -> None:
+def test_an_untouched_scene_keeps_the_words_of_its_file(core: SynchronousSimulation) -> None:
     """Walls, carriers, factors, colours, points that are faced come back as they were."""
     text = core.scene_text()
     for words in (
@@ -184,7 +184,7 @@ def test_an_untouched_scene_keeps_the_words_of_its_file(core: SimulationCore) ->
         assert words in text
 
 
-def test_what_has_only_settled_still_stands_upon_its_carrier(core: SimulationCore) -> None:
+def test_what_has_only_settled_still_stands_upon_its_carrier(core: SynchronousSimulation) -> None:
     """A cup drops by the millimetre that it was placed above the table; it stays `on` it."""
     core.set_gravity((0.0, 0.0, -9.81))  # wakes what sleeps from the start
     core.step(240)
@@ -220,7 +220,7 @@ objects:
 
 
 def test_a_saved_scene_passes_the_check_and_says_the_same_again(
-    core: SimulationCore, capsys: pytest.CaptureFixture[str]
+    core: SynchronousSimulation, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """`sailenv scene check` has nothing to say, and saving what was loaded changes no letter."""
     core.step(30)
@@ -303,7 +303,7 @@ _edits = st.one_of(
 )  # fmt: skip
 
 
-def edit(core: SimulationCore, name: str, *given: Any) -> None:
+def edit(core: SynchronousSimulation, name: str, *given: Any) -> None:
     """Ask for one edit as its request wants it."""
     if name == "spawn_object":
         asset, pose, static = given
@@ -343,7 +343,9 @@ def edit(core: SimulationCore, name: str, *given: Any) -> None:
 )
 @example(edits=[("add_behaviour", "cup", 0.0), ("step", 12)])  # it drops onto the table
 @given(edits=st.lists(_edits, max_size=8))
-def test_an_edited_world_comes_back_as_it_was(core: SimulationCore, edits: list[Any]) -> None:
+def test_an_edited_world_comes_back_as_it_was(
+    core: SynchronousSimulation, edits: list[Any]
+) -> None:
     """Whatever was edited, in whatever order: contents are equal, poses to a micrometre."""
     begin(core, "studio")
     for name, *given_ in edits:
@@ -355,7 +357,9 @@ def test_an_edited_world_comes_back_as_it_was(core: SimulationCore, edits: list[
     begin(core, "studio")
 
 
-def test_waypoints_lights_and_objects_that_are_new_are_in_the_file(core: SimulationCore) -> None:
+def test_waypoints_lights_and_objects_that_are_new_are_in_the_file(
+    core: SynchronousSimulation,
+) -> None:
     """Each of the edits of an editor, by its words in the file."""
     core.spawn_object(
         "Sphere", pose=Pose.from_rpy_deg((1, 0.5, 1), (0, 0, 30)), remove_dynamics=True
@@ -380,7 +384,7 @@ def test_waypoints_lights_and_objects_that_are_new_are_in_the_file(core: Simulat
     assert "on: table" not in text  # its carrier was made larger, and stays where it is
 
 
-def test_what_stands_upon_something_that_went_keeps_its_place(core: SimulationCore) -> None:
+def test_what_stands_upon_something_that_went_keeps_its_place(core: SynchronousSimulation) -> None:
     """Neither a carrier that was taken away, nor another that came by its name, carries it."""
     place = core.get_object("cup").pose
     core.despawn_object("table")
@@ -391,7 +395,7 @@ def test_what_stands_upon_something_that_went_keeps_its_place(core: SimulationCo
     assert core.get_object("cup").pose.position_m == pytest.approx(place.position_m, abs=1e-6)
 
 
-def test_what_flies_goes_on_flying(core: SimulationCore) -> None:
+def test_what_flies_goes_on_flying(core: SynchronousSimulation) -> None:
     """Speeds are saved: [m/s] along, and [deg/s] about, the world's axes."""
     core.spawn_object(
         "cube", object_name="stone", pose=Pose((0.0, 0.0, 2.0)), scale=0.1, remove_dynamics=False
@@ -404,20 +408,20 @@ def test_what_flies_goes_on_flying(core: SimulationCore) -> None:
     assert before.linear_velocity[2] == pytest.approx(-5.0 * 60 / 240, rel=0.01)
 
 
-def test_objects_of_a_scenario_are_saved_too(core: SimulationCore) -> None:
+def test_objects_of_a_scenario_are_saved_too(core: SynchronousSimulation) -> None:
     """What came on top of the scene is a part of what is saved."""
     core.load_scenario({"objects": [{"asset": "cube", "name": "guest", "position": [1, 1, 1]}]})
     assert "name: guest" in assert_comes_back(core)
 
 
-def test_pictures_are_saved_as_they_are(core: SimulationCore) -> None:
+def test_pictures_are_saved_as_they_are(core: SynchronousSimulation) -> None:
     """Settings that were changed at run time are in the file, and in the scene that it begins."""
     changed = core.set_picture(exposure=-0.5, tone_curve="linear", agent="watcher")
     assert "tone_curve: linear" in assert_comes_back(core)
     assert core.get_picture(agent="watcher") == changed
 
 
-def test_agents_of_clients_are_saved_where_they_are_named(core: SimulationCore) -> None:
+def test_agents_of_clients_are_saved_where_they_are_named(core: SynchronousSimulation) -> None:
     """The scene's own are saved as they are now; those of clients come and go with them."""
     lens = CameraIntrinsics(width=64, height=48, vertical_fov_deg=75.0)
     core.register_agent(AgentSpec(name="visitor", intrinsics=lens, following=False))
@@ -437,7 +441,7 @@ def test_agents_of_clients_are_saved_where_they_are_named(core: SimulationCore) 
 # -- what cannot be saved ----------------------------------------------------------------------
 
 
-def test_parts_of_the_room_that_were_moved_are_told(core: SimulationCore) -> None:
+def test_parts_of_the_room_that_were_moved_are_told(core: SynchronousSimulation) -> None:
     """A file describes the room as a whole; nothing is left out silently."""
     core.despawn_object("window 1")
     core.move_object("north wall", pose=Pose((0.0, 1.0, 0.0)))
@@ -446,7 +450,7 @@ def test_parts_of_the_room_that_were_moved_are_told(core: SimulationCore) -> Non
     assert "broken" not in core.info.scenes
 
 
-def test_parts_that_a_room_may_do_without_are_left_out(core: SimulationCore) -> None:
+def test_parts_that_a_room_may_do_without_are_left_out(core: SynchronousSimulation) -> None:
     """A room whose skirting and curtains were taken out begins without them."""
     core.despawn_object("skirting")
     core.despawn_object("curtains 1")
@@ -456,7 +460,7 @@ def test_parts_that_a_room_may_do_without_are_left_out(core: SimulationCore) -> 
 
 
 def test_an_uploaded_model_is_kept_or_told(
-    core: SimulationCore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    core: SynchronousSimulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """No file can name a model that this simulator alone has; in one's own pack it can."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
@@ -480,7 +484,7 @@ def test_an_uploaded_model_is_kept_or_told(
     ["", ".", "..", "../out", "a/b", "/etc/passwd", ".hidden", "x.yaml", "a\0b", "a" * 64, 7],
 )
 def test_names_that_lead_elsewhere_are_refused(
-    core: SimulationCore, folder: Path, name: Any
+    core: SynchronousSimulation, folder: Path, name: Any
 ) -> None:
     before = sorted(folder.rglob("*"))
     with pytest.raises(InvalidRequest, match="scene name must be letters, digits"):
@@ -489,7 +493,7 @@ def test_names_that_lead_elsewhere_are_refused(
 
 
 def test_a_file_is_replaced_only_where_that_is_asked_for(
-    core: SimulationCore, folder: Path
+    core: SynchronousSimulation, folder: Path
 ) -> None:
     """A name in use is refused and its file stays as it is; so is a name of another folder's."""
     path = Path(core.save_scene("mine", title="The first"))
@@ -506,7 +510,7 @@ def test_a_file_is_replaced_only_where_that_is_asked_for(
     assert {p.name for p in folder.iterdir() if p.suffix != ".yaml"} <= {".lock"}
 
 
-def test_a_link_is_replaced_and_not_followed(core: SimulationCore, folder: Path) -> None:
+def test_a_link_is_replaced_and_not_followed(core: SynchronousSimulation, folder: Path) -> None:
     """A link in the folder leads nowhere: what it points to is not written."""
     target = folder.parent / "precious.txt"
     target.write_text("precious", encoding="utf-8")

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.scene.entries import read_document
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.script.scenario import SCENARIO_KEYS, scenario_entries
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from tests.support.lockstep_core import lockstep_core
 
@@ -31,7 +31,7 @@ def starts(timings: Any, *objects: dict[str, Any]) -> list[float]:
 
 
 @pytest.fixture
-def core() -> Iterator[SimulationCore]:
+def core() -> Iterator[SynchronousSimulation]:
     made = lockstep_core()
     made.register_agent(AgentSpec(name="eye"))
     yield made
@@ -77,7 +77,7 @@ def test_what_is_limited_to_the_frustum_is_kept_in_the_first_agents_view() -> No
 
 
 @pytest.mark.parametrize("as_text", [json.dumps, lambda value: json.dumps(value, indent=2)])
-def test_a_scenario_runs_in_its_order(core: SimulationCore, as_text: Any) -> None:
+def test_a_scenario_runs_in_its_order(core: SynchronousSimulation, as_text: Any) -> None:
     """The ids are those of its objects; the second moves when the first has arrived; a reset
     begins it anew."""
     document = as_text(
@@ -134,7 +134,7 @@ def test_a_scenario_runs_in_its_order(core: SimulationCore, as_text: Any) -> Non
     ],
 )
 def test_a_wrong_scenario_is_refused_and_changes_nothing(
-    core: SimulationCore, wrong: dict[str, Any], words: str
+    core: SynchronousSimulation, wrong: dict[str, Any], words: str
 ) -> None:
     """One sentence that names the place; the present scene goes on."""
     before = core.info

@@ -12,9 +12,9 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
-from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.editing.edit_records import EditOperations
+from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.labels import Instance
 from tests.support.lockstep_core import lockstep_core
 
@@ -32,18 +32,18 @@ objects:
 
 
 @pytest.fixture
-def core(tmp_path: Path) -> Iterator[SimulationCore]:
+def core(tmp_path: Path) -> Iterator[SynchronousSimulation]:
     (tmp_path / "den.yaml").write_text(ROOM, encoding="utf-8")
     core = lockstep_core("den", tmp_path)
     yield core
     core.close()
 
 
-def instance(core: SimulationCore, name: str) -> Instance:
+def instance(core: SynchronousSimulation, name: str) -> Instance:
     return next(one for one in core.info.instances if one.name == name)
 
 
-def painted(core: SimulationCore, name: str) -> list[dict[str, object]]:
+def painted(core: SynchronousSimulation, name: str) -> list[dict[str, object]]:
     told: list[dict[str, object]] = json.loads(instance(core, name).painted or "[]")
     return told
 
@@ -54,7 +54,7 @@ def picture(colour: int = 200) -> bytes:
     return file.getvalue()
 
 
-def test_scene_tells_materials_and_what_is_painted(core: SimulationCore) -> None:
+def test_scene_tells_materials_and_what_is_painted(core: SynchronousSimulation) -> None:
     assert len(instance(core, "toy").materials) == 1
     assert instance(core, "toy").painted == ""
     assert painted(core, "table") == [{"material": "carpet"}]
@@ -62,7 +62,7 @@ def test_scene_tells_materials_and_what_is_painted(core: SimulationCore) -> None
     assert painted(core, "north wall") == [{"colour": "#ddeeff", "material": "plaster"}]
 
 
-def test_changes_add_up_and_end(core: SimulationCore) -> None:
+def test_changes_add_up_and_end(core: SynchronousSimulation) -> None:
     (part,) = instance(core, "toy").materials
     core.set_material("toy", roughness=0.2)
     core.set_material("toy", colour="#ff0000")
@@ -75,7 +75,7 @@ def test_changes_add_up_and_end(core: SimulationCore) -> None:
     assert painted(core, "toy") == []
 
 
-def test_material_and_picture_take_each_others_place(core: SimulationCore) -> None:
+def test_material_and_picture_take_each_others_place(core: SynchronousSimulation) -> None:
     name = core.upload_picture(picture())
     core.set_material("toy", material="carpet")
     core.set_material("toy", picture=name)
@@ -88,7 +88,7 @@ def test_material_and_picture_take_each_others_place(core: SimulationCore) -> No
     assert painted(core, "floor") == [{"material": "carpet", "tile": 2.0}]
 
 
-def test_shape_place_id_and_past_stay(core: SimulationCore) -> None:
+def test_shape_place_id_and_past_stay(core: SynchronousSimulation) -> None:
     before, snapshot = instance(core, "floor"), core.world.snapshot()
     core.set_material("floor", material="stone_tiles")
     after = core.world.snapshot()
@@ -107,7 +107,7 @@ def test_shape_place_id_and_past_stay(core: SimulationCore) -> None:
 
 
 @pytest.mark.parametrize("name", ["door 1", "window 1", "curtains 1", "skirting"])
-def test_boards_and_openings_take_a_colour(core: SimulationCore, name: str) -> None:
+def test_boards_and_openings_take_a_colour(core: SynchronousSimulation, name: str) -> None:
     core.set_material(name, colour="#112233")
     assert "#112233" in core.scene_text()
     with pytest.raises(InvalidEntry):
@@ -134,7 +134,7 @@ def test_boards_and_openings_take_a_colour(core: SimulationCore, name: str) -> N
     ],
 )
 def test_refusal_changes_nothing(
-    core: SimulationCore, name: str, part: str, changes: dict[str, object]
+    core: SynchronousSimulation, name: str, part: str, changes: dict[str, object]
 ) -> None:
     text, contents = core.scene_text(), core.world.contents
     with pytest.raises((InvalidEntry, InvalidRequest, UnknownName)):
@@ -143,7 +143,7 @@ def test_refusal_changes_nothing(
     assert core.scene_text() == text
 
 
-def test_reset_undoes(core: SimulationCore) -> None:
+def test_reset_undoes(core: SynchronousSimulation) -> None:
     text = core.scene_text()
     core.set_material("floor", material="carpet")
     core.set_material("toy", colour="#ff0000")
@@ -151,7 +151,7 @@ def test_reset_undoes(core: SimulationCore) -> None:
     assert core.scene_text() == text
 
 
-def test_no_changes_bring_back_what_the_file_says(core: SimulationCore) -> None:
+def test_no_changes_bring_back_what_the_file_says(core: SynchronousSimulation) -> None:
     text = core.scene_text()
     core.set_material("west wall", colour="#ff0000", material="plaster")
     assert core.scene_text() != text
@@ -159,12 +159,14 @@ def test_no_changes_bring_back_what_the_file_says(core: SimulationCore) -> None:
     assert painted(core, "west wall") == [{"material": "wallpaper_damask"}]
 
 
-def test_objects_at_walls_keep_their_words(core: SimulationCore) -> None:
+def test_objects_at_walls_keep_their_words(core: SynchronousSimulation) -> None:
     core.set_material("south wall", material="metro_tiles")
     assert "wall: south" in core.scene_text()
 
 
-def test_walls_and_floors_inside_take_materials(core: SimulationCore, tmp_path: Path) -> None:
+def test_walls_and_floors_inside_take_materials(
+    core: SynchronousSimulation, tmp_path: Path
+) -> None:
     (tmp_path / "flat.yaml").write_text(
         """version: 1
 room:
@@ -185,7 +187,9 @@ room:
     assert "stone_tiles" in core.scene_text()
 
 
-def test_saved_scene_has_materials_and_pictures(core: SimulationCore, tmp_path: Path) -> None:
+def test_saved_scene_has_materials_and_pictures(
+    core: SynchronousSimulation, tmp_path: Path
+) -> None:
     content = picture()
     name = core.upload_picture(content)
     core.set_material("east wall", picture=name, tile=[1, 2])
@@ -200,7 +204,7 @@ def test_saved_scene_has_materials_and_pictures(core: SimulationCore, tmp_path: 
     world.close()
 
 
-def test_saving_takes_no_other_pictures_name(core: SimulationCore, tmp_path: Path) -> None:
+def test_saving_takes_no_other_pictures_name(core: SynchronousSimulation, tmp_path: Path) -> None:
     name = core.upload_picture(picture())
     core.set_material("toy", picture=name)
     (tmp_path / "pictures").mkdir()
@@ -211,7 +215,7 @@ def test_saving_takes_no_other_pictures_name(core: SimulationCore, tmp_path: Pat
 
 
 @pytest.mark.parametrize("name", ["toy", "table", "floor", "west wall", "door 1"])
-def test_undo_brings_back_and_redo_does_again(core: SimulationCore, name: str) -> None:
+def test_undo_brings_back_and_redo_does_again(core: SynchronousSimulation, name: str) -> None:
     def run(operation: object, *given: object) -> object:
         return operation.run(core, *given)  # type: ignore[attr-defined]
 

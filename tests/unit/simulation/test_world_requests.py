@@ -19,7 +19,7 @@ from sailenv_ros.errors import (
     UnknownName,
 )
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -29,34 +29,36 @@ from tests.support.lockstep_core import lockstep_core
 AHEAD = Pose((2.0, 0.0, 1.0))
 
 
-def make_core() -> SimulationCore:
+def make_core() -> SynchronousSimulation:
     core = lockstep_core()
     core.register_agent(AgentSpec(name="eye", intrinsics=CameraIntrinsics(width=16, height=16)))
     return core
 
 
 @pytest.fixture
-def core() -> Iterator[SimulationCore]:
+def core() -> Iterator[SynchronousSimulation]:
     made = make_core()
     yield made
     made.close()
 
 
 @pytest.fixture
-def told(core: SimulationCore) -> list[SceneInfo]:
+def told(core: SynchronousSimulation) -> list[SceneInfo]:
     infos: list[SceneInfo] = []
     core.on_info = infos.append
     return infos
 
 
-def ids_of(core: SimulationCore) -> list[int]:
+def ids_of(core: SynchronousSimulation) -> list[int]:
     return [instance.id for instance in core.info.instances]
 
 
 # -- objects -----------------------------------------------------------------------------------
 
 
-def test_a_spawned_object_is_announced_at_once(core: SimulationCore, told: list[SceneInfo]) -> None:
+def test_a_spawned_object_is_announced_at_once(
+    core: SynchronousSimulation, told: list[SceneInfo]
+) -> None:
     """The answered id is in the next scene_info, and in the frame after it, with its values."""
     turned = Pose.from_rpy_deg((1.0, 2.0, 3.0), (10.0, 20.0, 30.0))
     id_ = core.spawn_object(
@@ -77,7 +79,7 @@ def test_a_spawned_object_is_announced_at_once(core: SimulationCore, told: list[
     assert sizes == pytest.approx([1.0, 2.0, 3.0])
 
 
-def test_ids_are_never_used_again(core: SimulationCore) -> None:
+def test_ids_are_never_used_again(core: SynchronousSimulation) -> None:
     """An object that comes after one that went has a number of its own."""
     seen = set(ids_of(core))
     for _ in range(5):
@@ -88,16 +90,16 @@ def test_ids_are_never_used_again(core: SimulationCore) -> None:
         assert id_ not in ids_of(core)
 
 
-def test_a_waiting_frame_does_not_outlive_its_world(core: SimulationCore) -> None:
+def test_a_waiting_frame_does_not_outlive_its_world(core: SynchronousSimulation) -> None:
     """A frame that nobody has taken is dropped when the scene ends, not when an object goes."""
     core.set_rate(30.0, agent="eye")
     id_ = core.spawn_object("cube", pose=AHEAD, remove_dynamics=False)
     stream = core.open_stream("eye", ("instance",), lambda _: None)
-    core.render_due()
+    core.streams.render_due()
     core.despawn_object(id_)
     assert id_ in stream.get(0.0).instances
     for end in (core.reset, lambda: core.change_scene("optical")):
-        core.render_due()
+        core.streams.render_due()
         core.step(8)
         end()
         with pytest.raises(DeadlineExceeded):
@@ -107,7 +109,7 @@ def test_a_waiting_frame_does_not_outlive_its_world(core: SimulationCore) -> Non
 
 
 def test_a_frame_is_delivered_to_whom_it_was_drawn_for(
-    core: SimulationCore, monkeypatch: pytest.MonkeyPatch
+    core: SynchronousSimulation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Who wants no more views while it is drawn gets it all the same; it is not drawn again."""
     core.set_rate(30.0, agent="eye")
@@ -119,11 +121,11 @@ def test_a_frame_is_delivered_to_whom_it_was_drawn_for(
         return render(*asked)
 
     monkeypatch.setattr(core, "render", changing_minds)
-    core.render_due()
+    core.streams.render_due()
     assert [*stream.get(0.0).views] == ["instance"]
 
 
-def test_an_object_without_a_name_is_given_one(core: SimulationCore) -> None:
+def test_an_object_without_a_name_is_given_one(core: SynchronousSimulation) -> None:
     """The first free number after the asset's catalogue name, whichever name it was asked by."""
     first, second = (
         core.spawn_object(asset, pose=AHEAD, remove_dynamics=False) for asset in ("cube", "Cube")
@@ -132,13 +134,13 @@ def test_an_object_without_a_name_is_given_one(core: SimulationCore) -> None:
     assert {core.get_object(i).name.rpartition("_")[0] for i in (first, second)} == {"cube"}
 
 
-def test_objects_go_by_id_and_by_name(core: SimulationCore) -> None:
+def test_objects_go_by_id_and_by_name(core: SynchronousSimulation) -> None:
     """Both name the same object, also as NumPy's integers, which are the values of pixels."""
     id_ = core.spawn_object("cube", object_name="box", pose=AHEAD, remove_dynamics=False)
     assert core.get_object("box") == core.get_object(id_) == core.get_object(np.uint16(id_))  # type: ignore[arg-type]  # what a pixel holds
 
 
-def test_a_moved_object_is_where_it_was_put_and_stands_still(core: SimulationCore) -> None:
+def test_a_moved_object_is_where_it_was_put_and_stands_still(core: SynchronousSimulation) -> None:
     """Its velocity is gone, its pose is the one given."""
     id_ = core.spawn_object("cube", pose=Pose((0.0, 0.0, 50.0)), remove_dynamics=False)
     core.step(60)
@@ -150,7 +152,7 @@ def test_a_moved_object_is_where_it_was_put_and_stands_still(core: SimulationCor
 
 
 @pytest.mark.parametrize("teleport", [False, True])
-def test_only_a_teleport_cuts_the_past_off(core: SimulationCore, teleport: bool) -> None:
+def test_only_a_teleport_cuts_the_past_off(core: SynchronousSimulation, teleport: bool) -> None:
     """A moved object keeps its history, so that flow shows the motion."""
     id_ = core.spawn_object("cube", pose=AHEAD, remove_dynamics=False)
     row = ids_of(core).index(id_)
@@ -159,7 +161,7 @@ def test_only_a_teleport_cuts_the_past_off(core: SimulationCore, teleport: bool)
     assert (core.world.snapshot().histories[row] != before) == teleport
 
 
-def test_behaviours_of_a_spawned_object_start_when_it_does(core: SimulationCore) -> None:
+def test_behaviours_of_a_spawned_object_start_when_it_does(core: SynchronousSimulation) -> None:
     """It turns at its rate from then on, and says what moves it."""
     core.step(100)
     turning = {"type": "rotate_rigidbody", "angular_velocity": (0, 0, 90)}
@@ -176,7 +178,7 @@ def test_behaviours_of_a_spawned_object_start_when_it_does(core: SimulationCore)
 # -- lights and surroundings -------------------------------------------------------------------
 
 
-def test_a_changed_light_is_announced(core: SimulationCore, told: list[SceneInfo]) -> None:
+def test_a_changed_light_is_announced(core: SynchronousSimulation, told: list[SceneInfo]) -> None:
     """What was named is changed, the rest is as it was, and the direction has unit length."""
     before = core.lights[0]
     changed = core.set_light(before.name, intensity=0.25, direction=(0, 0, -4))
@@ -185,7 +187,7 @@ def test_a_changed_light_is_announced(core: SimulationCore, told: list[SceneInfo
     assert told[-1].lights[0] == core.lights[0] == changed
 
 
-def test_surroundings_are_announced(core: SimulationCore, told: list[SceneInfo]) -> None:
+def test_surroundings_are_announced(core: SynchronousSimulation, told: list[SceneInfo]) -> None:
     """Ambient light and background change alone; a background without colour keeps the last."""
     core.set_background("colour", (0.1, 0.2, 0.3))
     core.set_background("sky")
@@ -208,7 +210,7 @@ SCENARIO = {
 }
 
 
-def test_a_scenario_is_a_scene_with_more_objects(core: SimulationCore) -> None:
+def test_a_scenario_is_a_scene_with_more_objects(core: SynchronousSimulation) -> None:
     """Its objects follow the scene's own, and a reset brings them back."""
     core.change_scene("solid_benchmark")
     own = len(core.info.instances)
@@ -340,7 +342,7 @@ BAD_REQUESTS = [
 
 @pytest.mark.parametrize(("call", "error", "sentence"), BAD_REQUESTS)
 def test_a_refused_request_changes_nothing(
-    core: SimulationCore,
+    core: SynchronousSimulation,
     told: list[SceneInfo],
     call: Any,
     error: type[Exception],
@@ -457,7 +459,9 @@ def refused(request: Any, *args: Any, **kwargs: Any) -> SailenvError | None:
     return None
 
 
-def check_whole(core: SimulationCore, told: list[SceneInfo], seen: dict[int, set[int]]) -> None:
+def check_whole(
+    core: SynchronousSimulation, told: list[SceneInfo], seen: dict[int, set[int]]
+) -> None:
     """Ids are known and never used again, names differ, poses are finite, frames can be made."""
     snapshot = core.world.snapshot()
     assert np.isfinite(snapshot.world_from_body).all()

@@ -11,7 +11,8 @@ import pytest
 
 from sailenv_content.standard.pack_build import build_standard_pack
 from sailenv_ros.errors import AssetError, SceneError
-from sailenv_ros.simulation.scenes import SceneLibrary, default_scene
+from sailenv_ros.simulation.first_scene import default_scene
+from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 from sailenv_ros.world.world import World

@@ -1,0 +1,152 @@
+"""Frames of one simulation: its world through a camera, drawn by its renderer.
+
+Knows neither when a frame is due nor who gets it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
+from sailenv_ros.light.relight.relighter import Relighter
+from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.simulation.agent_table import AgentRecord
+from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+
+__all__ = ["FrameMaker"]
+
+
+class FrameMaker:
+    """Draws the present scene.
+
+    Parameters
+    ----------
+    scene : LiveScene
+    renderer : RenderBackend
+        Owned from now on; closed with this.
+    lockstep : bool
+        True has light worked out at once, whatever time that takes.
+
+    Attributes
+    ----------
+    run_later : callable
+        Runs a function in the thread that this belongs to, and returns its result: for frames
+        whose objects are drawn alone when somebody asks for it.
+    """
+
+    def __init__(self, scene: LiveScene, renderer: RenderBackend, *, lockstep: bool) -> None:
+        self.run_later: Callable[[Callable[[], AmodalMasks]], AmodalMasks] = lambda draw: draw()
+        self._scene = scene
+        self._renderer = renderer
+        self._lockstep = lockstep
+        self._alone: AloneRenderer | None = None
+        self._relighter = Relighter()
+        self.watch_light()
+
+    @property
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that the renderer can make, in the order of `frame.VIEWS`."""
+        return self._renderer.supported_views
+
+    @property
+    def description(self) -> str:
+        """The renderer in words."""
+        return self._renderer.description
+
+    def watch_light(self) -> None:
+        """Take up the light of the present world, which is another one or was baked anew."""
+        self._relighter.watch(self._scene.world.snapshot())
+
+    def frame(
+        self,
+        record: AgentRecord,
+        views: Sequence[str],
+        *,
+        began_s: float,
+        info: SceneInfo,
+        randomised: Mapping[str, Any] | None,
+        lesson: LessonState | None,
+    ) -> Frame:
+        """Render one frame of an agent now.
+
+        Parameters
+        ----------
+        record : AgentRecord
+        views : sequence of str
+            Of those that the renderer can make.
+        began_s : float
+            When its making began, by `time.perf_counter` [s].
+        info : SceneInfo
+            What clients find the frame's ids in.
+        randomised : mapping or None
+            What was drawn at random for it.
+        lesson : LessonState or None
+        """
+        world = self._scene.world
+        snapshot = self._relighter.lit(
+            world.snapshot(),
+            wanted="rgb" in views,
+            lockstep=self._lockstep,
+            changed_ns=world.changed_ns,
+        )
+        camera = self._scene.agents.camera(record, world)
+        past = record.past(snapshot.sim_time_ns)
+        rendered = self._renderer.render(snapshot, past, camera, views)
+        record.remember(Observation(snapshot=snapshot, camera=camera, depth=rendered.depth))
+        record.sequence += 1
+        return Frame(
+            agent=record.spec.name,
+            scene=info.scene,
+            epoch=info.epoch,
+            revision=info.revision,
+            sequence=record.sequence,
+            stamp_ns=snapshot.sim_time_ns,
+            dt_ns=0 if past is None else snapshot.sim_time_ns - past.snapshot.sim_time_ns,
+            camera=camera,
+            depth_range_m=record.spec.depth_range_m,
+            views=rendered.views,
+            timings_s={**rendered.timings_s, "render": time.perf_counter() - began_s},
+            info=info,
+            states=world.states(),
+            randomised=randomised,
+            lesson=lesson,
+            draw_alone=lambda only=0: self.run_later(
+                lambda: self.draw_alone(snapshot, camera, only)
+            ),
+        )
+
+    def look(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
+        """Render views of the scene as it stands now, through a camera that is no agent's."""
+        return self._renderer.render(self._scene.world.snapshot(), None, camera, views).views
+
+    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+        """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
+
+        Raises
+        ------
+        NativeLibraryError
+            If there is no native library, which draws them.
+        """
+        if self._alone is None:
+            renderer = self._renderer
+            table = renderer.part_table if isinstance(renderer, NativeRenderer) else None
+            self._alone = AloneRenderer(table)
+        return self._alone.draw(snapshot, camera, only)
+
+    def close(self) -> None:
+        """Free the renderer."""
+        self._relighter.close()
+        if self._alone is not None:
+            self._alone.close()
+        self._renderer.close()

@@ -1,0 +1,24 @@
+"""A simulation in the caller's own thread: each operation is carried out as it is asked for."""
+
+from __future__ import annotations
+
+import inspect
+from concurrent.futures import Future
+from typing import Any
+
+from sailenv_ros.simulation.core import SimulationCore
+from sailenv_ros.simulation.operations import Operation, WorldOperations
+
+__all__ = ["SynchronousSimulation"]
+
+
+class SynchronousSimulation(SimulationCore, WorldOperations):
+    """A `SimulationCore` with its operations; nothing runs beside the caller."""
+
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Carry an operation out now."""
+        done: Future[Any] = Future()
+        done.set_result(operation.carry_out(self, arguments))
+        return done
