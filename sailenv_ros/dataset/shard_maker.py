@@ -35,9 +35,9 @@ from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.cpu.texture_store import TextureStore
-from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
@@ -170,7 +170,7 @@ class ShardMaker:
         return frames
 
     def _take_clip(
-        self, tracks: dict[str, Track | None], core: SimulationCore, writer: ShardWriter
+        self, tracks: dict[str, Track | None], core: SynchronousSimulation, writer: ShardWriter
     ) -> int:
         recipe = self._recipe
         for camera in recipe.cameras:
@@ -207,7 +207,7 @@ class ShardMaker:
         return replace(frame, **changes)
 
     def _chosen(
-        self, camera: RuleCamera, group: tuple[Clip, ...], core: SimulationCore
+        self, camera: RuleCamera, group: tuple[Clip, ...], core: SynchronousSimulation
     ) -> list[Pose]:
         """Return the places that a rule finds for the clips of a group, perhaps fewer."""
         random = named_generator(self._recipe.seed, "rule", camera.name, str(group[0].number))
@@ -221,7 +221,7 @@ class ShardMaker:
         return [one.pose for one in found]
 
     def _track(
-        self, camera: AnyCamera, clip: Clip, core: SimulationCore, chosen: list[Pose]
+        self, camera: AnyCamera, clip: Clip, core: SynchronousSimulation, chosen: list[Pose]
     ) -> Track | None:
         """Return a camera's poses in a clip; None if an agent's mover has it."""
         if isinstance(camera, AgentCamera):
@@ -234,7 +234,7 @@ class ShardMaker:
             raise NoFreeSpace(f"no more places for the camera {camera.name} by {camera.rule}")
         return turning(chosen.pop(0), camera, times_s, random)
 
-    def _agent(self, camera: AnyCamera, core: SimulationCore) -> AgentSpec:
+    def _agent(self, camera: AnyCamera, core: SynchronousSimulation) -> AgentSpec:
         spec = AgentSpec(
             name=_agent_name(camera),
             intrinsics=camera.intrinsics,
@@ -257,10 +257,10 @@ class ShardMaker:
         )
 
     @contextmanager
-    def _scene(self, first: Clip) -> Iterator[SimulationCore]:
+    def _scene(self, first: Clip) -> Iterator[SynchronousSimulation]:
         """Yield a scene that has just begun."""
         random = named_generator(self._recipe.seed, "scene", str(first.number))
-        core = SimulationCore(
+        core = SynchronousSimulation(
             self._library,
             self._path(first.scene),
             NativeRenderer(table=PartTable(*self._stores)),

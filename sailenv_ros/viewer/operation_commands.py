@@ -110,6 +110,21 @@ _LOOKS: Mapping[Operation[..., Any], Run] = {
     operation: _plain(operation) for operation in (Operations.get_object, Operations.scene_text)
 }
 
+_OBJECT_EDITS: dict[str, Operation[..., Any]] = {
+    "moving": Operations.move_object,
+    "deleting": Operations.despawn_object,
+    "the behaviour of": Operations.add_behaviour,
+    "stopping": Operations.remove_behaviours,
+    "opening": Operations.set_joint_position,
+    "the material of": Operations.set_material,
+}
+
+_SURROUNDINGS_EDITS: dict[str, Operation[..., Any]] = {
+    "changing the light": Operations.set_light,
+    "deleting the light": Operations.remove_light,
+    "changing the surroundings": Operations.set_environment,
+}
+
 _CHANGES: Mapping[Operation[..., Any], Run] = {
     # scene and time
     Operations.change_scene: _plain(Operations.change_scene, _known_scene),
@@ -134,26 +149,12 @@ _CHANGES: Mapping[Operation[..., Any], Run] = {
         )
     },
     # objects
-    **{
-        operation: _of_object(words, operation)
-        for words, operation in {
-            "moving": Operations.move_object,
-            "deleting": Operations.despawn_object,
-            "the behaviour of": Operations.add_behaviour,
-            "stopping": Operations.remove_behaviours,
-            "opening": Operations.set_joint_position,
-            "the material of": Operations.set_material,
-        }.items()
-    },
+    **{operation: _of_object(words, operation) for words, operation in _OBJECT_EDITS.items()},
     Operations.change_object: _of_object("changing", Operations.change_object, _object_keys),
     # light
     **{
         operation: _of_surroundings(words, operation)
-        for words, operation in {
-            "changing the light": Operations.set_light,
-            "deleting the light": Operations.remove_light,
-            "changing the surroundings": Operations.set_environment,
-        }.items()
+        for words, operation in _SURROUNDINGS_EDITS.items()
     },
 }
 
