@@ -13,7 +13,6 @@ import numpy as np
 
 from sailenv_ros.backends.selection import make_backend
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.render.backend import RenderBackend
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
@@ -115,8 +114,5 @@ def unseen(
 
 
 def look_backend() -> RenderBackend:
-    """Return the renderer whose ids are the same on every machine, or one that needs nothing."""
-    try:
-        return make_backend("native", None)
-    except NativeLibraryError:
-        return make_backend("tiny", None)
+    """Return the renderer whose ids are the same on every machine."""
+    return make_backend("native", None)

@@ -9,7 +9,7 @@ from sailenv_ros.geometry import invert
 from sailenv_ros.motion.moments import AnyFrame, moment_of
 from sailenv_ros.motion.motion_tables import lens_numbers
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.kernels import transform_points
+from sailenv_ros.native.motion_kernels import transform_points
 
 __all__ = ["object_coordinates"]
 

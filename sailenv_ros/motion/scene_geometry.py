@@ -20,8 +20,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.instance_states import InstanceStates
 from sailenv_ros.model import Material, Model
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree
-from sailenv_ros.render.kernels import build_tree, cast_rays
+from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree, build_tree, cast_rays
 from sailenv_ros.snapshot import SceneContents
 from sailenv_ros.space import RayCast
 

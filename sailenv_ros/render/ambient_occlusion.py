@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.render.kernels import find_ambient_visibility
+from sailenv_ros.native.ambient_visibility import find_ambient_visibility
 
 __all__ = ["PATTERN", "ambient_visibility", "kernel_numbers"]
 

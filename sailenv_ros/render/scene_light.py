@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from sailenv_ros.camera import Camera
 from sailenv_ros.lights import Light
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.native.light_maps import blur_directions
 from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.draw_list import DrawList
 from sailenv_ros.render.geometry_buffers import GeometryBuffers
-from sailenv_ros.render.kernels import blur_directions
 from sailenv_ros.render.lighting_pass import Illumination
 from sailenv_ros.render.lightmap_compositing import (
     CompositedLight,

@@ -20,8 +20,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.picture_settings import PictureSettings
-from sailenv_ros.render.kernels import gather_light
 
 __all__ = ["sensor_light"]
 

@@ -10,7 +10,8 @@ from hypothesis.extra import numpy as arrays
 
 from sailenv_ros.native.instance_measures import measure_instances
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.object_truth.visible_parts import measure_with_numpy, visible_parts
+from sailenv_ros.object_truth.visible_parts import visible_parts
+from tests.support.reference_measures import measure_with_numpy
 
 VIEWS = arrays.arrays(
     np.uint16,
