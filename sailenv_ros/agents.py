@@ -14,12 +14,13 @@ from sailenv_ros.frame import FIVE_VIEWS, RENDERED_VIEWS, checked_views
 from sailenv_ros.geometry import Pose
 from sailenv_ros.look_at import LookAt
 from sailenv_ros.picture_settings import PictureSettings
+from sailenv_ros.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.validation import IDENTIFIER, checked_number, is_finite_number, is_number
 
 __all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "AgentPose", "AgentSpec"]
 
 MAX_AGENTS = 16
-MAX_RATE_HZ = 240.0
+MAX_RATE_HZ = float(STEPS_PER_SECOND)
 
 
 def checked_rate(what: str, value: object) -> float:

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 from sailenv_ros.validation import checked_flag, checked_number
 
-__all__ = ["RIGID_BODY_LIMITS", "RigidBody"]
+__all__ = ["RIGID_BODY_LIMITS", "STEPS_PER_SECOND", "RigidBody"]
+
+STEPS_PER_SECOND = 240
+"""Steps of the physics engine per second of simulated time."""
 
 RIGID_BODY_LIMITS: dict[str, tuple[float, float, str]] = {
     "mass_kg": (0.001, 1000.0, "kg"),

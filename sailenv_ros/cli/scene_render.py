@@ -17,13 +17,12 @@ from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.labels import CategoryTable
 from sailenv_ros.pictures.colours import view_picture
 from sailenv_ros.pictures.contact_sheet import save_contact_sheet, save_picture
+from sailenv_ros.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.simulation import Simulation
 from sailenv_ros.validation import checked_integer, checked_number
 
 __all__ = ["add_arguments", "render_scene"]
-
-STEPS_PER_S = 240
 
 CAMERA = "scene_render_camera"
 """Its agent; the scene may have agents of its own."""
@@ -122,8 +121,8 @@ def _eye(args: argparse.Namespace) -> AgentSpec:
 
 def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
     """Return the frame of a time; it has a past, so that flow shows what moves."""
-    step = max(FLOW_STEPS, round(time_s * STEPS_PER_S))
-    now = simulation.sim_time_ns * STEPS_PER_S // 10**9
+    step = max(FLOW_STEPS, round(time_s * STEPS_PER_SECOND))
+    now = simulation.sim_time_ns * STEPS_PER_SECOND // 10**9
     if step - FLOW_STEPS > now:
         simulation.step(step - FLOW_STEPS - now)
     simulation.capture(views, agent=CAMERA)

@@ -24,6 +24,7 @@ from sailenv_ros.recording.channels import (
     topic,
 )
 from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
@@ -36,9 +37,6 @@ __all__ = [
     "rendered",
     "rendered_ahead",
 ]
-
-STEPS_PER_S = 240
-"""Physics steps per simulated second."""
 
 FRAME_TIMEOUT_S = 120.0
 """How long one frame may take to be rendered [s]."""
@@ -103,7 +101,7 @@ class _Shot:
 def due_steps(rate_hz: float, count: int) -> list[int]:
     """Return the physics steps at which an agent's frames fall due, from 0 on."""
     # A step late rather than early, as the streams of a simulation do it.
-    return [math.ceil(number * STEPS_PER_S / rate_hz - 1e-9) for number in range(count)]
+    return [math.ceil(number * STEPS_PER_SECOND / rate_hz - 1e-9) for number in range(count)]
 
 
 def rendered_ahead(asked: Iterable[Future[Frame]]) -> Iterator[Frame]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import Pose, pose_angle_deg
 from sailenv_ros.scene.serialisation import (
     PLACE_KEYS,
     VELOCITY_KEYS,
@@ -290,7 +290,7 @@ def _only_settled(body: Body) -> bool:
         return True
     return (
         math.dist(first.position_m, now.position_m) <= SETTLED_M
-        and _angle_deg(first, now) <= SETTLED_DEG
+        and pose_angle_deg(first, now) <= SETTLED_DEG
         and float(np.abs(speeds).max()) <= AT_REST
     )
 
@@ -298,13 +298,8 @@ def _only_settled(body: Body) -> bool:
 def _is_same(first: Pose, second: Pose, within_m: float = 1e-12, within_deg: float = 1e-6) -> bool:
     """Return whether two poses are the same up to rounding, or up to so much [m], [deg]."""
     return math.dist(first.position_m, second.position_m) < within_m and (
-        _angle_deg(first, second) < within_deg
+        pose_angle_deg(first, second) < within_deg
     )
-
-
-def _angle_deg(first: Pose, second: Pose) -> float:
-    share = abs(float(np.dot(first.orientation_xyzw, second.orientation_xyzw)))
-    return math.degrees(2.0 * math.acos(min(1.0, share)))
 
 
 def _velocities(body: Body) -> Entry:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import Pose, vector_angle_deg
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.viewpoints.view_scene import CameraView, RuleSettings, ViewScene, camera_rule
 
@@ -88,7 +88,7 @@ def free_view(
         forward = pose.matrix()[:3, 0]
         if any(
             math.dist(pose.position_m, other.pose.position_m) < settings.apart_m
-            and _angle_deg(forward, other_forward) < settings.apart_deg
+            and vector_angle_deg(forward, other_forward) < settings.apart_deg
             for other, other_forward in zip(chosen, forwards, strict=True)
         ):
             continue
@@ -103,8 +103,3 @@ def free_view(
         if len(chosen) == count:
             break
     return chosen
-
-
-def _angle_deg(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """Return the angle between two unit vectors [deg]."""
-    return math.degrees(math.acos(min(1.0, max(-1.0, float(first @ second)))))
