@@ -149,7 +149,7 @@ def load_native_compile():
 class BuildNativeLibrary(build_ext):
     """Compiles the native library where other packages compile modules for one Python.
 
-    Without a compiler the rest is installed all the same: see docs/architecture.md.
+    It is required: without a compiler nothing is built.
     """
 
     def get_ext_filename(self, fullname):
@@ -168,25 +168,7 @@ class BuildNativeLibrary(build_ext):
                 shutil.copyfile(compiled, output)
             return
         objects = Path(self.build_temp) / "native"
-        try:
-            native_compile.compile_library(output, objects=objects, strict=strict)
-        except native_compile.CompilerError as problem:
-            if strict:
-                raise
-            output.unlink(missing_ok=True)
-            self.warn(f"without the native library, frames take longer: {problem}")
-
-    def copy_extensions_to_source(self):
-        # Of an editable install; there is nothing to copy if it could not be compiled.
-        self.extensions = [
-            extension
-            for extension in self.extensions
-            if Path(self.build_lib, self.get_ext_filename(extension.name)).exists()
-        ]
-        super().copy_extensions_to_source()
-
-    def get_outputs(self):
-        return [path for path in super().get_outputs() if Path(path).exists()]
+        native_compile.compile_library(output, objects=objects, strict=strict)
 
 
 class BuildWheel(bdist_wheel):

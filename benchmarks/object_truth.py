@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 
 from sailenv_ros.frame.truth.frame_objects import objects_of
-from sailenv_ros.frame.truth.visible_parts import measure_with_numpy, visible_parts
+from sailenv_ros.frame.truth.visible_parts import visible_parts
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -54,7 +54,6 @@ def main() -> None:
         results = {
             "one pass over ids": lambda: visible_parts(instance),
             "one pass over ids, with flow": lambda: visible_parts(instance, flow),
-            "one pass in NumPy": lambda: measure_with_numpy(instance, None),
             "table": lambda: objects_of(frame),
             "cloud of points": frame.points,
             "all objects alone": draw,

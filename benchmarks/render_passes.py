@@ -27,13 +27,13 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from sailenv_bench.experiments.bullet_bodies import BulletBodies
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 from sailenv_ros.world.bullet import BulletClient
-from sailenv_ros.world.tiny_bodies import TinyBodies
 from sailenv_ros.world.world import World
 
 SIZES = ((240, 180), (320, 240), (640, 480), (800, 600), (1024, 768), (1280, 960))
@@ -59,7 +59,7 @@ class PlainBullet:
 
     def __init__(self) -> None:
         self._client = BulletClient()
-        self._bodies = TinyBodies(self._client)
+        self._bodies = BulletBodies(self._client)
 
     def prepare(self, snapshot: WorldSnapshot, camera: Camera) -> None:
         """Put the bodies where the camera sees them."""

@@ -18,6 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from sailenv_bench.experiments.bullet_bodies import BulletBodies
 from sailenv_ros.errors import PhysicsError
 from sailenv_ros.extras import need
 from sailenv_ros.render.selection import make_backend
@@ -27,7 +28,6 @@ from sailenv_ros.types.model import Material
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import FIVE_VIEWS
 from sailenv_ros.world.bullet import BulletClient
-from sailenv_ros.world.tiny_bodies import TinyBodies
 
 __all__ = ["BASELINES", "BaselineScene", "Picture"]
 
@@ -95,7 +95,7 @@ class _Ours:
         self._renderer.close()
 
 
-class _FileBodies(TinyBodies):
+class _FileBodies(BulletBodies):
     """The same bodies by way of Wavefront files: PyBullet's OpenGL knows no meshes in memory."""
 
     def __init__(self, client: BulletClient) -> None:
@@ -146,7 +146,7 @@ class _Bullet:
             if loaded < 0:
                 self._client.close()
                 raise PhysicsError("PyBullet's plugin eglRenderer could not be loaded here")
-        self._bodies = _FileBodies(self._client) if opengl else TinyBodies(self._client)
+        self._bodies = _FileBodies(self._client) if opengl else BulletBodies(self._client)
         names = self._client.constants
         self._number = names.ER_BULLET_HARDWARE_OPENGL if opengl else names.ER_TINY_RENDERER
         self._lens = CameraIntrinsics()

@@ -1,1 +1,1 @@
-"""Which renderer draws, and the one that needs no OpenGL."""
+"""Which renderer draws."""

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 
 __all__ = [
     "MAX_SPEED_M_S",
@@ -38,7 +39,7 @@ Vector3 = tuple[float, float, float]
 MAX_VIEW_DISTANCE_M = 10.0
 
 
-STEP_S = 1.0 / 240.0
+STEP_S = 1.0 / STEPS_PER_SECOND
 """Simulated time that an action lasts: one physics step."""
 
 MAX_SPEED_M_S = 10.0

@@ -116,9 +116,8 @@ def diagnose(*, timeout_s: float, probe: Probe = try_probe) -> Iterator[CheckRes
     yield from _ros(*probe("ros", timeout_s))
     yield from _shared_memory()
     yield from _scenes(*probe("scenes", timeout_s))
-    native = _native()
-    yield native
-    yield from _graphics(*probe("graphics", timeout_s), has_native=native.level == "ok")
+    yield _native()
+    yield from _graphics(*probe("graphics", timeout_s))
     yield from _frame(probe, timeout_s)
 
 
@@ -219,9 +218,7 @@ def _scenes(found: dict[str, Any] | None, why_not: str) -> Iterator[CheckResult]
             yield CheckResult(topic="scenes", text=error, level="warning")
 
 
-def _graphics(
-    found: dict[str, Any] | None, why_not: str, *, has_native: bool
-) -> Iterator[CheckResult]:
+def _graphics(found: dict[str, Any] | None, why_not: str) -> Iterator[CheckResult]:
     for name in GRAPHICS_VARIABLES:
         if name in os.environ:
             yield CheckResult(
@@ -229,34 +226,20 @@ def _graphics(
             )
     remedy = f"If there is no driver: sudo apt-get install {GRAPHICS_PACKAGES}"
     if found is None:
-        level: Level = "note" if has_native else "warning"
-        yield CheckResult(topic="OpenGL", text=f"{why_not}. {remedy}", level=level)
+        yield CheckResult(topic="OpenGL", text=f"{why_not}. {remedy}", level="note")
         return
-    usable = [device for device in found["devices"] if not device["refused"]]
     for device in found["devices"]:
         topic = f"EGL device {device['index']}"
         if device["refused"]:
             yield CheckResult(topic=topic, text=f"refused: {device['refused']}", level="note")
         else:
             yield CheckResult(topic=topic, text=f"{device['renderer']}, OpenGL {device['version']}")
-    hardware = any(not device["software"] for device in usable)
-    if has_native and not hardware:
+    if not any(not each["refused"] and not each["software"] for each in found["devices"]):
         yield CheckResult(
             topic="OpenGL",
             text="no device is graphics hardware: the native renderer draws, on the CPU; where "
-            "there is a graphics card, its driver lacks EGL",
+            f"there is a graphics card, its driver lacks EGL. {remedy}",
             level="note",
-        )
-    elif not usable:
-        yield CheckResult(
-            topic="OpenGL", text=f"no device gives a context. {remedy}", level="warning"
-        )
-    elif not hardware:
-        yield CheckResult(
-            topic="OpenGL",
-            text="rendering in SOFTWARE, on the CPU: no device is graphics hardware. Right "
-            "pictures, slowly; where there is a graphics card, its driver lacks EGL",
-            level="warning",
         )
 
 
@@ -264,17 +247,13 @@ def _frame(probe: Probe, timeout_s: float) -> Iterator[CheckResult]:
     found, why_not = probe("frame by auto", timeout_s)
     if found is None:
         yield CheckResult(topic="renderer", text=f"no frame: {why_not}", level="warning")
-        for name in ("native", "tiny"):
-            found, why_not = probe(f"frame by {name}", timeout_s)
-            if found is not None:
-                text = f"FALLBACK, on the CPU, with backend:={name}: {found['renderer']}"
-                yield CheckResult(topic="renderer", text=text, level="warning")
-                break
+        found, why_not = probe("frame by native", timeout_s)
         if found is None:
-            yield CheckResult(
-                topic="a frame", text=f"nor by the fallback: {why_not}", level="FAILED"
-            )
+            text = f"nor by the native renderer: {why_not}"
+            yield CheckResult(topic="a frame", text=text, level="FAILED")
             return
+        text = f"FALLBACK, on the CPU, with backend:=native: {found['renderer']}"
+        yield CheckResult(topic="renderer", text=text, level="warning")
     else:
         yield CheckResult(topic="renderer", text=found["renderer"])
     yield CheckResult(
@@ -298,10 +277,9 @@ def _native() -> CheckResult:
     except NativeLibraryError as problem:
         return CheckResult(
             topic="native library",
-            text=f"{problem}. Frames are drawn with OpenGL, also where there is no graphics "
-            "hardware, which is slower. A C++ compiler (apt-get install g++) and scripts/setup "
-            "make it",
-            level="warning",
+            text=f"{problem}. Nothing is drawn without it. If there is no compiler: sudo apt-get "
+            "install g++",
+            level="FAILED",
         )
     return CheckResult(topic="native library", text=f"{library.instruction_set}, {library.path}")
 

@@ -101,7 +101,6 @@ PROBES: dict[str, Callable[[], dict[str, Any]]] = {
     "scenes": probe_scenes,
     "frame by auto": partial(probe_frame, "auto"),
     "frame by native": partial(probe_frame, "native"),
-    "frame by tiny": partial(probe_frame, "tiny"),
 }
 
 

@@ -62,7 +62,7 @@ def _add_lockstep(group: Any) -> None:
     group.add_argument("--rate", type=float, default=30.0, help="of an agent made here [Hz]")
     add_allow_modules(group)
     add_light(group, "baked")
-    group.add_argument("--backend", choices=("auto", "native", "gl", "tiny"), default="auto")
+    group.add_argument("--backend", choices=("auto", "native", "gl"), default="auto")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -19,12 +19,11 @@ from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
 
 __all__ = ["add_arguments", "render_scene"]
-
-STEPS_PER_S = 240
 
 CAMERA = "scene_render_camera"
 """Its agent; the scene may have agents of its own."""
@@ -123,8 +122,8 @@ def _eye(args: argparse.Namespace) -> AgentSpec:
 
 def _frame_at(simulation: Simulation, time_s: float, views: list[str]) -> Frame:
     """Return the frame of a time; it has a past, so that flow shows what moves."""
-    step = max(FLOW_STEPS, round(time_s * STEPS_PER_S))
-    now = simulation.sim_time_ns * STEPS_PER_S // 10**9
+    step = max(FLOW_STEPS, round(time_s * STEPS_PER_SECOND))
+    now = simulation.sim_time_ns * STEPS_PER_SECOND // 10**9
     if step - FLOW_STEPS > now:
         simulation.step(step - FLOW_STEPS - now)
     simulation.capture(views, agent=CAMERA)

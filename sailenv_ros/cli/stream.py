@@ -55,7 +55,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="default: %(default)s")
     parser.add_argument("--views", nargs="+", default=[], metavar="VIEW", help="default: all six")
     add_light(parser, "plain")
-    parser.add_argument("--backend", choices=("auto", "native", "gl", "tiny"), default="auto")
+    parser.add_argument("--backend", choices=("auto", "native", "gl"), default="auto")
     parser.add_argument("--quiet", action="store_true", help="no progress line")
 
 

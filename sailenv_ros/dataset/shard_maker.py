@@ -30,7 +30,7 @@ from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.recording.lockstep import STEPS_PER_S, due_steps
+from sailenv_ros.recording.lockstep import due_steps
 from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -41,6 +41,7 @@ from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["ShardMaker"]
@@ -147,7 +148,7 @@ class ShardMaker:
         frames = 0
         with self._scene(group[0]) as core:
             if recipe.clip.settle:
-                core.step(round(recipe.clip.settle * STEPS_PER_S))
+                core.step(round(recipe.clip.settle * STEPS_PER_SECOND))
             chosen = {
                 one.name: self._chosen(one, group, core)
                 for one in recipe.cameras
@@ -155,7 +156,7 @@ class ShardMaker:
             }
             for clip in group:
                 if clip is not group[0]:
-                    core.step(round(recipe.clip.gap * STEPS_PER_S) or 1)
+                    core.step(round(recipe.clip.gap * STEPS_PER_SECOND) or 1)
                 try:
                     tracks = {
                         one.name: self._track(one, clip, core, chosen.get(one.name, []))
@@ -226,7 +227,7 @@ class ShardMaker:
         """Return a camera's poses in a clip; None if an agent's mover has it."""
         if isinstance(camera, AgentCamera):
             return None
-        times_s = np.array(self._due) / STEPS_PER_S
+        times_s = np.array(self._due) / STEPS_PER_SECOND
         random = named_generator(self._recipe.seed, "camera", camera.name, str(clip.number))
         if not isinstance(camera, RuleCamera):
             return track_of(camera, core, times_s, random)

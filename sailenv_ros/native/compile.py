@@ -58,7 +58,7 @@ FLAGS = (
 )
 
 STRICT_VARIABLE = "SAILENV_NATIVE_STRICT"
-"""Where this environment variable is set, warnings are errors and no compiler is one too."""
+"""Where this environment variable is set, warnings are errors."""
 
 
 class CompilerError(RuntimeError):

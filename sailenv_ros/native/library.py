@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import logging
 import os
 import threading
 from collections.abc import Iterator
@@ -29,13 +28,10 @@ __all__ = [
     "NativeLibrary",
     "checked",
     "load_library",
-    "native_is_usable",
     "native_library",
     "thread_count",
     "using_instruction_set",
 ]
-
-_log = logging.getLogger(__name__)
 
 ABI_VERSION = 4
 """`SAILENV_ABI_VERSION` of src/abi.h."""
@@ -127,17 +123,6 @@ _chosen = threading.local()
 def native_library() -> NativeLibrary:
     """Return the library that kernels are called from; see `NativeLibrary` for errors."""
     return load_library(getattr(_chosen, "instruction_set", None))
-
-
-@lru_cache(maxsize=1)
-def native_is_usable() -> bool:
-    """Return whether the library can be loaded; the first time, log why not."""
-    try:
-        load_library()
-    except NativeLibraryError as problem:
-        _log.warning("plain NumPy makes the frames, slowly: %s", problem)
-        return False
-    return True
 
 
 @contextlib.contextmanager

@@ -1,6 +1,6 @@
 """The kernel of what a sensor does to light: bloom and noise.
 
-What it does stands in `render.sensor` and `render.reference_kernels`.
+What it does stands in `render.sensor`; the tests define its sums in plain NumPy.
 """
 
 from __future__ import annotations

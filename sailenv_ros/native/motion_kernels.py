@@ -1,7 +1,6 @@
 """The kernels of motion: where surface points are in another picture, and in other axes.
 
-What they compute is defined in `render.reference_motion`; where the transforms come from stands
-in `motion.motion_tables`.
+Where the transforms come from stands in `motion.motion_tables`.
 """
 
 from __future__ import annotations

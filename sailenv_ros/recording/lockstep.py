@@ -26,6 +26,7 @@ from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views
 
@@ -37,9 +38,6 @@ __all__ = [
     "rendered",
     "rendered_ahead",
 ]
-
-STEPS_PER_S = 240
-"""Physics steps per simulated second."""
 
 FRAME_TIMEOUT_S = 120.0
 """Time limit for rendering one frame [s]."""
@@ -104,7 +102,7 @@ class _Shot:
 def due_steps(rate_hz: float, count: int) -> list[int]:
     """Return the physics steps at which an agent's frames fall due, from 0 on."""
     # A step late rather than early, as the streams of a simulation do it.
-    return [math.ceil(number * STEPS_PER_S / rate_hz - 1e-9) for number in range(count)]
+    return [math.ceil(number * STEPS_PER_SECOND / rate_hz - 1e-9) for number in range(count)]
 
 
 def rendered_ahead(asked: Iterable[Future[Frame]]) -> Iterator[Frame]:

@@ -1,6 +1,6 @@
 """Contract between the simulation and a renderer.
 
-Imports no graphics library, so that the fallback and the simulation can share it.
+Imports no graphics library, so that every renderer and the simulation can share it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
 __all__ = ["BACKEND_NAMES", "BackendName", "RenderBackend", "RenderedViews"]
 
-BackendName: TypeAlias = Literal["auto", "native", "gl", "tiny"]
+BackendName: TypeAlias = Literal["auto", "native", "gl"]
 
 BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
 """Names of back ends that can be requested."""

@@ -1,11 +1,11 @@
-"""Which renderer draws: graphics hardware, the native library, or a fallback."""
+"""Which renderer draws: OpenGL on graphics hardware, or the native library."""
 
 from __future__ import annotations
 
 import logging
 from pathlib import Path
 
-from sailenv_ros.errors import ContextError, NativeLibraryError, UnknownName
+from sailenv_ros.errors import ContextError, UnknownName
 from sailenv_ros.render.contract import BACKEND_NAMES, BackendName, RenderBackend
 
 __all__ = ["graphics_hardware", "make_backend"]
@@ -21,10 +21,9 @@ def make_backend(backend: BackendName, device: int | None) -> RenderBackend:
 
     Parameters
     ----------
-    backend : {'auto', 'native', 'gl', 'tiny'}
-        ``auto`` takes OpenGL on graphics hardware, or on the device that is asked for; else the
-        native library; where that is missing OpenGL in software, and last ``tiny``. Each step down
-        is told in a warning that says why.
+    backend : {'auto', 'native', 'gl'}
+        ``auto`` takes OpenGL on graphics hardware, or on the device that is asked for; else, and
+        where OpenGL fails there, the native renderer. A warning tells of the failure.
     device : int or None
         Number of the EGL device.
 
@@ -33,7 +32,7 @@ def make_backend(backend: BackendName, device: int | None) -> RenderBackend:
     ContextError
         If OpenGL was asked for and there is no context.
     NativeLibraryError
-        If the native library was asked for and there is none.
+        If there is no native library.
     UnknownName
         If there is no back end of that name.
     """
@@ -41,28 +40,19 @@ def make_backend(backend: BackendName, device: int | None) -> RenderBackend:
         raise UnknownName("renderer", backend, BACKEND_NAMES)
     if backend == "auto" and device is None:
         device = graphics_hardware()
-    if backend == "native" or (backend == "auto" and device is None):
+    if backend == "gl" or (backend == "auto" and device is not None):
         try:
-            from sailenv_ros.render.cpu.renderer import NativeRenderer
-
-            return NativeRenderer()
-        except NativeLibraryError as problem:
-            if backend == "native":
-                raise
-            _log.warning("drawing with OpenGL in software, which is slower: %s", problem)
-    if backend != "tiny":
-        try:
-            # Imported here: the others work where moderngl cannot even be imported.
+            # Imported here: the native renderer works where moderngl cannot even be imported.
             from sailenv_ros.render.gl.renderer import Renderer
 
             return Renderer(device=device)
         except (ContextError, ImportError) as problem:
             if backend == "gl":
                 raise
-            _log.warning("falling back to the slow software renderer: %s", problem)
-    from sailenv_ros.backends.tiny_renderer import TinyRenderer
+            _log.warning("drawing with the native renderer instead of OpenGL: %s", problem)
+    from sailenv_ros.render.cpu.renderer import NativeRenderer
 
-    return TinyRenderer()
+    return NativeRenderer()
 
 
 def graphics_hardware() -> int | None:

@@ -58,8 +58,8 @@ class Simulation(Operations):
         Of every random number of the scene.
     paused : bool
         Start without moving (realtime mode).
-    backend : {'auto', 'native', 'gl', 'tiny'}
-        Renderer: OpenGL, the software fallback, or the first of them that works.
+    backend : {'auto', 'native', 'gl'}
+        Renderer: OpenGL, the native one, or OpenGL on graphics hardware and else the native one.
     render_device : int or None
         Number of the EGL device; None takes the first that works.
     scene_paths : sequence of Path

@@ -23,6 +23,7 @@ __all__ = [
 ]
 
 MAX_DOMAIN_ID = 232
+"""The largest ROS domain whose ports exist."""
 
 _NAMESPACE_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 

@@ -13,13 +13,19 @@ from sailenv_ros.types.camera import CameraIntrinsics, require_drawable
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.validation import IDENTIFIER, Bounds, checked_flag, is_finite_number
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
+from sailenv_ros.types.validation import (
+    IDENTIFIER,
+    Bounds,
+    checked_flag,
+    is_finite_number,
+)
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS, checked_views
 
 __all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "RATE", "WAITED_RATE", "AgentPose", "AgentSpec"]
 
 MAX_AGENTS = 16
-MAX_RATE_HZ = 240.0
+MAX_RATE_HZ = float(STEPS_PER_SECOND)
 
 
 RATE = Bounds(least=0.0, most=MAX_RATE_HZ, unit="Hz")

@@ -27,8 +27,11 @@ __all__ = [
     "interpolate",
     "invert",
     "look_at",
+    "matrix_angle_deg",
+    "pose_angle_deg",
     "quat_xyzw_from_rpy_deg",
     "rpy_deg_from_quat_xyzw",
+    "vector_angle_deg",
 ]
 
 Matrix = NDArray[np.float64]
@@ -264,3 +267,19 @@ def _rotation_matrix(quat_xyzw: tuple[float, float, float, float]) -> Matrix:
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
         ]
     )
+
+
+def vector_angle_deg(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """Return the angle between two unit vectors [deg], 0 to 180."""
+    return math.degrees(math.acos(min(1.0, max(-1.0, float(first @ second)))))
+
+
+def matrix_angle_deg(rotation: Matrix) -> float:
+    """Return by how much a (3, 3) rotation turns [deg], 0 to 180."""
+    return math.degrees(math.acos(min(1.0, max(-1.0, (float(np.trace(rotation)) - 1.0) / 2.0))))
+
+
+def pose_angle_deg(first: Pose, second: Pose) -> float:
+    """Return by how much one pose is turned from another [deg], 0 to 180."""
+    share = abs(float(np.dot(first.orientation_xyzw, second.orientation_xyzw)))
+    return math.degrees(2.0 * math.acos(min(1.0, share)))

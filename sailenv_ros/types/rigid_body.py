@@ -10,7 +10,10 @@ from dataclasses import dataclass
 
 from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag
 
-__all__ = ["RIGID_BODY_LIMITS", "RigidBody"]
+__all__ = ["RIGID_BODY_LIMITS", "STEPS_PER_SECOND", "RigidBody"]
+
+STEPS_PER_SECOND = 240
+"""Steps of the physics engine per second of simulated time."""
 
 RIGID_BODY_LIMITS: Mapping[str, Bounds] = {
     "mass_kg": Bounds(least=0.001, most=1000.0, unit="kg"),

@@ -13,11 +13,9 @@ from contextlib import contextmanager
 from typing import Any
 
 from sailenv_ros.errors import PhysicsError
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 
 __all__ = ["LINK_OF_BASE", "STEPS_PER_SECOND", "BulletClient", "sim_time_ns"]
-
-STEPS_PER_SECOND = 240
-"""Physics steps per second of simulated time."""
 
 LINK_OF_BASE = -1
 """PyBullet's number for a body without joints."""

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sailenv_ros.types.geometry import matrix_angle_deg
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.jointed_bodies import JointedBody
@@ -87,7 +87,7 @@ def shifts(
     for body, start in zip(resting, before, strict=True):
         now = body.world_from_body()
         moved = float(np.linalg.norm(now[:3, 3] - start[:3, 3]))
-        turned = _angle_deg(now[:3, :3] @ start[:3, :3].T)
+        turned = matrix_angle_deg(now[:3, :3] @ start[:3, :3].T)
         if moved > distance_m or turned > angle_deg:
             yield Shift(name=body.placement.name, distance_m=moved, angle_deg=turned)
 
@@ -136,7 +136,3 @@ def _may_touch(a: tuple[tuple[float, ...], ...], b: tuple[tuple[float, ...], ...
     low = np.maximum(a[0], b[0])
     high = np.minimum(a[1], b[1])
     return bool((low <= high).all())
-
-
-def _angle_deg(rotation: NDArray[np.float64]) -> float:
-    return float(np.degrees(np.arccos(np.clip((np.trace(rotation) - 1.0) / 2.0, -1.0, 1.0))))

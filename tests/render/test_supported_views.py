@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sailenv_ros.backends.tiny_renderer import TinyRenderer
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS, views_of
+from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "conventions.md"
@@ -27,7 +26,6 @@ def backends() -> Iterator[dict[str, RenderBackend]]:
     made: dict[str, RenderBackend] = {
         "gl": Renderer(),
         "native": NativeRenderer(),
-        "tiny": TinyRenderer(),
     }
     yield made
     for backend in made.values():
@@ -59,14 +57,10 @@ def test_views_that_are_not_declared_are_refused(backends: dict[str, RenderBacke
             backend.render(SCENE, None, camera_at(), ["heat"])
 
 
-def test_all_but_the_fallback_make_every_view(
-    backends: dict[str, RenderBackend],
-) -> None:
-    """What follows from depth and ids by shared arithmetic, not even the fallback lacks."""
-    for name in ("gl", "native"):
-        assert backends[name].supported_views == RENDERED_VIEWS
+def test_every_renderer_makes_every_view(backends: dict[str, RenderBackend]) -> None:
+    """All but those that only the next frame tells."""
     for backend in backends.values():
-        assert set(views_of("annotation")) <= set(backend.supported_views)
+        assert backend.supported_views == RENDERED_VIEWS
 
 
 def test_the_page_has_every_view(backends: dict[str, RenderBackend]) -> None:

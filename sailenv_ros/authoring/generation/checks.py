@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.selection import make_backend
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -115,8 +114,5 @@ def unseen(
 
 
 def look_backend() -> RenderBackend:
-    """Return the renderer whose ids are the same on every machine, or one that needs nothing."""
-    try:
-        return make_backend("native", None)
-    except NativeLibraryError:
-        return make_backend("tiny", None)
+    """Return the renderer whose ids are the same on every machine."""
+    return make_backend("native", None)

@@ -17,7 +17,7 @@ from sailenv_ros.authoring.viewpoints.view_scene import (
 )
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.space.free_space import BodySize
-from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.geometry import Pose, vector_angle_deg
 
 __all__ = ["FreeView", "free_view", "poses_in_free_space"]
 
@@ -93,7 +93,7 @@ def free_view(
         forward = pose.matrix()[:3, 0]
         if any(
             math.dist(pose.position_m, other.pose.position_m) < settings.apart_m
-            and _angle_deg(forward, other_forward) < settings.apart_deg
+            and vector_angle_deg(forward, other_forward) < settings.apart_deg
             for other, other_forward in zip(chosen, forwards, strict=True)
         ):
             continue
@@ -108,8 +108,3 @@ def free_view(
         if len(chosen) == count:
             break
     return chosen
-
-
-def _angle_deg(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """Return the angle between two unit vectors [deg]."""
-    return math.degrees(math.acos(min(1.0, max(-1.0, float(first @ second)))))

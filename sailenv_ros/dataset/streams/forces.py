@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.geometry import look_at
 
@@ -17,9 +18,6 @@ __all__ = ["FurnitureForces", "LaptopForces", "RoamingForces"]
 Vector = NDArray[np.float64]
 
 FRAME_S = 1.0 / 25.0
-
-STEP_S = 1.0 / 240.0
-"""A force of one physics step is an impulse."""
 
 PUBLISHED_STEP_S = 0.001
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.motion.moments import AnyFrame, moment_of, require_common_past
 from sailenv_ros.frame.motion.motion_tables import lens_numbers, motion_tables
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.native.motion_kernels import move_points
 from sailenv_ros.render.picture.annotate import OCCLUSION_TOLERANCE
-from sailenv_ros.render.picture.kernels import move_points
 
 __all__ = ["Motion", "motion"]
 

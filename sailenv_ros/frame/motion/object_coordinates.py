@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.motion.moments import AnyFrame, moment_of
 from sailenv_ros.frame.motion.motion_tables import lens_numbers
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.picture.kernels import transform_points
+from sailenv_ros.native.motion_kernels import transform_points
 from sailenv_ros.types.geometry import invert
 
 __all__ = ["object_coordinates"]

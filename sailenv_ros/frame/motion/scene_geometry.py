@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree
-from sailenv_ros.render.picture.kernels import build_tree, cast_rays
+from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree, build_tree, cast_rays
 from sailenv_ros.space import RayCast
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.model import Material, Model

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.data import FrameData
-from sailenv_ros.frame.pictures.colours import grey_depth
 from sailenv_ros.native.client_views import convert_views
-from sailenv_ros.native.library import native_is_usable, thread_count
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.types.labels import instance_colours
 from sailenv_ros.types.views import VIEWS
 
@@ -117,17 +116,6 @@ def _converted(
         if view in ("depth", "instance", "flow")
     }
     arrays = {view: values for view, values in given.items() if view == "flow"}
-    if native_is_usable():
-        return arrays | convert_views(
-            given, near_m=near_m, range_m=range_m, colours=_INSTANCE_BGRX, threads=thread_count()
-        )
-    if "depth" in given:
-        arrays["grey"] = grey_depth(given["depth"], near_m=near_m, range_m=range_m)
-    if "instance" in given:
-        colours = _INSTANCE_BGRX.take(given["instance"], mode="clip")
-        four = colours.view(np.uint8).reshape(*given["instance"].shape, 4)
-        arrays["object"] = np.asarray(cv2.cvtColor(four, cv2.COLOR_BGRA2BGR), np.uint8)
-    if "flow" in given:
-        arrays["flow_valid"] = ~np.isnan(given["flow"][..., 0])
-        given["flow"][~arrays["flow_valid"]] = 0.0
-    return arrays
+    return arrays | convert_views(
+        given, near_m=near_m, range_m=range_m, colours=_INSTANCE_BGRX, threads=thread_count()
+    )

@@ -18,7 +18,7 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.native.library import native_is_usable, thread_count
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
@@ -76,7 +76,6 @@ class Relighter:
     """Follows one simulation; used by one thread."""
 
     def __init__(self) -> None:
-        self._usable = native_is_usable()
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
         self._preparing: Future[BakedScene] | None = None
@@ -132,7 +131,7 @@ class Relighter:
             alone, not on which frames were rendered. None takes the frame that shows it first.
         """
         self.watch(snapshot)
-        if self._original is None or not self._usable:
+        if self._original is None:
             return snapshot
         if wanted:
             self._rendered += 1

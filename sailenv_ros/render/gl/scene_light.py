@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.native.light_maps import blur_directions
 from sailenv_ros.render.gl.baked_textures import BakedTextures
 from sailenv_ros.render.gl.draw_list import DrawList
 from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
@@ -23,7 +24,6 @@ from sailenv_ros.render.gl.lighting_pass import Illumination
 from sailenv_ros.render.gl.programs import ProgramCache
 from sailenv_ros.render.gl.reflection_texture import ReflectionTexture
 from sailenv_ros.render.gl.shadow_pass import ShadowPass
-from sailenv_ros.render.picture.kernels import blur_directions
 from sailenv_ros.render.scene.lightmap_compositing import (
     CompositedLight,
     composite_lightmap,

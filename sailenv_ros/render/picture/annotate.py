@@ -2,7 +2,7 @@
 
 The geometry pass leaves the depth along the optical axis and the instance id. Everything else
 (category, what lies nearer than near, optical flow, occlusion) follows by arithmetic in one kernel
-(`kernels.annotate_pixels`). All back ends share it, so their ground truth has one definition.
+(`annotate_pixels`). All back ends share it, so their ground truth has one definition.
 
 Optical flow is the motion field of rigid bodies. A surface point at X = Z (x, y, 1) in the
 camera's optical frame was at X + D X (D = T - 1, homogeneous) in the previous frame's optical
@@ -23,7 +23,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.picture.kernels import annotate_pixels, transform_points
+from sailenv_ros.native.annotation import annotate_pixels
+from sailenv_ros.native.motion_kernels import transform_points
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot

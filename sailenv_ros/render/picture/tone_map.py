@@ -11,7 +11,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.picture.kernels import make_picture, resolve_samples
+from sailenv_ros.native.picture_kernels import make_picture
+from sailenv_ros.native.resolve import resolve_samples
 
 __all__ = ["SAME_SURFACE", "AmbientShade", "apply_visibility", "tone_map"]
 

@@ -12,16 +12,12 @@ from collections.abc import Mapping
 from functools import partial
 
 from sailenv_msgs_py.services import Service
-from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.ros.client.connection import Connection
 from sailenv_ros.ros.client.shared import acquire, release
-from sailenv_ros.system.presence import checked_namespace
+from sailenv_ros.system.presence import checked_domain, checked_namespace
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["RemoteSimulator"]
-
-MAX_DOMAIN_ID = 232
-"""The largest ROS domain whose ports exist."""
 
 
 class RemoteSimulator:
@@ -101,7 +97,5 @@ class RemoteSimulator:
 
 def _domain(domain_id: int | None) -> int:
     """Return the ROS domain: the one asked for, else the environment's."""
-    asked = os.environ.get("ROS_DOMAIN_ID", "") or "0" if domain_id is None else str(domain_id)
-    if not asked.isdecimal() or int(asked) > MAX_DOMAIN_ID:
-        raise InvalidRequest("ROS domain", asked, f"an integer from 0 to {MAX_DOMAIN_ID}")
-    return int(asked)
+    asked = os.environ.get("ROS_DOMAIN_ID", "") or "0" if domain_id is None else domain_id
+    return checked_domain(asked)

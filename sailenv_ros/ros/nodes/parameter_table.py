@@ -38,7 +38,7 @@ class SimParameters:
     real_time_factor : float
     seed : int
     paused : bool
-    backend : {'auto', 'native', 'gl', 'tiny'}
+    backend : {'auto', 'native', 'gl'}
     render_device : int or None
     scene_paths : tuple of Path
     allow_modules : bool
@@ -136,8 +136,8 @@ PARAMETERS: dict[str, Parameter] = {
     ),
     "backend": Parameter(
         "auto",
-        "Renderer: gl = OpenGL, native = made for processors, tiny = slow fallback, auto = gl on "
-        "graphics hardware, else native.",
+        "Renderer: gl = OpenGL, native = made for processors, auto = gl on graphics hardware, else "
+        "native.",
         choices=BACKEND_NAMES,
     ),
     "render_device": Parameter(-1, "Number of the EGL device; -1: the best there is.", _DEVICE),

@@ -49,7 +49,7 @@ class PreviewProcess:
 
     Parameters
     ----------
-    backend : {'auto', 'native', 'gl', 'tiny'}
+    backend : {'auto', 'native', 'gl'}
     device : int or None
         Number of the EGL device.
     """

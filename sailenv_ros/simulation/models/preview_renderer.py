@@ -50,7 +50,7 @@ class PreviewRenderer:
 
     Parameters
     ----------
-    backend : {'auto', 'native', 'gl', 'tiny'}
+    backend : {'auto', 'native', 'gl'}
     device : int or None
         Number of the EGL device.
     """

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import cv2
 import numpy as np
 import pytest
 
 from sailenv_ros.frame.pictures import frame_dict
+from sailenv_ros.frame.pictures.colours import grey_depth
 from sailenv_ros.native import (
     ambient_visibility,
     annotation,
@@ -19,11 +21,12 @@ from sailenv_ros.native import (
     resolve,
 )
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.render import reference_kernels as reference
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN, kernel_numbers
 from sailenv_ros.render.picture.tone import code_table
 from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.labels import instance_colours
 from sailenv_ros.types.picture_settings import PictureSettings
+from tests.support import reference_kernels as reference
 
 SIZES = [(8, 8), (9, 13), (61, 97), (48, 160), (130, 200)]
 THREADS = (1, 2, 5)
@@ -200,7 +203,7 @@ def test_light_is_gathered_as_the_definition_does(
         np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
 
 
-def test_the_clients_arrays_are_those_that_numpy_makes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_clients_arrays_are_those_that_numpy_makes() -> None:
     """Grey depth, colours of instances, and flow that is 0 where there is none."""
     rng = np.random.default_rng(5)
     surface = blocky_surface(rng, 130, 211)
@@ -208,18 +211,20 @@ def test_the_clients_arrays_are_those_that_numpy_makes(monkeypatch: pytest.Monke
     depth.flat[:9] = [np.nan, np.inf, -np.inf, -1.0, 0.0, 0.05, 10.0, 9.999, 11.0]
     flow = rng.normal(size=(130, 211, 2)).astype(np.float32)
     flow[rng.random((130, 211)) < 0.3] = np.nan
-    views = {"depth": depth, "instance": surface[..., 1].astype(np.uint16), "flow": flow}
-    made = []
-    for usable in (True, False):
-        monkeypatch.setattr(frame_dict, "native_is_usable", lambda usable=usable: usable)
-        given = {name: array.copy() for name, array in views.items()}
-        made.append(frame_dict._converted(given, 0.05, 10.0))
-        np.testing.assert_array_equal(made[-1]["flow"], np.nan_to_num(flow))
-        assert made[-1]["flow"] is given["flow"]
-    assert made[0].keys() == made[1].keys()
-    for name, array in made[0].items():
-        assert array.dtype == made[1][name].dtype
-        np.testing.assert_array_equal(array, made[1][name])
+    instance = surface[..., 1].astype(np.uint16)
+    expected = {
+        "grey": grey_depth(depth, near_m=0.05, range_m=10.0),
+        "object": cv2.cvtColor(instance_colours()[instance], cv2.COLOR_RGB2BGR),
+        "flow": np.nan_to_num(flow),
+        "flow_valid": ~np.isnan(flow[..., 0]),
+    }
+    given = {"depth": depth, "instance": instance, "flow": flow.copy()}
+    made = frame_dict._converted(given, 0.05, 10.0)
+    assert made["flow"] is given["flow"]
+    assert made.keys() == expected.keys()
+    for name, array in made.items():
+        assert array.dtype == expected[name].dtype
+        np.testing.assert_array_equal(array, expected[name])
 
 
 def picture_radiance(rng: np.random.Generator, surface: np.ndarray) -> np.ndarray:

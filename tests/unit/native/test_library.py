@@ -143,20 +143,21 @@ def test_without_a_compiler_the_error_says_so(
         native_compile.compile_library(tmp_path / "library.so")
 
 
-def test_without_a_library_numpy_makes_the_frames(tmp_path: Path) -> None:
-    """The log says so and why, once; the OpenGL renderer works as before."""
+def test_without_a_library_the_error_names_the_remedy(tmp_path: Path) -> None:
+    """One sentence, from whatever is asked first; importing alone asks for nothing."""
     code = """
-import logging
-logging.basicConfig(format="%(message)s")
 import numpy as np
-from sailenv_ros.render import kernels, tone_map
-from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.render.picture.tone import code_table
-assert kernels.make_picture.__module__ == "sailenv_ros.render.reference_kernels"
-grey = np.full((9, 9, 4), 0.5, np.float16)
-surface = np.ones((9, 9, 2), np.float32)
-picture = tone_map.tone_map(grey, code_table(PictureSettings()), None, surface)
-assert len(np.unique(picture)) == 1
+from sailenv_ros.render.selection import make_backend
+from sailenv_ros.errors import NativeLibraryError
+from sailenv_ros.frame.truth.visible_parts import visible_parts
+for ask in (
+    lambda: make_backend("native", None),
+    lambda: visible_parts(np.zeros((9, 9), np.uint16)),
+):
+    try:
+        ask()
+    except NativeLibraryError as problem:
+        print(problem)
 """
     missing = tmp_path / "missing.so"
     done = subprocess.run(
@@ -168,5 +169,5 @@ assert len(np.unique(picture)) == 1
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count("plain NumPy makes the frames, slowly") == 1
-    assert str(missing) in done.stderr
+    said = f"the native library cannot be used: there is no {missing}; scripts/build-native makes"
+    assert [line[: len(said)] for line in done.stdout.splitlines()] == [said] * 2

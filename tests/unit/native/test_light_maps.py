@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
-from sailenv_ros.render.gl.reflection_blur import blur_directions as plain_blur
 from sailenv_ros.render.scene import lightmap_compositing as plain
 from sailenv_ros.render.scene import reflection_map
+from tests.support import reference_blur
 
 
 @pytest.mark.parametrize("shape", [(16, 24), (7, 5), (1, 1)])
@@ -39,7 +39,7 @@ def test_reflections_are_blurred_alike() -> None:
     def blur(*arrays: np.ndarray) -> None:  # type: ignore[type-arg]
         blur_directions(*arrays, threads=2)
 
-    expected = reflection_map.prefilter(light, blur=plain_blur).astype(float)
+    expected = reflection_map.prefilter(light, blur=reference_blur.blur_directions).astype(float)
     got = reflection_map.prefilter(light, blur=blur).astype(float)
     # A sample on the border of two texels may fall into either.
     assert np.quantile(np.abs(got - expected), 0.99) < 2e-3

@@ -9,7 +9,7 @@ import pytest
 
 from sailenv_ros.native import motion_kernels
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.render import reference_motion as reference
+from tests.support import reference_motion as reference
 
 SIZES = [(8, 8), (9, 13), (61, 300)]
 

@@ -24,7 +24,7 @@ SMALL = CameraIntrinsics(width=16, height=12)
 
 
 def simulation(**kwargs: object) -> Simulation:
-    settings = {"mode": "lockstep", "backend": "tiny", **kwargs}
+    settings = {"mode": "lockstep", "backend": "native", **kwargs}
     made = Simulation("optical", **settings)  # type: ignore[arg-type]  # settings of a test
     made.register_agent(AgentSpec(name="fast", intrinsics=SMALL, rate_hz=30.0))
     made.register_agent(AgentSpec(name="slow", intrinsics=SMALL, rate_hz=7.0, views=("rgb",)))
@@ -87,7 +87,7 @@ def test_what_cannot_be_recorded_is_refused(tmp_path: Path) -> None:
             record_lockstep(running, writer, frames=1, views=["rgbd"])
         assert writer.statistics.messages == 0
     with (
-        Simulation("optical", backend="tiny") as running,
+        Simulation("optical", backend="native") as running,
         RecordingWriter(tmp_path / "other") as writer,
     ):
         running.register_agent(AgentSpec(name="eye", intrinsics=SMALL))
@@ -100,13 +100,13 @@ def test_the_command_makes_a_bag(tmp_path: Path, capsys: pytest.CaptureFixture[s
     bag = tmp_path / "bag"
     words = ["record", "--lockstep", "--frames", "3", "--width", "16", "--height", "12"]
     words += ["--scene", "optical"]
-    assert main([*words, "--backend", "tiny", "-o", str(bag)]) == 0
+    assert main([*words, "--backend", "native", "-o", str(bag)]) == 0
     said = capsys.readouterr()
     assert said.out.strip() == str(bag)
     assert said.err.startswith("3 frames")
     assert "dropped 0" in said.err
     assert len(infos(bag / "bag_0.mcap", "agent")) == 3
-    assert main([*words, "--backend", "tiny", "-o", str(bag)]) == 2
+    assert main([*words, "--backend", "native", "-o", str(bag)]) == 2
     assert "exists already" in capsys.readouterr().err
     assert main(["record", "--lockstep", "-o", str(tmp_path / "b")]) == 2
     assert main(["record", "--frames", "3", "-o", str(tmp_path / "b")]) == 2
@@ -124,7 +124,7 @@ def test_the_command_bakes_first_unless_it_is_told_not_to(
         scene_bake, "ensure_baked", lambda scene, *, allow_modules: asked.append(scene)
     )
     words = ["record", "--lockstep", "--frames", "2", "--width", "16", "--height", "12"]
-    words += ["--scene", str(scene), "--backend", "tiny", "-o", str(bag), "--quiet"]
+    words += ["--scene", str(scene), "--backend", "native", "-o", str(bag), "--quiet"]
     assert main(words) != 0  # nothing was baked by what stands in for the bake
     assert "is not baked" in capsys.readouterr().err
     assert asked == [str(scene)]

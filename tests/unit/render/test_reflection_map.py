@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_ros.render.gl.reflection_blur import blur_directions as plain_blur
 from sailenv_ros.render.scene.reflection_map import (
     ROUGHNESSES,
     cube_cameras,
@@ -13,6 +12,7 @@ from sailenv_ros.render.scene.reflection_map import (
     octahedral_directions,
     prefilter,
 )
+from tests.support import reference_blur
 
 
 def test_six_cameras_see_every_direction_as_it_is() -> None:
@@ -29,7 +29,7 @@ def test_six_cameras_see_every_direction_as_it_is() -> None:
 
 def test_what_is_the_same_everywhere_stays_so() -> None:
     """Blurring takes nothing away and adds nothing, border included."""
-    layers = prefilter(np.full((24, 24, 3), 0.5, np.float32), blur=plain_blur)
+    layers = prefilter(np.full((24, 24, 3), 0.5, np.float32), blur=reference_blur.blur_directions)
     assert layers.shape == (len(ROUGHNESSES), 26, 26, 4)
     np.testing.assert_allclose(layers[..., :3], 0.5, rtol=1e-3)
 
@@ -38,7 +38,8 @@ def test_rougher_is_flatter_about_the_same_place() -> None:
     """A bright spot spreads with roughness, and its middle stays."""
     directions = octahedral_directions(64)
     spot = np.where(directions[..., :1] > 0.97, 10.0, 0.0) * np.ones(3, np.float32)
-    layers = prefilter(spot.astype(np.float32), blur=plain_blur)[:, 1:-1, 1:-1, 0].astype(float)
+    layers = prefilter(spot.astype(np.float32), blur=reference_blur.blur_directions)
+    layers = layers[:, 1:-1, 1:-1, 0].astype(float)
     peaks = layers.max(axis=(1, 2))
     assert (np.diff(peaks) <= 0.0).all()
     assert peaks[-1] < 0.8 * peaks[0]
@@ -51,7 +52,7 @@ def test_the_border_goes_on_across_the_edges() -> None:
     """A smooth function of direction is smooth across the square's edges too."""
     directions = octahedral_directions(32)
     smooth = (1.0 + directions).astype(np.float32)
-    layer = prefilter(smooth, blur=plain_blur)[0, ..., :3].astype(float)
+    layer = prefilter(smooth, blur=reference_blur.blur_directions)[0, ..., :3].astype(float)
     inside = np.abs(np.diff(layer[1:-1, 1:-1], axis=0)).max()
     assert np.abs(layer[0, 1:-1] - layer[1, 1:-1]).max() < 1.5 * inside
     assert np.abs(layer[1:-1, -1] - layer[1:-1, -2]).max() < 1.5 * inside

@@ -114,7 +114,7 @@ def test_what_must_not_depend_on_a_bake_takes_no_draft(cell: Path) -> None:
 
 def lit(scene: Path, light: LightChoice, mode: TimeMode = "lockstep") -> bool:
     """Whether a simulation that begins has baked light."""
-    with Simulation(scene, mode=mode, backend="tiny", light=light) as simulation:
+    with Simulation(scene, mode=mode, backend="native", light=light) as simulation:
         return simulation.contents.baked is not None
 
 

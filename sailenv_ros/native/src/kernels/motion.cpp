@@ -1,5 +1,5 @@
 // Where the surface points of one picture are in another one, and points in other axes; see
-// render/reference_motion.py, which says what is computed. All in double precision.
+// tests/support/reference_motion.py, which says what is computed. All in double precision.
 #include <cmath>
 #include <limits>
 

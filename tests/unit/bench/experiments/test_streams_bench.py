@@ -153,7 +153,7 @@ def test_the_focus_falls_to_what_moves() -> None:
 
 def test_pairs_follow_each_other() -> None:
     job = StreamJob(
-        kind=STREAMS["solid"], frames=40, views=("depth", "instance", "flow"), backend="tiny"
+        kind=STREAMS["solid"], frames=40, views=("depth", "instance", "flow"), backend="native"
     )
     numbers = []
     for number, before, now, info in stream_pairs(job, 4):

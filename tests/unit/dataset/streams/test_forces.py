@@ -42,7 +42,7 @@ def roam(path: Path, seed: int, frames: int) -> tuple[Vectors, Vectors, Vectors]
     path.write_text(ROAMED)
     forces = RoamingForces(seed)
     seen = []
-    with Simulation(path, mode="lockstep", seed=seed, backend="tiny") as simulation:
+    with Simulation(path, mode="lockstep", seed=seed, backend="native") as simulation:
         for number in range(1, frames):
             forces.apply(simulation, number)
             simulation.step(10)
@@ -124,7 +124,7 @@ def test_the_laptop_is_kept_in_bounds(tmp_path: Path) -> None:
     path.write_text(SCENE)
     forces = LaptopForces(1)
     places = []
-    with Simulation(path, mode="lockstep", backend="tiny") as simulation:
+    with Simulation(path, mode="lockstep", backend="native") as simulation:
         for number in range(1, 400):
             forces.apply(simulation, number)
             simulation.step(10)

@@ -49,7 +49,7 @@ class Broken(Exception):
 
 
 def job(frames: int = 12, **changes: Any) -> StreamJob:
-    settings = {"views": ("depth", "instance", "flow"), "backend": "tiny", **changes}
+    settings = {"views": ("depth", "instance", "flow"), "backend": "native", **changes}
     return StreamJob(kind=STREAMS["solid"], frames=frames, **settings)
 
 
@@ -179,7 +179,7 @@ def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> StreamJob:
     scene = tmp_path / "cell.yaml"
     scene.write_text(CELL_SCENE)
     kind = CellKind(name="cell", title="Cell", rate_hz=8.0, lap_frames=8, file=scene)
-    return StreamJob(kind=kind, frames=8, backend="tiny")
+    return StreamJob(kind=kind, frames=8, backend="native")
 
 
 def coarse_bake(snapshot: WorldSnapshot) -> BakedLight:
@@ -304,7 +304,7 @@ def test_the_command_writes_what_their_code_reads(
 ) -> None:
     """Bag, then folders of frames, motion and labels in pixels with y up."""
     bag, folder = tmp_path / "solid", tmp_path / "lve"
-    words = ["stream", "solid", "--frames", "4", "-o", str(bag), "--backend", "tiny", "--quiet"]
+    words = ["stream", "solid", "--frames", "4", "-o", str(bag), "--backend", "native", "--quiet"]
     views = ["--views", "rgb", "instance", "flow"]
     assert main([*words, *views]) == 0
     assert "4 frames at 8 Hz" in capsys.readouterr().out

@@ -31,7 +31,7 @@ from tests.support.waiting import until
 
 @pytest.fixture(scope="module")
 def simulation() -> Iterator[Simulation]:
-    with Simulation("optical", mode="lockstep", backend="tiny") as simulation:
+    with Simulation("optical", mode="lockstep", backend="native") as simulation:
         yield simulation
 
 

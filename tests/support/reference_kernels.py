@@ -1,8 +1,7 @@
 """What the kernels of the native library compute, in plain NumPy: their definition.
 
 Each function takes and returns what the function of the same name in `sailenv_ros.native` does, and
-the same bytes: tests compare them. Where the native library is missing these run in its stead, ten
-to fifty times slower; see `kernels`. Arrays of float32 meet numbers of float32 alone, so that the
+the same bytes: tests compare them. Arrays of float32 meet numbers of float32 alone, so that the
 order and the width of every operation are as in C++.
 """
 
@@ -29,8 +28,6 @@ FAR_M = F32(1e9)
 
 TILE = 16
 """Edge of the tiles of samples that are left out where everything around them is baked."""
-
-"""Share of 1 / depth by which something narrower than a pixel lies off what is beside it."""
 
 ROUNDING_PX = 1e-3
 """How far from a pixel's centre that pixel alone decides whether a point was hidden."""

@@ -1,4 +1,4 @@
-"""Bodies that exist only to be seen: what a scene shows, inside a PyBullet world of its own.
+"""A scene's drawn bodies in a PyBullet world of their own, for PyBullet's renderers to draw.
 
 Scene contents and snapshots come in; PyBullet's bodies stand where a camera sees them. Places are
 camera coordinates computed in double precision, so single precision is not spent on the distance
@@ -23,12 +23,12 @@ from sailenv_ros.types.model import Material, Model, ModelPart, Texture
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.bullet import BulletClient
 
-__all__ = ["EYE_FROM_OPTICAL", "TinyBodies"]
+__all__ = ["BulletBodies"]
 
 _log = logging.getLogger(__name__)
 
 EYE_FROM_OPTICAL: NDArray[np.float64] = np.diag([1.0, -1.0, -1.0, 1.0])
-"""(4, 4) TinyRenderer's eye axes (x right, y up, z backward) from the optical frame's."""
+"""(4, 4) PyBullet's eye axes (x right, y up, z backward) from the optical frame's."""
 EYE_FROM_OPTICAL.flags.writeable = False
 
 CHUNK_TRIANGLES = 30_000
@@ -37,7 +37,7 @@ CHUNK_TRIANGLES = 30_000
 _Key = tuple[int, tuple[float, float, float]]
 
 
-class TinyBodies:
+class BulletBodies:
     """The bodies of one PyBullet client."""
 
     def __init__(self, client: BulletClient) -> None:
@@ -101,7 +101,7 @@ class TinyBodies:
         if material.alpha == "mask" and id(material) not in self._warned:
             self._warned[id(material)] = material
             _log.warning(
-                "the software renderer draws material %r without its holes: it knows no alpha",
+                "PyBullet draws material %r without its holes: it knows no alpha",
                 material.name,
             )
         texture = material.base_colour_texture
