@@ -46,7 +46,13 @@ class SceneMaterials:
         return MaterialStock(self._assets, self.pictures, folders)
 
     def picture_content(self, picture: str, scene: str) -> bytes:
-        """Return the bytes of a picture that a scene shows; see `Pictures.content` for errors."""
+        """Return the bytes of a picture that a scene shows.
+
+        Raises
+        ------
+        AssetError
+            If it is there no more.
+        """
         return self.pictures.content(picture, self._picture_folders(scene))
 
     def _picture_folders(self, scene: str) -> tuple[Path, ...]:

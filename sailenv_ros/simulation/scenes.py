@@ -70,6 +70,15 @@ class SceneLibrary:
         False takes no rough light in the meantime, while a bake is not finished.
     require_light : bool
         True refuses to build rooms whose light is not baked.
+
+    Attributes
+    ----------
+    own_folder : Path
+        Scenes are saved into it.
+    uploads : UploadedModels
+    materials : SceneMaterials
+    pictures : Pictures
+        Those that were sent.
     """
 
     def __init__(
@@ -82,16 +91,16 @@ class SceneLibrary:
         require_light: bool = False,
     ) -> None:
         self._allow_modules = allow_modules
-        self._own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
+        self.own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
         self._packs = OpenPacks()
         self._assets = AssetLibrary(self._packs.sources())
         self._light_cache = LightCache(wanted=baked_light, drafts=drafts, required=require_light)
         self._generated = GeneratedScenes(self._assets)
-        self._uploads = UploadedModels(self._assets)
+        self.uploads = UploadedModels(self._assets)
         self._files: dict[str, Path] = {}
-        self._materials = SceneMaterials(self._assets, self._own_folder)
-        self.pictures = self._materials.pictures
+        self.materials = SceneMaterials(self._assets, self.own_folder)
+        self.pictures = self.materials.pictures
         self._agents: dict[str, tuple[AgentSpec, ...]] = {}
 
     @property
@@ -151,7 +160,7 @@ class SceneLibrary:
             If its file has errors.
         """
         path = self.path(scene)
-        known = self._with_materials(self.knowledge, self._materials.beside(path))
+        known = self._with_materials(self.knowledge, self.materials.beside(path))
         return load_scene(path, knowledge=known)
 
     def build(
@@ -171,9 +180,9 @@ class SceneLibrary:
         if not self._packs.are_newest:
             self.refresh()
         path = self.path(scene)
-        known = self._with_materials(self._knowledge_to_build, self._materials.beside(path))
+        known = self._with_materials(self._knowledge_to_build, self.materials.beside(path))
         spec = load_scene(path, knowledge=known)
-        self._materials.note(spec.name, path)
+        self.materials.note(spec.name, path)
         spec = spec.model_copy(
             update={"objects": (*spec.objects, *self._added(more.objects, spec))}
         )
@@ -188,7 +197,7 @@ class SceneLibrary:
             epoch=epoch,
             next_revision=next_revision,
             skies=self._packs.skies,
-            materials=self.materials_of(spec.name),
+            materials=self.materials.of(spec.name),
         )
         try:
             self._load_light(world, str(scene))
@@ -211,18 +220,11 @@ class SceneLibrary:
             self._load_light(world, world.scene)
 
     def stamp(self, scene: str | Path) -> str:
-        """Return a text that changes with the scene's file and with the packs it may use.
-
-        Raises
-        ------
-        UnknownName
-            If there is no such scene.
-        """
+        """Return a text that changes with the scene's file and with the packs it may use."""
         digest = blake2b(digest_size=16)
         path = self.path(scene)
         digest.update(f"{path} {BAKE_VERSION}".encode())
-        files = [path, *self._packs.files]
-        for file in files:
+        for file in (path, *self._packs.files):
             if file.is_file():
                 digest.update(file.read_bytes())
         return digest.hexdigest()
@@ -242,7 +244,7 @@ class SceneLibrary:
         source = self._assets.source(name)
         if isinstance(source, AssetPack):
             return source.fingerprint(name)
-        return "" if name in self._uploads else "of the package itself"
+        return "" if name in self.uploads else "of the package itself"
 
     def peek_asset(self, name: str) -> Asset:
         """Return an asset without keeping one that no world needs; see `AssetLibrary.get`."""
@@ -251,23 +253,6 @@ class SceneLibrary:
     def drawn_model(self, asset: str) -> Model:
         """Return what is drawn of an instance; see `AssetLibrary.drawn_model`."""
         return self._assets.drawn_model(asset)
-
-    def add_upload(self, asset: Asset, *, rename: bool) -> str:
-        """Add a user's asset to the catalogue; return its name there.
-
-        Parameters
-        ----------
-        rename : bool
-            True appends a number to a name that is in use.
-
-        Raises
-        ------
-        NameTaken
-            If the name is in use and is to be kept.
-        InvalidRequest
-            If there are `MAX_UPLOADS` already.
-        """
-        return self._uploads.add(asset, rename=rename)
 
     def placement(
         self, entry: Mapping[str, Any], pose: Pose, world: World, *, seed: int, start_s: float
@@ -293,7 +278,7 @@ class SceneLibrary:
             If it cannot be placed.
         """
         names = tuple(category.name for category in world.categories.values())
-        stock = self.materials_of(world.scene)
+        stock = self.materials.of(world.scene)
         known = replace(self._knowledge_of_strangers, categories=names)
         spec = checked_alone(entry, self._with_materials(known, stock)).placed(pose)
         return make_placement(
@@ -308,44 +293,11 @@ class SceneLibrary:
 
     def knowledge_of(self, scene: str) -> SceneKnowledge:
         """Return what a scene that was built may name, its pictures among it."""
-        return self._with_materials(self.knowledge, self.materials_of(scene))
-
-    def materials_of(self, scene: str) -> MaterialStock:
-        """Return where the materials of a scene that was built come from."""
-        return self._materials.of(scene)
-
-    def picture_content(self, picture: str, scene: str) -> bytes:
-        """Return the bytes of a picture that a scene shows.
-
-        Raises
-        ------
-        AssetError
-            If it is there no more.
-        """
-        return self._materials.picture_content(picture, scene)
+        return self._with_materials(self.knowledge, self.materials.of(scene))
 
     def agents_of(self, scene: str) -> tuple[AgentSpec, ...]:
         """Return the agents that a scene that was built brings along."""
         return self._agents.get(scene, ())
-
-    @property
-    def own_folder(self) -> Path:
-        """The folder that scenes are saved into."""
-        return self._own_folder
-
-    def is_uploaded(self, asset: str) -> bool:
-        """Return whether an asset's model lies in no pack, so that a scene file cannot name it."""
-        return self._uploads.is_unkept(asset)
-
-    def keep_model(self, asset: str) -> None:
-        """Put an uploaded model into the user's own pack, so that scene files can name it.
-
-        Raises
-        ------
-        NameTaken, AssetError
-            If the pack cannot take it.
-        """
-        self._uploads.keep(asset)
 
     def path(self, scene: str | Path) -> Path:
         """Find a scene's file; see `load`.
@@ -392,5 +344,5 @@ class SceneLibrary:
         """Check objects that come on top of a scene's; those without a name are given one."""
         named = named_entries(entries, (entry.name for entry in spec.objects), self.canonical_asset)
         own = tuple(category.name for category in spec.categories)
-        known = self._with_materials(self._knowledge_of_strangers, self.materials_of(spec.name))
+        known = self._with_materials(self._knowledge_of_strangers, self.materials.of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))

@@ -35,7 +35,20 @@ class UploadedModels:
         return name in self._names
 
     def add(self, asset: Asset, *, rename: bool) -> str:
-        """Add an asset; return its name; see `SceneLibrary.add_upload`."""
+        """Add a user's asset to the catalogue; return its name there.
+
+        Parameters
+        ----------
+        rename : bool
+            True appends a number to a name that is in use.
+
+        Raises
+        ------
+        NameTaken
+            If the name is in use and is to be kept.
+        InvalidState
+            If there are `MAX_UPLOADS` already.
+        """
         if len(self._names) >= MAX_UPLOADS:
             raise InvalidState(
                 f"{MAX_UPLOADS} models have been uploaded, which is the most in a simulator's life"
@@ -56,7 +69,13 @@ class UploadedModels:
         return name in self._unkept
 
     def keep(self, name: str) -> None:
-        """Put a model into the user's own pack; see `SceneLibrary.keep_model`."""
+        """Put a model into the user's own pack, so that scene files can name it.
+
+        Raises
+        ------
+        NameTaken, AssetError
+            If the pack cannot take it.
+        """
         add_to_own_pack(self._assets.get(name), source="uploaded to a running simulator")
         self._unkept.discard(name)
 

@@ -164,7 +164,7 @@ class SceneEditor:
             True appends a number where the name is in use; False refuses it then.
         """
         self.scene.world.categories.named(asset.category)
-        name = self.scene.library.add_upload(asset, rename=rename)
+        name = self.scene.library.uploads.add(asset, rename=rename)
         self.scene.announce()
         return name
 

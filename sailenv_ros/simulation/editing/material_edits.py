@@ -109,7 +109,7 @@ def set_surface(scene: LiveScene, instance_id: int, keys: Mapping[str, Any] | No
         {"version": 1, "room": entry}, scene.library.knowledge_of(world.scene), what=f"{name!r}"
     ).room
     assert spec is not None
-    stock = scene.library.materials_of(world.scene)
+    stock = scene.library.materials.of(world.scene)
     made = {p.name: p for p in room_placements(spec, world.categories, stock)}
     described = described.model_copy(update={"room": spec})
     world.replace_body(instance_id, replace(body.placement, asset=made[name].asset), described)

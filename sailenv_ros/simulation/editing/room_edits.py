@@ -150,7 +150,7 @@ def restore_room(editor: SceneEditor, present: RoomRecord, wanted: RoomRecord) -
         if record.name in staying:
             raise NameTaken("object", record.name)
     world.replace_room(
-        room_placements(wanted.room, world.categories, scene.library.materials_of(world.scene)),
+        room_placements(wanted.room, world.categories, scene.library.materials.of(world.scene)),
         world.described.model_copy(update={"room": wanted.room}),
         without=going,
     )

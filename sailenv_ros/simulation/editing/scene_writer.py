@@ -57,7 +57,7 @@ class SceneWriter:
         library = self._scene.library
         path = self._own_path(name)
         text = self.text(name, title, cameras)
-        models = uploaded_models(self._scene.world, library.is_uploaded)
+        models = uploaded_models(self._scene.world, library.uploads.is_unkept)
         if models and not keep_models:
             named = ", ".join(repr(model) for model in models)
             accepted = "true, so that uploaded models are put into your own pack: no scene file "
@@ -69,7 +69,7 @@ class SceneWriter:
             raise InvalidRequest("scene name", name, accepted)
         pictures = self._pictures(path.parent)
         for model in models:
-            library.keep_model(model)
+            library.uploads.keep(model)
         for file, content in pictures.items():
             make_folder(file.parent)
             write_file(file, content)
@@ -82,7 +82,7 @@ class SceneWriter:
         data = described_world(world, self._scene.agents)
         missing: dict[Path, bytes] = {}
         for name in sorted(set(_picture_names(data))):
-            content = library.picture_content(name, world.scene)
+            content = library.materials.picture_content(name, world.scene)
             places = (folder / name, folder / PICTURE_FOLDER / name)
             present = next((file.read_bytes() for file in places if file.is_file()), None)
             if present is None:
