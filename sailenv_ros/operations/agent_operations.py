@@ -299,7 +299,6 @@ class AgentOperations(Caller):
         rule=check.text,
         name=check.text,
         seed=check.optional(check.seed),
-        agent=check.optional(check.text),
     )
     @staticmethod
     def sample_cameras(

@@ -17,7 +17,7 @@ __all__ = ["SavingOperations"]
 class SavingOperations(Caller):
     """Scene files of the present world."""
 
-    @operation(title=check.optional(check.text), cameras=check.texts)
+    @operation(cameras=check.texts)
     @staticmethod
     def scene_text(
         core: SimulationCore, *, title: str | None = None, cameras: Collection[str] = ()
@@ -27,7 +27,6 @@ class SavingOperations(Caller):
 
     @operation(
         deadline_s=60.0,
-        title=check.optional(check.text),
         cameras=check.texts,
     )
     @staticmethod
