@@ -15,6 +15,7 @@ from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.validation import (
+    IDENTIFIER,
     Bounds,
     checked_flag,
     is_finite_number,

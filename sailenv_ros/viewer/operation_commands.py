@@ -79,7 +79,57 @@ def _object_keys(context: CommandContext, given: Arguments) -> None:
             raise UnknownName("change of an object", key, OBJECT_KEYS)
 
 
-def _plain(operation: Operation[..., Any], guard: Guard | None = None) -> Run:
+_GUARDS: Mapping[str, Guard] = {
+    "change_scene": _known_scene,
+    "step": _few_steps,
+    "change_object": _object_keys,
+}
+"""By the names of operations of which a page may ask for less than a program."""
+
+_LOOKS: tuple[Operation[..., Any], ...] = (Operations.get_object, Operations.scene_text)
+
+_CHANGES: tuple[Operation[..., Any], ...] = (
+    # scene and time
+    Operations.change_scene,
+    Operations.reset,
+    Operations.pause,
+    Operations.resume,
+    Operations.step,
+    Operations.set_real_time_factor,
+    Operations.save_scene,
+    Operations.start_lessons,
+    Operations.stop_lessons,
+    # movers and agents
+    Operations.set_mover_controller,
+    Operations.drive_mover,
+    Operations.turn_mover,
+    Operations.set_waypoints,
+    Operations.set_look_at,
+    Operations.set_picture,
+)
+
+_OF_OBJECTS: Mapping[str, Operation[..., Any]] = {
+    "moving": Operations.move_object,
+    "changing": Operations.change_object,
+    "deleting": Operations.despawn_object,
+    "the behaviour of": Operations.add_behaviour,
+    "stopping": Operations.remove_behaviours,
+    "opening": Operations.set_joint_position,
+    "the material of": Operations.set_material,
+}
+"""Operations on one object that can be undone, by what the history says of them."""
+
+_OF_SURROUNDINGS: Mapping[str, Operation[..., Any]] = {
+    "changing the light": Operations.set_light,
+    "deleting the light": Operations.remove_light,
+    "changing the surroundings": Operations.set_environment,
+}
+"""The same for lights and surroundings."""
+
+
+def _plain(operation: Operation[..., Any]) -> Run:
+    guard = _GUARDS.get(operation.name)
+
     async def run(context: CommandContext, given: Arguments) -> Any:
         if guard is not None:
             guard(context, given)
@@ -88,81 +138,32 @@ def _plain(operation: Operation[..., Any], guard: Guard | None = None) -> Run:
     return run
 
 
-def _of_object(words: str, operation: Operation[..., Any], guard: Guard | None = None) -> Run:
+def _of_object(words: str, operation: Operation[..., Any]) -> Run:
     """Serve an operation on an object that can be undone; the answer is what the object is then."""
-    run = _plain(operation, guard)
+    run = _plain(operation)
 
     @edits_object(words)
     async def tell(context: CommandContext, given: Arguments) -> Any:
         await run(context, given)
-        if operation is Operations.despawn_object:
+        if operation.name == "despawn_object":
             return None
         return object_to_json(await context.run(Operations.get_object, given.get("obj")))
 
     return tell
 
 
-def _of_surroundings(words: str, operation: Operation[..., Any]) -> Run:
-    return edits_surroundings(words)(_plain(operation))
-
-
-_LOOKS: Mapping[Operation[..., Any], Run] = {
-    operation: _plain(operation) for operation in (Operations.get_object, Operations.scene_text)
-}
-
-_OBJECT_EDITS: dict[str, Operation[..., Any]] = {
-    "moving": Operations.move_object,
-    "deleting": Operations.despawn_object,
-    "the behaviour of": Operations.add_behaviour,
-    "stopping": Operations.remove_behaviours,
-    "opening": Operations.set_joint_position,
-    "the material of": Operations.set_material,
-}
-
-_SURROUNDINGS_EDITS: dict[str, Operation[..., Any]] = {
-    "changing the light": Operations.set_light,
-    "deleting the light": Operations.remove_light,
-    "changing the surroundings": Operations.set_environment,
-}
-
-_CHANGES: Mapping[Operation[..., Any], Run] = {
-    # scene and time
-    Operations.change_scene: _plain(Operations.change_scene, _known_scene),
-    Operations.step: _plain(Operations.step, _few_steps),
-    **{
-        operation: _plain(operation)
-        for operation in (
-            Operations.reset,
-            Operations.pause,
-            Operations.resume,
-            Operations.set_real_time_factor,
-            Operations.save_scene,
-            Operations.start_lessons,
-            Operations.stop_lessons,
-            # movers and agents
-            Operations.set_mover_controller,
-            Operations.drive_mover,
-            Operations.turn_mover,
-            Operations.set_waypoints,
-            Operations.set_look_at,
-            Operations.set_picture,
-        )
-    },
-    # objects
-    **{operation: _of_object(words, operation) for words, operation in _OBJECT_EDITS.items()},
-    Operations.change_object: _of_object("changing", Operations.change_object, _object_keys),
-    # light
-    **{
-        operation: _of_surroundings(words, operation)
-        for words, operation in _SURROUNDINGS_EDITS.items()
-    },
-}
-
 OPERATION_COMMANDS = CommandTable(
     {
-        operation.name: Command(run=run, changes=table is _CHANGES)
-        for table in (_LOOKS, _CHANGES)
-        for operation, run in table.items()
+        **{each.name: Command(run=_plain(each), changes=False) for each in _LOOKS},
+        **{each.name: Command(run=_plain(each), changes=True) for each in _CHANGES},
+        **{
+            each.name: Command(run=_of_object(words, each), changes=True)
+            for words, each in _OF_OBJECTS.items()
+        },
+        **{
+            each.name: Command(run=edits_surroundings(words)(_plain(each)), changes=True)
+            for words, each in _OF_SURROUNDINGS.items()
+        },
     }
 )
 """Commands that are operations, by their names."""

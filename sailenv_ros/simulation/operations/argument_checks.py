@@ -17,7 +17,7 @@ from sailenv_ros.types.views import checked_views
 
 __all__ = [
     "behaviour",
-    "flags_of",
+    "declared_checks",
     "force",
     "number",
     "object_reference",
@@ -66,9 +66,13 @@ seed = SEED.integer
 """Checks the seed of a random draw."""
 
 
-def flags_of(signature: inspect.Signature) -> dict[str, Callable[[str, Any], Any]]:
-    """Return the checks of all arguments that are declared as ``bool``."""
-    checks = {"bool": checked_flag, "bool | None": optional(checked_flag)}
+def declared_checks(signature: inspect.Signature) -> dict[str, Callable[[str, Any], Any]]:
+    """Return the checks of arguments that their declared types say: switches, optional names."""
+    checks: dict[str, Callable[[str, Any], Any]] = {
+        "bool": checked_flag,
+        "bool | None": optional(checked_flag),
+        "str | None": optional(text),
+    }
     return {
         parameter.name: checks[parameter.annotation]
         for parameter in signature.parameters.values()

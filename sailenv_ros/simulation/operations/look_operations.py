@@ -39,7 +39,6 @@ class LookOperations(Caller):
     @operation(
         obj=check.optional(check.object_reference),
         point_m=check.optional(_point),
-        agent=check.optional(check.text),
     )
     @staticmethod
     def set_look_at(

@@ -27,7 +27,7 @@ from typing import (
 from typing_extensions import Unpack
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.simulation.operations.argument_checks import flags_of
+from sailenv_ros.simulation.operations.argument_checks import declared_checks
 from sailenv_ros.system.futures import wait_for
 
 if TYPE_CHECKING:
@@ -85,8 +85,8 @@ class Operation(Generic[P, R]):
     deadline_s : float
         How long a caller waits unless told otherwise [s].
     checks : mapping of str to Check
-        Of arguments by their names, made before anything is sent. What is declared as ``bool``
-        is checked anyway.
+        Of arguments by their names, made before anything is sent, beside those that the
+        declared types say; see `argument_checks.declared_checks`.
     background : bool
         True if it is done beside the simulation's loop; `run` returns a future then.
 
@@ -114,7 +114,7 @@ class Operation(Generic[P, R]):
         self.background = background
         whole = inspect.signature(function)
         self.signature = whole.replace(parameters=list(whole.parameters.values())[1:])
-        self.checks = MappingProxyType({**flags_of(self.signature), **checks})
+        self.checks = MappingProxyType({**declared_checks(self.signature), **checks})
         self.__doc__ = function.__doc__
         self.__name__ = self.name
         self.keywords = _keywords_of(function)

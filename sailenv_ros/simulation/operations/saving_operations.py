@@ -14,7 +14,7 @@ __all__ = ["SavingOperations"]
 class SavingOperations(Caller):
     """Scene files of the present world."""
 
-    @operation(title=check.optional(check.text), cameras=check.texts)
+    @operation(cameras=check.texts)
     @staticmethod
     def scene_text(
         core: HasSceneWriter, *, title: str | None = None, cameras: Collection[str] = ()
@@ -24,7 +24,6 @@ class SavingOperations(Caller):
 
     @operation(
         deadline_s=60.0,
-        title=check.optional(check.text),
         cameras=check.texts,
     )
     @staticmethod

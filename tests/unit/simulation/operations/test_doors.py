@@ -32,7 +32,7 @@ from sailenv_ros.viewer.request_arguments import arguments_of_text
 from tests.support.lockstep_core import lockstep_core
 from tests.unit.scene.reading import diagnostics
 
-Door = Callable[[object], object]
+Door = Callable[[Any], object]
 """Takes a value; raises or returns a sentence if it is refused."""
 
 
@@ -66,7 +66,7 @@ def by_viewer(core: SimulationCore, operation: Operation[..., Any], **given: Any
     context = SimpleNamespace(info=core.info, run=run, history=EditHistory())
     message = json.dumps({"do": operation.name, "id": 1, **given})
     command = OPERATION_COMMANDS[operation.name]
-    asyncio.run(command.run(cast(CommandContext, context), arguments_of_text(message)))  # type: ignore[arg-type]
+    asyncio.run(command.run(cast(CommandContext, context), arguments_of_text(message)))
 
 
 def words(door: Door, value: object) -> str:

@@ -15,7 +15,7 @@ from sailenv_ros.simulation.operations.operations import ALL_OPERATIONS
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.lights import Environment
 
-NOT_FLAGS = ("no", "false", "", 0, 1, [], 0.0)
+NOT_FLAGS: tuple[Any, ...] = ("no", "false", "", 0, 1, [], 0.0)
 
 FLAGS = [
     (name, parameter.name)
@@ -55,3 +55,13 @@ def test_a_switch_of_a_data_class_is_strict(wrong: Any) -> None:
     ):
         with pytest.raises(ValueError, match="true or false"):
             make()
+
+
+def test_a_name_that_may_be_left_out_is_a_text_or_nothing() -> None:
+    """Whatever is sent instead, the sentence is ours: `set_picture(agent=[])` was a TypeError."""
+    check = ALL_OPERATIONS["set_picture"].checks["agent"]
+    assert check("agent", "eye") == "eye"
+    assert check("agent", None) is None
+    for wrong in ([], {}, 3, "a\0", "\ud800"):
+        with pytest.raises(InvalidRequest, match="agent must be a text"):
+            check("agent", wrong)
