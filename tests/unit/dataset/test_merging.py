@@ -101,9 +101,7 @@ def test_a_summary_that_is_being_written_is_no_summary(storage: FolderStorage) -
     files=st.dictionaries(st.text(min_size=1), st.binary(min_size=32, max_size=32), min_size=1),
     random=st.randoms(),
 )
-def test_the_hash_of_the_whole_does_not_depend_on_order(
-    files: dict[str, bytes], random: Any
-) -> None:
+def test_the_hash_of_all_files_knows_no_order(files: dict[str, bytes], random: Any) -> None:
     """But on every name and every content."""
     pairs = [(name, FileHash(1, digest.hex())) for name, digest in files.items()]
     shuffled = list(pairs)
@@ -133,5 +131,5 @@ def test_files_of_the_whole(storage: FolderStorage) -> None:
 def test_which_formats_have_something_to_merge() -> None:
     """Not those that write one file for each clip or shard alone."""
     assert {name for name in FORMATS if merges(format_class(name))} == {
-        "png", "coco", "flo", "bop", "yolo", "yolo_segments", "voc", "movi",
-    } | {name for name in FORMATS if format_class(name).needs_records}  # fmt: skip
+        "png", "coco", "kitti", "flo", "bop", "yolo", "yolo_segments", "voc", "movi", "lerobot",
+    }  # fmt: skip

@@ -17,7 +17,7 @@ from pycocotools import mask as coco_mask
 from pycocotools.coco import COCO
 
 from sailenv_ros.cli.main import main
-from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.errors import InvalidRequest, UnknownName, WriteFailed
 from sailenv_ros.frame import VIEWS, Frame
 from sailenv_ros.object_truth.run_lengths import run_lengths
 from sailenv_ros.recording.export import FORMATS, export
@@ -160,5 +160,5 @@ def test_what_cannot_be_exported_is_refused(tmp_path: Path) -> None:
         export(tmp_path / "bag", tmp_path / "out", ["flo"])
     assert not (tmp_path / "out").exists()
     (tmp_path / "file").write_text("")
-    with pytest.raises(RecordingError, match="cannot be made"):
+    with pytest.raises(WriteFailed, match="file/out cannot be written: Not a directory"):
         export(tmp_path / "bag", tmp_path / "file/out", ["png"])
