@@ -3,6 +3,9 @@
 They lie in a folder that nobody else can write to: ``$XDG_RUNTIME_DIR/sailenv_ros``, else
 ``/run/user/<uid>/sailenv_ros``, else ``sailenv_ros_<uid>`` in the folder of temporary files. Links
 are not followed, and a folder of another owner is refused. Knows nothing of what is locked.
+
+The package `filelock` does not serve here: it cannot tell who holds a lock without taking it
+(`F_OFD_GETLK` can), nor open the lock's file within a folder that was checked.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from pycocotools.coco import COCO
 from sailenv_ros.cli.main import main
 from sailenv_ros.dataset.formats import FORMATS, export
 from sailenv_ros.dataset.formats.coco_rle import run_lengths_text
-from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
+from sailenv_ros.errors import InvalidRequest, UnknownName, WriteFailed
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.run_lengths import run_lengths
 from sailenv_ros.types.views import VIEWS
@@ -161,5 +161,5 @@ def test_what_cannot_be_exported_is_refused(tmp_path: Path) -> None:
         export(tmp_path / "bag", tmp_path / "out", ["flo"])
     assert not (tmp_path / "out").exists()
     (tmp_path / "file").write_text("")
-    with pytest.raises(RecordingError, match="cannot be made"):
+    with pytest.raises(WriteFailed, match="file/out cannot be written: Not a directory"):
         export(tmp_path / "bag", tmp_path / "file/out", ["png"])
