@@ -13,6 +13,7 @@ from sailenv_ros.camera import Camera
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame import Frame
 from sailenv_ros.instance_states import InstanceStates
+from sailenv_ros.render.rigid_motion import ObservedPoses
 
 __all__ = ["AnyFrame", "Moment", "moment_of", "require_common_past"]
 
@@ -44,6 +45,16 @@ class Moment:
     states: InstanceStates
     depth: NDArray[np.float32] | None
     instance: NDArray[np.uint16] | None
+
+    def observed_poses(self) -> ObservedPoses:
+        """Return camera and poses as tables of motion are made of."""
+        states = self.states
+        return ObservedPoses(
+            camera=self.camera,
+            ids=states.ids,
+            world_from_instance=states.matrices,
+            histories=states.histories,
+        )
 
     def surfaces(self, what: str) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
         """Return depth and instance ids.

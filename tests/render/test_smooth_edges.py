@@ -19,7 +19,7 @@ from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import PictureSettings
 from sailenv_ros.render.backend import RenderBackend
-from sailenv_ros.render.half_pixels import half_pixel_camera, pixel_shares
+from sailenv_ros.render.half_pixels import pixel_shares
 from sailenv_ros.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
@@ -212,7 +212,7 @@ def test_samples_half_a_pixel_apart_are_the_cameras() -> None:
     """Those of odd numbers are the pixels' centres; any size may have them."""
     for size in ((8, 8), (63, 48), (4096, 3000)):
         whole = camera(size=size).intrinsics
-        half = half_pixel_camera(camera(size=size)).intrinsics
+        half = camera(size=size).of_half_pixels().intrinsics
         assert (half.width, half.height) == (2 * size[0] + 1, 2 * size[1] + 1)
         points = np.array([(0.1, -0.2, 1.0), (-0.4, 0.3, 2.5)])
         np.testing.assert_allclose(
