@@ -1,7 +1,4 @@
-"""The kernel of ground truth: from depth and instance ids to the annotated views.
-
-What the views are and where the motions come from stands in `render.annotate`.
-"""
+"""The kernel of annotations: from depth and instance numbers to depth, instance and category."""
 
 from __future__ import annotations
 
@@ -11,35 +8,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.library import Kernel, checked
+from sailenv_ros.native.lens import LENS
+from sailenv_ros.native.library import checked
+from sailenv_ros.native.records import RecordKernel
 
 __all__ = ["annotate_pixels"]
 
-_KERNEL = Kernel(
+_KERNEL = RecordKernel(
     "annotate",
-    *("integer", "integer", "integer", "array", "array", "array", "array", "integer", "array"),
-    *("number", "number", "array", "integer", "integer"),
-    *("array", "array", "array", "array", "array", "array"),
+    height="integer",
+    width="integer",
+    surface="array",
+    category_of_instance="array",
+    lens="array",
+    depth="array",
+    category="array",
+    instance="array",
 )
-_OUTPUTS: dict[str, tuple[Any, tuple[int, ...]]] = {
-    "depth": (np.float32, ()),
-    "category": (np.uint8, ()),
-    "instance": (np.uint16, ()),
-    "flow": (np.float32, (2,)),
-    "flow_valid": (np.bool_, ()),
-    "occlusion": (np.bool_, ()),
-}
+_OUTPUTS: dict[str, Any] = {"depth": np.float32, "category": np.uint8, "instance": np.uint16}
 
 
 def annotate_pixels(
     surface: NDArray[np.float32],
     category_of_instance: NDArray[np.uint8],
-    row_of_instance: NDArray[np.uint16],
-    motions: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    dt_s: float,
-    tolerance: float,
-    past_depth: NDArray[np.float32] | None,
+    lens: NDArray[np.void],
     views: Mapping[str, NDArray[Any]],
     *,
     threads: int,
@@ -52,21 +44,11 @@ def annotate_pixels(
         Depth along the optical axis [m], ``inf`` where nothing was hit, and the instance id;
         what is no id from 0 to 65535 counts as 0.
     category_of_instance : (65536,) uint8
-    row_of_instance : (65536,) uint16
-        Row in `motions` of each instance; 0 for what has no past, or beyond the rows.
-    motions : (R, 3, 4) float64
-        T - 1 of each: where a point of the camera's frame was in the previous one, less the point.
-    lens : (5,) float64
-        Focal length and principal point x, y [px]; near and far [m].
-    dt_s : float
-        From the previous frame to this one [s], more than 0.
-    tolerance : float
-        Share of its depth by which a hidden point lies behind what was seen.
-    past_depth : (H', W') float32 or None
-        The previous frame's; None: everything counts as hidden.
+    lens : (1,) lens.LENS
+        Beyond its far plane nothing is seen; the depth of what is nearer than near is nan.
     views : mapping of str to array
-        What to fill in: ``depth`` (H, W) float32, and any of ``category`` uint8, ``instance``
-        uint16, ``flow`` (H, W, 2) float32, ``flow_valid`` and ``occlusion`` bool.
+        What to fill in: ``depth`` (H, W) float32, and any of ``category`` uint8 and ``instance``
+        uint16.
     threads : int
 
     Raises
@@ -79,19 +61,17 @@ def annotate_pixels(
     height, width = surface.shape[:2]
     checked("surface", surface, np.float32, (height, width, 2))
     checked("category_of_instance", category_of_instance, np.uint8, (65536,))
-    checked("row_of_instance", row_of_instance, np.uint16, (65536,))
-    checked("motions", motions, np.float64, (None, 3, 4))
-    checked("lens", lens, np.float64, (5,))
-    past_height = past_width = 0
-    if past_depth is not None:
-        checked("past_depth", past_depth, np.float32, (None, None))
-        past_height, past_width = past_depth.shape
+    checked("lens", lens, LENS, (1,))
     for name, array in views.items():
-        dtype, channels = _OUTPUTS[name]
-        checked(name, array, dtype, (height, width, *channels))
+        checked(name, array, _OUTPUTS[name], (height, width))
     _KERNEL(
-        *(threads, height, width, surface, category_of_instance, row_of_instance),
-        *(motions, len(motions), lens, float(lens[0]) / dt_s, tolerance),
-        *(past_depth, past_height, past_width),
-        *(views.get(name) for name in _OUTPUTS),
+        threads,
+        height=height,
+        width=width,
+        surface=surface,
+        category_of_instance=category_of_instance,
+        lens=lens,
+        depth=views["depth"],
+        category=views.get("category"),
+        instance=views.get("instance"),
     )

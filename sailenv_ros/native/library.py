@@ -1,7 +1,8 @@
 """The native library: found, checked, loaded, and its kernels called with arrays.
 
-The only module that knows ctypes. A kernel's name and the types of its arguments come in, a
-function on arrays and numbers goes out. ctypes releases Python's lock while a kernel runs.
+With `records` the only module that knows ctypes. A kernel's name and the types of its arguments
+come in, a function on arrays and numbers goes out. ctypes releases Python's lock while a kernel
+runs.
 """
 
 from __future__ import annotations
@@ -29,11 +30,12 @@ __all__ = [
     "checked",
     "load_library",
     "native_library",
+    "raise_for_status",
     "thread_count",
     "using_instruction_set",
 ]
 
-ABI_VERSION = 4
+ABI_VERSION = 5
 """`SAILENV_ABI_VERSION` of src/abi.h."""
 
 INSTRUCTION_SETS = ("portable", "avx2", "avx512")
@@ -101,9 +103,13 @@ class NativeLibrary:
             raise UnknownName("instruction set of this machine", asked, self.instruction_sets)
         self.instruction_set: str = asked or self.instruction_sets[-1]
 
+    def symbol(self, name: str) -> Any:
+        """Return an exported function of the instruction set, its types not declared yet."""
+        return getattr(self._library, f"sailenv_{name}_{self.instruction_set}")
+
     def function(self, name: str, types: tuple[ArgumentType, ...]) -> Any:
         """Return the ctypes function of a kernel."""
-        function = getattr(self._library, f"sailenv_{name}_{self.instruction_set}")
+        function = self.symbol(name)
         function.argtypes = [_TYPES[kind] for kind in types]
         function.restype = ctypes.c_int32
         return function
@@ -172,11 +178,20 @@ class Kernel:
         for number in self._arrays:
             array = words[number]
             words[number] = None if array is None else array.ctypes.data
-        status = function(*words)
-        if status:
-            raise NativeLibraryError(
-                f"the kernel {self.name} {_STATUS.get(status, f'failed with status {status}')}"
-            )
+        raise_for_status(self.name, function(*words))
+
+
+def raise_for_status(kernel: str, status: int) -> None:
+    """Raise for what a kernel returned, unless all is well.
+
+    Raises
+    ------
+    NativeLibraryError
+    """
+    if status:
+        raise NativeLibraryError(
+            f"the kernel {kernel} {_STATUS.get(status, f'failed with status {status}')}"
+        )
 
 
 def checked(

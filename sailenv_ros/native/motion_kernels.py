@@ -1,54 +1,76 @@
 """The kernels of motion: where surface points are in another picture, and in other axes.
 
-Where the transforms come from stands in `motion.motion_tables`.
+A surface point at X = Z (x, y, 1) of one camera's optical frame is at X + D X (D = T - 1,
+homogeneous) in another one's, so it has moved in the picture by
+
+    (f' - f) x + (cx' - cx) + f' (dX - x dZ) / (Z + dZ),   (dX, dY, dZ) = D X
+
+and the same in y: exactly 0 where the lenses are equal and D is 0, with a rounding error that is
+relative to the displacement. Points at infinity have X = (x, y, 1) without translation. Where the
+transforms come from stands in `frame.motion.rigid_motion`.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.library import Kernel, checked
+from sailenv_ros.native.lens import LENS
+from sailenv_ros.native.library import checked
+from sailenv_ros.native.records import RecordKernel
 
-__all__ = ["MovedPoints", "move_points", "transform_points"]
+__all__ = ["MOTION_OUTPUTS", "move_points", "transform_points"]
 
-_MOVE = Kernel(
+_MOVE = RecordKernel(
     "motion",
-    *("integer", "integer", "integer", "array", "array", "array", "array", "array", "integer"),
-    *("array", "array", "array", "array", "integer", "integer", "number"),
-    *("array", "array", "array", "array", "array"),
+    height="integer",
+    width="integer",
+    depth="array",
+    instance="array",
+    row_of_instance="array",
+    rows="integer",
+    motions="array",
+    displacements="array",
+    from_lens="array",
+    to_lens="array",
+    to_height="integer",
+    to_width="integer",
+    to_depth="array",
+    to_instance="array",
+    tolerance="number",
+    duration="number",
+    flow="array",
+    scene_flow="array",
+    valid="array",
+    occluded="array",
+    out_of_view="array",
+    hidden="array",
 )
-_TRANSFORM = Kernel(
+_TRANSFORM = RecordKernel(
     "transform_points",
-    *("integer", "integer", "integer", "array", "array", "array", "array", "integer"),
-    *("array", "array"),
+    height="integer",
+    width="integer",
+    depth="array",
+    instance="array",
+    row_of_instance="array",
+    rows="integer",
+    transforms="array",
+    lens="array",
+    points="array",
 )
 
-
-class MovedPoints(NamedTuple):
-    """What `move_points` finds for each pixel.
-
-    Attributes
-    ----------
-    flow : (H, W, 2) float32
-        From the pixel to the point's place in the other picture [px]; nan where it has none.
-    scene_flow : (H, W, 3) float32
-        What the displacements say [m]; nan where there is no surface or no motion.
-    valid : (H, W) bool
-        Where the point is in front of the other camera.
-    occluded : (H, W) bool
-        Where it is within the other picture, which shows something else there.
-    out_of_view : (H, W) bool
-        Where it is not within the other picture.
-    """
-
-    flow: NDArray[np.float32]
-    scene_flow: NDArray[np.float32]
-    valid: NDArray[np.bool_]
-    occluded: NDArray[np.bool_]
-    out_of_view: NDArray[np.bool_]
+MOTION_OUTPUTS: Mapping[str, tuple[Any, tuple[int, ...]]] = {
+    "flow": (np.float32, (2,)),
+    "scene_flow": (np.float32, (3,)),
+    "valid": (np.bool_, ()),
+    "occluded": (np.bool_, ()),
+    "out_of_view": (np.bool_, ()),
+    "hidden": (np.bool_, ()),
+}
+"""Type and channels of what `move_points` can find."""
 
 
 def move_points(
@@ -56,15 +78,17 @@ def move_points(
     instance: NDArray[np.uint16],
     row_of_instance: NDArray[np.uint16],
     motions: NDArray[np.float64],
-    displacements: NDArray[np.float64],
-    from_lens: NDArray[np.float64],
-    to_lens: NDArray[np.float64],
-    to_depth: NDArray[np.float32],
-    to_instance: NDArray[np.uint16],
+    displacements: NDArray[np.float64] | None,
+    from_lens: NDArray[np.void],
+    to_lens: NDArray[np.void],
+    to_depth: NDArray[np.float32] | None,
+    to_instance: NDArray[np.uint16] | None,
     tolerance: float,
+    outputs: Mapping[str, NDArray[Any]],
     *,
+    duration_s: float = 1.0,
     threads: int,
-) -> MovedPoints:
+) -> None:
     """Find where the surface points of one picture are in another one.
 
     Parameters
@@ -76,20 +100,34 @@ def move_points(
         Row of each instance in `motions` and `displacements`; 0 for what has no motion, or beyond.
     motions : (R, 3, 4) float64
         T - 1: where a point of the one camera's frame is in the other's, less the point.
-    displacements : (R, 3, 4) float64
-        The same for the displacement that `scene_flow` tells of.
-    from_lens, to_lens : (5,) float64
-        Focal length and principal point x, y [px]; near and far [m].
-    to_depth, to_instance : (H', W') float32, uint16
-        The other picture's views.
+    displacements : (R, 3, 4) float64 or None
+        The same for the displacement that ``scene_flow`` tells of.
+    from_lens, to_lens : (1,) lens.LENS
+    to_depth, to_instance : (H', W') float32, uint16 or None
+        The other picture's views. Without depth nothing is seen there; without ids depth alone
+        decides, whatever it belongs to, and no far plane.
     tolerance : float
         Share of its depth by which a hidden point lies behind what is seen.
-    threads : int
+    outputs : mapping of str to array
+        What to fill in, any of
 
-    Returns
-    -------
-    points : MovedPoints
-        Fresh arrays.
+        ``flow`` (H, W, 2) float32
+            From the pixel to the point's place in the other picture over the duration [px/s];
+            nan where it has none.
+        ``scene_flow`` (H, W, 3) float32
+            What the displacements say [m]; nan where there is no surface or no motion.
+        ``valid`` (H, W) bool
+            Where the point is in front of the other camera.
+        ``occluded`` (H, W) bool
+            Where it is within the other picture, which shows something else there.
+        ``out_of_view`` (H, W) bool
+            Where it is not within the other picture.
+        ``hidden`` (H, W) bool
+            Where the other picture does not show it, for whatever reason.
+    duration_s : float
+        From the one picture to the other [s], negative if that is the earlier one; 1 gives flow
+        in pixels.
+    threads : int
 
     Raises
     ------
@@ -103,24 +141,39 @@ def move_points(
     checked("instance", instance, np.uint16, (height, width))
     checked("row_of_instance", row_of_instance, np.uint16, (65536,))
     checked("motions", motions, np.float64, (None, 3, 4))
-    checked("displacements", displacements, np.float64, (len(motions), 3, 4))
-    checked("from_lens", from_lens, np.float64, (5,))
-    checked("to_lens", to_lens, np.float64, (5,))
-    checked("to_depth", to_depth, np.float32, (None, None))
-    checked("to_instance", to_instance, np.uint16, to_depth.shape)
-    result = MovedPoints(
-        flow=np.empty((height, width, 2), np.float32),
-        scene_flow=np.empty((height, width, 3), np.float32),
-        valid=np.empty((height, width), np.bool_),
-        occluded=np.empty((height, width), np.bool_),
-        out_of_view=np.empty((height, width), np.bool_),
-    )
+    if displacements is not None:
+        checked("displacements", displacements, np.float64, (len(motions), 3, 4))
+    checked("from_lens", from_lens, LENS, (1,))
+    checked("to_lens", to_lens, LENS, (1,))
+    to_height = to_width = 0
+    if to_depth is not None:
+        checked("to_depth", to_depth, np.float32, (None, None))
+        to_height, to_width = to_depth.shape
+    if to_instance is not None:
+        checked("to_instance", to_instance, np.uint16, (to_height, to_width))
+    for name, array in outputs.items():
+        dtype, channels = MOTION_OUTPUTS[name]
+        checked(name, array, dtype, (height, width, *channels))
     _MOVE(
-        *(threads, height, width, depth, instance, row_of_instance),
-        *(motions, displacements, len(motions), from_lens, to_lens),
-        *(to_depth, to_instance, *to_depth.shape, tolerance, *result),
+        threads,
+        height=height,
+        width=width,
+        depth=depth,
+        instance=instance,
+        row_of_instance=row_of_instance,
+        rows=len(motions),
+        motions=motions,
+        displacements=displacements,
+        from_lens=from_lens,
+        to_lens=to_lens,
+        to_height=to_height,
+        to_width=to_width,
+        to_depth=to_depth,
+        to_instance=to_instance,
+        tolerance=tolerance,
+        duration=duration_s,
+        **{name: outputs.get(name) for name in MOTION_OUTPUTS},
     )
-    return result
 
 
 def transform_points(
@@ -128,7 +181,7 @@ def transform_points(
     instance: NDArray[np.uint16],
     row_of_instance: NDArray[np.uint16],
     transforms: NDArray[np.float64],
-    lens: NDArray[np.float64],
+    lens: NDArray[np.void],
     *,
     threads: int,
 ) -> NDArray[np.float32]:
@@ -136,10 +189,11 @@ def transform_points(
 
     Parameters
     ----------
-    depth, instance, row_of_instance, lens
+    depth, instance, row_of_instance
         As `move_points` takes them.
     transforms : (R, 3, 4) float64
         Other axes from the camera's optical frame, for each instance.
+    lens : (1,) lens.LENS
     threads : int
 
     Returns
@@ -157,10 +211,18 @@ def transform_points(
     checked("instance", instance, np.uint16, (height, width))
     checked("row_of_instance", row_of_instance, np.uint16, (65536,))
     checked("transforms", transforms, np.float64, (None, 3, 4))
-    checked("lens", lens, np.float64, (5,))
+    checked("lens", lens, LENS, (1,))
     points = np.empty((height, width, 3), np.float32)
     _TRANSFORM(
-        *(threads, height, width, depth, instance, row_of_instance),
-        *(transforms, len(transforms), lens, points),
+        threads,
+        height=height,
+        width=width,
+        depth=depth,
+        instance=instance,
+        row_of_instance=row_of_instance,
+        rows=len(transforms),
+        transforms=transforms,
+        lens=lens,
+        points=points,
     )
     return points

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.native.lens import LENS
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.validation import Bounds, check_bounds
@@ -100,6 +101,14 @@ class CameraIntrinsics:
         """(3, 3) intrinsic matrix; a new array."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
+    @cached_property
+    def lens_record(self) -> NDArray[np.void]:
+        """(1,) `native.lens.LENS`, read-only: the lens as kernels take it."""
+        numbers = (self.fx, self.fy, self.cx, self.cy, self.near_m, self.far_m)
+        record = np.array([numbers], LENS)
+        record.flags.writeable = False
+        return record
+
     def clip_from_optical(self) -> NDArray[np.float64]:
         """Return the (4, 4) OpenGL projection of points in the optical frame.
 
@@ -133,13 +142,42 @@ class CameraIntrinsics:
         v = self.fy * p[..., 1] / z + self.cy
         return np.stack([u, v], axis=-1)
 
-    def rays(self) -> NDArray[np.float64]:
-        """Return (H, W, 3) the point at depth 1 m that each pixel's centre sees (optical frame)."""
-        x = (np.arange(self.width) - self.cx) / self.fx
-        y = (np.arange(self.height) - self.cy) / self.fy
-        result = np.ones((self.height, self.width, 3))
-        result[..., 0] = x[None, :]
-        result[..., 1] = y[:, None]
+    def rays(self, rows: slice = slice(None), columns: slice = slice(None)) -> NDArray[np.float64]:
+        """Return the point at depth 1 m that each pixel's centre sees.
+
+        Parameters
+        ----------
+        rows, columns : slice
+            The part of the picture, all of it unless given.
+
+        Returns
+        -------
+        rays : (rows, columns, 3) float64
+            In the optical frame; a new array.
+        """
+        u, v = np.arange(self.width)[columns], np.arange(self.height)[rows]
+        result = np.ones((len(v), len(u), 3))
+        result[..., 0] = (u - self.cx) / self.fx
+        result[..., 1] = ((v - self.cy) / self.fy)[:, None]
+        return result
+
+    def rays_through(self, pixels: ArrayLike) -> NDArray[np.float64]:
+        """Return the point at depth 1 m that is seen at places of the picture.
+
+        Parameters
+        ----------
+        pixels : (..., 2) array-like
+            Columns and rows (u, v), also between pixels and beside the picture [px].
+
+        Returns
+        -------
+        rays : (..., 3) float64
+            In the optical frame; a new array.
+        """
+        p = np.asarray(pixels, dtype=np.float64)
+        result = np.ones((*p.shape[:-1], 3))
+        result[..., 0] = (p[..., 0] - self.cx) / self.fx
+        result[..., 1] = (p[..., 1] - self.cy) / self.fy
         return result
 
     def unproject(self, depth: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -158,6 +196,14 @@ class CameraIntrinsics:
         """
         finite = np.where(np.isfinite(depth), depth, np.nan).astype(np.float64)
         return self.rays() * finite[..., None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Samples(CameraIntrinsics):
+    """Of samples: they may be more, and see further, than the pixels of a picture may."""
+
+    def __post_init__(self) -> None:
+        pass
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,6 +242,22 @@ class Camera:
             intrinsics=replace(lens, width=times * lens.width, height=times * lens.height),
             picture=replace(self.picture, supersampling=1, smooth_edges=False),
         )
+
+    def of_half_pixels(self) -> Camera:
+        """Return the camera whose pixels are samples of this one's picture half a pixel apart.
+
+        Sample k lies at pixel (k - 1) / 2, so W pixels have 2 W + 1 samples.
+        """
+        lens = self.intrinsics
+        width, height = 2 * lens.width + 1, 2 * lens.height + 1
+        samples = _Samples(
+            width=width,
+            height=height,
+            vertical_fov_deg=2.0 * math.degrees(math.atan2(0.5 * height, 2.0 * lens.fy)),
+            near_m=lens.near_m,
+            far_m=lens.far_m,
+        )
+        return replace(self, intrinsics=samples)
 
     @cached_property
     def world_from_camera(self) -> NDArray[np.float64]:

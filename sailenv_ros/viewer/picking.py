@@ -98,8 +98,7 @@ def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:
 
 
 def _optical(frame: Frame, u: int, v: int, depth: float) -> Vector:
-    lens = frame.camera.intrinsics
-    return depth * np.array([(u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1.0])
+    return depth * frame.camera.intrinsics.rays_through((u, v))
 
 
 def _normal(frame: Frame, u: int, v: int) -> Vector:

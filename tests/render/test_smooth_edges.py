@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.renderer import NativeRenderer
-from sailenv_ros.render.picture.half_pixels import half_pixel_camera, pixel_shares
+from sailenv_ros.render.picture.half_pixels import pixel_shares
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.geometry import Pose
@@ -212,7 +212,7 @@ def test_samples_half_a_pixel_apart_are_the_cameras() -> None:
     """Those of odd numbers are the pixels' centres; any size may have them."""
     for size in ((8, 8), (63, 48), (4096, 3000)):
         whole = camera(size=size).intrinsics
-        half = half_pixel_camera(camera(size=size)).intrinsics
+        half = camera(size=size).of_half_pixels().intrinsics
         assert (half.width, half.height) == (2 * size[0] + 1, 2 * size[1] + 1)
         points = np.array([(0.1, -0.2, 1.0), (-0.4, 0.3, 2.5)])
         np.testing.assert_allclose(

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.ambient_visibility import AmbientSettings
+
 __all__ = [
     "annotate_pixels",
     "find_ambient_visibility",
@@ -29,9 +31,6 @@ FAR_M = F32(1e9)
 TILE = 16
 """Edge of the tiles of samples that are left out where everything around them is baked."""
 
-ROUNDING_PX = 1e-3
-"""How far from a pixel's centre that pixel alone decides whether a point was hidden."""
-
 BLOOM_LEVELS = 5
 """Halvings of the picture: each doubles how far light is spread."""
 
@@ -45,100 +44,38 @@ Doubles = NDArray[np.float64]
 def annotate_pixels(
     surface: Floats,
     category_of_instance: NDArray[np.uint8],
-    row_of_instance: NDArray[np.uint16],
-    motions: Doubles,
-    lens: Doubles,
-    dt_s: float,
-    tolerance: float,
-    past_depth: Floats | None,
+    lens: NDArray[np.void],
     views: Mapping[str, NDArray[Any]],
     *,
     threads: int,
 ) -> None:
     """Fill in the views; see `native.annotation`."""
-    focal, cx, cy, near_m, far_m = lens
-    height, width = surface.shape[:2]
+    near_m, far_m = float(lens["near_m"][0]), float(lens["far_m"][0])
     z = surface[..., 0].astype(np.float64)
     beyond = z > far_m
     z[beyond] = np.inf
     numbers = surface[..., 1]
     known = ~beyond & (numbers >= 0.0) & (numbers < 65536.0)
     ids = np.where(known, numbers, F32(0.0)).astype(np.intp)
-    too_near = z < near_m
-    views["depth"][:] = np.where(too_near, np.nan, z)
+    views["depth"][:] = np.where(z < near_m, np.nan, z)
     if "category" in views:
         views["category"][:] = category_of_instance[ids]
     if "instance" in views:
         views["instance"][:] = ids
-    if not {"flow", "flow_valid", "occlusion"} & set(views):
-        return
-    u, v = np.arange(width, dtype=np.float64)[None], np.arange(height, dtype=np.float64)[:, None]
-    x, y = (u - cx) / focal, (v - cy) / focal
-    rows = row_of_instance[ids]
-    rows[rows >= len(motions)] = 0
-    at_infinity = z == np.inf
-    reach, shift = np.where(at_infinity, 1.0, z), np.where(at_infinity, 0.0, 1.0)
-    with np.errstate(all="ignore"):
-        d = [
-            reach * (m[..., 0] * x + m[..., 1] * y + m[..., 2]) + shift * m[..., 3]
-            for m in np.moveaxis(motions[rows], 2, 0)
-        ]
-        z_past = reach + d[2]
-        valid = (rows != 0) & (z_past > 0.0) & ~too_near
-        flow_u, flow_v = (x * d[2] - d[0]) / z_past, (y * d[2] - d[1]) / z_past
-        if "flow" in views:
-            scale = float(focal) / dt_s
-            for number, flow in enumerate((flow_u, flow_v)):
-                views["flow"][..., number] = np.where(
-                    valid, (scale * flow).astype(F32), F32(np.nan)
-                )
-        if "flow_valid" in views:
-            views["flow_valid"][:] = valid
-        if "occlusion" in views:
-            z_past[at_infinity] = np.inf
-            hidden = _hidden(
-                past_depth, u - focal * flow_u, v - focal * flow_v, z_past, valid, tolerance
-            )
-            views["occlusion"][:] = hidden
-
-
-def _hidden(
-    past_depth: Floats | None,
-    u: Doubles,
-    v: Doubles,
-    z: Doubles,
-    valid: NDArray[np.bool_],
-    tolerance: float,
-) -> NDArray[np.bool_]:
-    """Find which points at (u, v), depth z of the previous frame were not visible there."""
-    hidden = np.ones(z.shape, np.bool_)
-    if past_depth is None or not past_depth.size:
-        return hidden
-    rows, columns = past_depth.shape
-    inside = valid & (u >= -0.5) & (u <= columns - 0.5) & (v >= -0.5) & (v <= rows - 0.5)
-    u, v, z = u[inside], v[inside], z[inside]
-    seen = np.zeros(z.shape, np.bool_)
-    for row in (np.floor(v + ROUNDING_PX), np.ceil(v - ROUNDING_PX)):
-        for column in (np.floor(u + ROUNDING_PX), np.ceil(u - ROUNDING_PX)):
-            at = (
-                np.clip(row.astype(np.intp), 0, rows - 1),
-                np.clip(column.astype(np.intp), 0, columns - 1),
-            )
-            past = past_depth[at].astype(np.float64)
-            seen |= (past == z) | (past > z * (1.0 - tolerance))
-    hidden[inside] = ~seen
-    return hidden
 
 
 def find_ambient_visibility(
     surface: Floats,
     baked: NDArray[np.bool_],
-    numbers: Floats,
+    lens: NDArray[np.void],
+    settings: AmbientSettings,
     pattern: Floats,
     *,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats]:
     """Compute the share of the light from around that arrives; see `native.ambient_visibility`."""
+    focal, _, cx, cy, _, _ = lens[0].item()
+    numbers = np.array([0.5 * focal, 0.5 * cx, 0.5 * cy, *settings], np.float32)
     samples = surface[::2, ::2]
     depth, ids = samples[..., 0], samples[..., 1]
     hit = (depth > F32(1.0) / FAR_M) & (depth < FAR_M)

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.motion.moments import AnyFrame, moment_of, require_common_past
-from sailenv_ros.frame.motion.motion_tables import lens_numbers, motion_tables
+from sailenv_ros.frame.motion.rigid_motion import OCCLUSION_TOLERANCE, motion_table
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.native.motion_kernels import move_points
-from sailenv_ros.render.picture.annotate import OCCLUSION_TOLERANCE
+from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points
 
 __all__ = ["Motion", "motion"]
 
@@ -90,23 +89,27 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
     """
     first, last = moment_of(begin, "first frame"), moment_of(end, "other frame")
     require_common_past(first, last)
-    tables = motion_tables(first, last)
-    moved = move_points(
-        *first.surfaces("first frame"),
-        tables.row_of_instance,
-        tables.motions,
-        tables.displacements,
-        lens_numbers(first.camera),
-        lens_numbers(last.camera),
-        *last.surfaces("other frame"),
+    table = motion_table(first.observed_poses(), last.observed_poses())
+    depth, instance = first.surfaces("first frame")
+    to_depth, to_instance = last.surfaces("other frame")
+    names = ("flow", "scene_flow", "valid", "occluded", "out_of_view")
+    found = {
+        name: np.empty((*depth.shape, *channels), dtype)
+        for name, (dtype, channels) in MOTION_OUTPUTS.items()
+        if name in names
+    }
+    move_points(
+        depth,
+        instance,
+        table.row_of_instance,
+        table.motions,
+        table.displacements,
+        first.camera.intrinsics.lens_record,
+        last.camera.intrinsics.lens_record,
+        to_depth,
+        to_instance,
         OCCLUSION_TOLERANCE,
+        found,
         threads=thread_count(),
     )
-    return Motion(
-        flow=moved.flow,
-        scene_flow=moved.scene_flow,
-        valid=moved.valid,
-        occluded=moved.occluded,
-        out_of_view=moved.out_of_view,
-        duration_s=(last.stamp_ns - first.stamp_ns) * 1e-9,
-    )
+    return Motion(duration_s=(last.stamp_ns - first.stamp_ns) * 1e-9, **found)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.data import FrameData
+from sailenv_ros.frame.motion.rigid_motion import ObservedPoses
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
 
@@ -44,6 +45,16 @@ class Moment:
     states: InstanceStates
     depth: NDArray[np.float32] | None
     instance: NDArray[np.uint16] | None
+
+    def observed_poses(self) -> ObservedPoses:
+        """Return camera and poses as tables of motion are made of."""
+        states = self.states
+        return ObservedPoses(
+            camera=self.camera,
+            ids=states.ids,
+            world_from_instance=states.matrices,
+            histories=states.histories,
+        )
 
     def surfaces(self, what: str) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
         """Return depth and instance ids.

@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.motion.moments import AnyFrame, moment_of
-from sailenv_ros.frame.motion.motion_tables import lens_numbers
+from sailenv_ros.frame.motion.rigid_motion import object_points
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.native.motion_kernels import transform_points
-from sailenv_ros.types.geometry import invert
 
 __all__ = ["object_coordinates"]
 
@@ -28,16 +26,5 @@ def object_coordinates(frame: AnyFrame) -> NDArray[np.float32]:
         If the frame lacks one of the views or the states of its instances.
     """
     moment = moment_of(frame)
-    states, camera = moment.states, moment.camera
-    rows = np.zeros(65536, np.uint16)
-    rows[states.ids] = np.arange(1, len(states) + 1)
-    transforms = np.zeros((len(states) + 1, 3, 4))
-    if len(states):
-        transforms[1:] = (invert(states.matrices) @ camera.world_from_camera)[:, :3]
-    return transform_points(
-        *moment.surfaces("frame"),
-        rows,
-        transforms,
-        lens_numbers(camera),
-        threads=thread_count(),
-    )
+    depth, instance = moment.surfaces("frame")
+    return object_points(depth, instance, moment.observed_poses(), threads=thread_count())

@@ -166,9 +166,7 @@ def _found(
         if not _within(pixels, moment).all():
             accepted = f"within the picture: -0.5 to {lens.width - 0.5} and {lens.height - 0.5}"
             raise InvalidRequest("pixel", pixels[~_within(pixels, moment)][0], accepted)
-        rays = np.ones((len(rows), 3))
-        rays[:, :2] = (pixels - (lens.cx, lens.cy)) / lens.fx
-        directions = rays @ moment.camera.world_from_camera[:3, :3].T
+        directions = lens.rays_through(pixels) @ moment.camera.world_from_camera[:3, :3].T
         eye = np.broadcast_to(moment.camera.world_from_camera[:3, 3], directions.shape)
         hits = geometry.cast(states, eye, directions)
         # The third coordinate of a ray is 1, so that its distances are depths.

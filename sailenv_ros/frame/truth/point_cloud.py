@@ -87,7 +87,7 @@ def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
     pixels = np.flatnonzero(np.isfinite(depth))
     z = depth[pixels].astype(np.float64)
     rows, columns = np.divmod(pixels, lens.width)
-    x, y = (columns - lens.cx) * z / lens.fx, (rows - lens.cy) * z / lens.fy
+    x, y, _ = np.moveaxis(lens.rays_through(np.stack([columns, rows], axis=-1)), -1, 0) * z
     pose = frame.camera.world_from_camera if in_world else np.eye(4)
     count = len(pixels)
     xyz = np.empty((count, 3), np.float32)

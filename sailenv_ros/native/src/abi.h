@@ -3,12 +3,13 @@
 // A kernel is an exported function that is compiled once for each instruction set. It takes plain
 // numbers and pointers to dense arrays, whose sizes the caller has checked, writes its results into
 // arrays of the caller, and returns a Status. It throws nothing and keeps nothing between calls.
+// Where it takes more than a few, they come as one structure (kernels/record.h).
 #pragma once
 
 #include <cstdint>
 
 // Counted up whenever a function's arguments change; library.py holds the same number.
-#define SAILENV_ABI_VERSION 4
+#define SAILENV_ABI_VERSION 5
 
 #define SAILENV_EXPORT extern "C" __attribute__((visibility("default")))
 

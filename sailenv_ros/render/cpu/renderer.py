@@ -23,7 +23,6 @@ from sailenv_ros.render.cpu.frame_light import FrameLight
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.picture import annotate as ground_truth
 from sailenv_ros.render.picture.finishing import Finisher
-from sailenv_ros.render.picture.half_pixels import half_pixel_camera
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, Window
 from sailenv_ros.types.camera import Camera
@@ -98,7 +97,9 @@ class NativeRenderer:
         wanted = frozenset(checked_views(views, supported=self.supported_views))
         needs_past_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         if needs_past_depth and previous is not None and previous.depth is None:
-            previous = self._with_depth(previous)
+            then = (previous.snapshot, previous.camera)
+            surface = self._draw(*then, frozenset({"depth"}), {})["surface"]
+            previous = ground_truth.with_depth(previous, surface)
         timings: dict[str, float] = {}
         arrays = self._draw(snapshot, camera, wanted, timings)
         return self._finisher.finish(
@@ -210,7 +211,7 @@ class NativeRenderer:
             return surface
 
         def samples(window: Window) -> NDArray[np.float32]:
-            return surface_of(native_view(half_pixel_camera(camera), closer_window(window)))
+            return surface_of(native_view(camera.of_half_pixels(), closer_window(window)))
 
         surface = arrays["samples" if "samples" in arrays else "surface"]
         if surface.shape[:2] != arrays["rgb"].shape[:2]:
@@ -243,14 +244,6 @@ class NativeRenderer:
             radiance=radiance,
         )
         return radiance[..., :3].astype(np.float32)
-
-    def _with_depth(self, previous: Observation) -> Observation:
-        """Draw the depth that an earlier frame was not asked for; its poses say it."""
-        arrays = self._draw(previous.snapshot, previous.camera, frozenset({"depth"}), {})
-        truth = ground_truth.annotate(
-            arrays["surface"], previous.snapshot, None, previous.camera, frozenset()
-        )
-        return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
 
 
 def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void]:

@@ -1,6 +1,6 @@
 """The edge pass: from samples half a pixel apart to pixels with smooth edges.
 
-Lit targets of a `half_pixel_camera` come in, the picture of its pixels goes out.
+Lit targets of a `Camera.of_half_pixels` come in, the picture of its pixels goes out.
 """
 
 from __future__ import annotations

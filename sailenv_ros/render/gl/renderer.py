@@ -31,7 +31,6 @@ from sailenv_ros.render.gl.programs import ProgramCache
 from sailenv_ros.render.gl.scene_light import SceneLight
 from sailenv_ros.render.picture import annotate as ground_truth
 from sailenv_ros.render.picture.finishing import Finisher
-from sailenv_ros.render.picture.half_pixels import half_pixel_camera
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, SeenMirror, Window
@@ -114,7 +113,9 @@ class Renderer:
         timings: dict[str, float] = {}
         with self._context:
             if needs_past_depth and previous is not None and previous.depth is None:
-                previous = self._with_depth(previous)
+                then = (previous.snapshot, previous.camera)
+                surface = self._draw(*then, frozenset({"depth"}), {})["surface"]
+                previous = ground_truth.with_depth(previous, surface)
             arrays = self._draw(snapshot, camera, wanted, timings)
         return self._finisher.finish(
             arrays,
@@ -328,14 +329,6 @@ class Renderer:
         self._draws = DrawList(contents, self._geometry, self._materials)
         return self._draws
 
-    def _with_depth(self, previous: Observation) -> Observation:
-        """Render the depth that an earlier frame was not asked for; its poses say it."""
-        arrays = self._draw(previous.snapshot, previous.camera, frozenset({"depth"}), {})
-        truth = ground_truth.annotate(
-            arrays["surface"], previous.snapshot, None, previous.camera, frozenset()
-        )
-        return Observation(snapshot=previous.snapshot, camera=previous.camera, depth=truth["depth"])
-
 
 def _is_smoothed(camera: Camera) -> bool:
     """Tell if a camera's picture is made of samples half a pixel apart."""
@@ -346,7 +339,7 @@ def _of_samples(camera: Camera) -> Camera:
     """Return the camera of what its picture is made of: itself, unless there are more samples."""
     if camera.picture.supersampling > 1:
         return camera.of_samples()
-    return half_pixel_camera(camera) if _is_smoothed(camera) else camera
+    return camera.of_half_pixels() if _is_smoothed(camera) else camera
 
 
 def _clip_from_optical(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:

@@ -15,10 +15,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.ambient_visibility import find_ambient_visibility
+from sailenv_ros.native.ambient_visibility import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["PATTERN", "ambient_visibility", "kernel_numbers"]
+__all__ = ["PATTERN", "ambient_visibility", "kernel_settings"]
 
 TAPS = 12
 REACH_PX = 48
@@ -89,16 +89,22 @@ def ambient_visibility(
         1 / depth at these pixels [1/m], negative where light was baked, -1e-9 where
         nothing was hit.
     """
-    numbers = kernel_numbers(intrinsics, strength, radius_m)
-    return find_ambient_visibility(surface, baked, numbers, PATTERN, threads=threads)
+    settings = kernel_settings(intrinsics, strength, radius_m)
+    return find_ambient_visibility(
+        surface, baked, intrinsics.lens_record, settings, PATTERN, threads=threads
+    )
 
 
-def kernel_numbers(
+def kernel_settings(
     intrinsics: CameraIntrinsics, strength: float, radius_m: float
-) -> NDArray[np.float32]:
-    """Return the (10,) float32 numbers that `find_ambient_visibility` takes."""
-    scale = np.float32(GAIN / TAPS) * np.float32(strength)
-    lens = (0.5 * intrinsics.fx, 0.5 * intrinsics.cx, 0.5 * intrinsics.cy)
-    sizes = (radius_m, LEAST_REACH_PX, REACH_PX)
-    step = min(max(round(lens[0] / STEP_PER_PX), 1), MOST_STEP)
-    return np.array([*lens, *sizes, BIAS, scale, SAME_SURFACE, step], np.float32)
+) -> AmbientSettings:
+    """Return what `find_ambient_visibility` takes beside the picture."""
+    return AmbientSettings(
+        radius_m=radius_m,
+        least_reach_px=LEAST_REACH_PX,
+        reach_px=REACH_PX,
+        bias=BIAS,
+        scale=float(np.float32(GAIN / TAPS) * np.float32(strength)),
+        same_surface=SAME_SURFACE,
+        step=min(max(round(0.5 * intrinsics.fx / STEP_PER_PX), 1), MOST_STEP),
+    )

@@ -1,92 +1,39 @@
 """From what the geometry pass left of each pixel to the ground-truth views.
 
 The geometry pass leaves the depth along the optical axis and the instance id. Everything else
-(category, what lies nearer than near, optical flow, occlusion) follows by arithmetic in one kernel
-(`annotate_pixels`). All back ends share it, so their ground truth has one definition.
+(category, what lies nearer than near, optical flow, occlusion) follows by arithmetic in kernels.
+All renderers share it, so their ground truth has one definition.
 
-Optical flow is the motion field of rigid bodies. A surface point at X = Z (x, y, 1) in the
-camera's optical frame was at X + D X (D = T - 1, homogeneous) in the previous frame's optical
-frame, where T = camera_from_world' world_from_body' body_from_world world_from_camera with the
-primed factors of then. Its displacement since then, p_t - p_(t-1), is
-
-    f (x dZ - dX) / (Z + dZ),   f (y dZ - dY) / (Z + dZ),   (dX, dY, dZ) = D X
-
-which is exactly 0 where D is, and whose rounding error is relative to the flow itself. Points at
-infinity have X = (x, y, 1) without translation.
+Optical flow is the motion field of rigid bodies: the motion from this frame to the previous one
+(`rigid_motion`), over the time between them, which is negative.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.motion.rigid_motion import (
+    OCCLUSION_TOLERANCE,
+    ObservedPoses,
+    motion_table,
+    object_points,
+)
 from sailenv_ros.native.annotation import annotate_pixels
-from sailenv_ros.native.motion_kernels import transform_points
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.geometry import invert
+from sailenv_ros.native.motion_kernels import move_points
+from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
-__all__ = ["OCCLUSION_TOLERANCE", "annotate", "motion_table"]
-
-OCCLUSION_TOLERANCE = 0.01
-"""Share of its depth by which a point must lie behind all four nearest pixels of the previous
-frame to count as hidden there: a slanted surface differs by less within one pixel up to about
-80 degrees at common fields of view, and thin gaps smaller than this are not told apart."""
+__all__ = ["annotate", "with_depth"]
 
 _NO_CATEGORIES = np.zeros(65536, np.uint8)
 
-_NO_ROW = 0
-_SKY_ROW = 1
-_FIRST_BODY_ROW = 2
-
-
-def motion_table(
-    snapshot: WorldSnapshot, previous: Observation | None, camera: Camera
-) -> tuple[NDArray[np.uint16], NDArray[np.float64]]:
-    """Compute D for every instance that has a past.
-
-    Returns
-    -------
-    row_of_instance : (65536,) uint16
-        Row in `motions` of each instance id: 0 for what has no past; id 0 is the sky's.
-    motions : (R, 3, 4) float64
-        D of the docstring above; exactly 0 where neither camera nor body has moved a bit.
-    """
-    row_of_instance = np.zeros(65536, dtype=np.uint16)
-    if previous is None or previous.snapshot.contents.epoch != snapshot.contents.epoch:
-        return row_of_instance, np.zeros((1, 3, 4))
-    past = previous.snapshot
-    known = {id_: row for row, id_ in enumerate(past.contents.instance_ids.tolist())}
-    now_rows: list[int] = []
-    past_rows: list[int] = []
-    for row, id_ in enumerate(snapshot.contents.instance_ids.tolist()):
-        past_row = known.get(id_)
-        if past_row is not None and past.histories[past_row] == snapshot.histories[row]:
-            row_of_instance[id_] = _FIRST_BODY_ROW + len(now_rows)
-            now_rows.append(row)
-            past_rows.append(past_row)
-    row_of_instance[0] = _SKY_ROW
-    motions = np.zeros((_FIRST_BODY_ROW + len(now_rows), 3, 4))
-    camera_still = np.array_equal(previous.camera.camera_from_world, camera.camera_from_world)
-    if not camera_still:
-        turn = previous.camera.camera_from_world[:3, :3] @ camera.world_from_camera[:3, :3]
-        motions[_SKY_ROW, :, :3] = turn - np.eye(3)
-    if now_rows:
-        bodies, past_bodies = snapshot.world_from_body, past.world_from_body
-        if not len(bodies) == len(past_bodies) == len(now_rows) or now_rows != past_rows:
-            bodies, past_bodies = bodies[now_rows], past_bodies[past_rows]
-        chain = previous.camera.camera_from_world @ past_bodies @ invert(bodies)
-        motion = (chain @ camera.world_from_camera)[:, :3] - np.eye(4)[:3]
-        if camera_still:
-            # Rounding must not make a still world move.
-            still = (bodies == past_bodies).all(axis=(1, 2))
-            motion[still] = 0.0
-        motions[_FIRST_BODY_ROW:] = motion
-    return row_of_instance, motions
+_MOTION_OUTPUTS = {"flow": "flow", "flow_valid": "valid", "occlusion": "hidden"}
+"""Views of the motion to the previous frame, as `move_points` calls them."""
 
 
 def annotate(
@@ -119,62 +66,87 @@ def annotate(
     wanted = (views & frozenset(views_of("annotation"))) | {"depth"}
     # Ids of more than eight bits are looked up afterwards, by the instance.
     wide = "category" in wanted and snapshot.contents.categories.dtype != VIEWS["category"].dtype
-    made = (wanted - {"category"}) | {"instance"} if wide else wanted
     arrays: dict[str, NDArray[Any]] = {}
-    for name in made:
-        spec = VIEWS[name]
-        arrays[name] = np.empty(spec.shape(height, width), spec.dtype)
-    moves = any(VIEWS[name].needs_past for name in wanted)
-    rows, motions = motion_table(snapshot, previous if moves else None, camera)
-    dt_s = 1.0
-    past_depth: NDArray[np.float32] | None = None
-    if previous is not None:
-        dt_s = (snapshot.sim_time_ns - previous.snapshot.sim_time_ns) * 1e-9
-        if "occlusion" in wanted and previous.depth is not None:
-            past_depth = np.ascontiguousarray(previous.depth)
-    places = arrays.pop("object_coords", None)
-    if places is not None:
+    for name in wanted - {"object_coords"} - ({"category"} if wide else frozenset()):
+        arrays[name] = np.empty(VIEWS[name].shape(height, width), VIEWS[name].dtype)
+    if wanted - {"depth", "category"} or wide:
         arrays.setdefault("instance", np.empty((height, width), np.uint16))
-    intrinsics = camera.intrinsics
-    if previous is not None and previous.camera.intrinsics != intrinsics:
-        rows = np.zeros_like(rows)
     annotate_pixels(
         np.ascontiguousarray(surface),
         _NO_CATEGORIES if wide else snapshot.contents.category_of_instance,
-        rows,
-        motions,
-        _lens(intrinsics),
-        dt_s if dt_s > 0.0 else 1.0,
-        OCCLUSION_TOLERANCE,
-        past_depth,
-        arrays,
+        camera.intrinsics.lens_record,
+        {name: arrays[name] for name in ("depth", "category", "instance") if name in arrays},
         threads=threads,
     )
+    now = _poses_of(snapshot, camera)
+    moved = {key: arrays[view] for view, key in _MOTION_OUTPUTS.items() if view in arrays}
+    if moved:
+        _add_motion(arrays, moved, snapshot, previous, now, threads)
     if wide:
         arrays["category"] = snapshot.contents.category_of_instance[arrays["instance"]]
-    if places is not None:
-        arrays["object_coords"] = _object_coords(arrays, snapshot, camera, threads)
+    if "object_coords" in wanted:
+        arrays["object_coords"] = object_points(
+            arrays["depth"], arrays["instance"], now, threads=threads
+        )
     return {name: arrays[name] for name in wanted}
 
 
-def _object_coords(
-    arrays: Mapping[str, NDArray[Any]], snapshot: WorldSnapshot, camera: Camera, threads: int
-) -> NDArray[np.float32]:
-    """Return each pixel's surface point in its instance's own frame."""
-    ids = snapshot.contents.instance_ids
-    rows = np.zeros(65536, np.uint16)
-    rows[ids] = np.arange(1, len(ids) + 1)
-    transforms = np.zeros((len(ids) + 1, 3, 4))
-    if len(ids):
-        transforms[1:] = (invert(snapshot.world_from_body) @ camera.world_from_camera)[:, :3]
-    return transform_points(
-        *(arrays["depth"], arrays["instance"], rows, transforms),
-        _lens(camera.intrinsics),
-        threads=threads,
+def with_depth(previous: Observation, surface: NDArray[np.float32]) -> Observation:
+    """Return an earlier observation with the depth view that it was not asked for.
+
+    Parameters
+    ----------
+    previous : Observation
+    surface : (H, W, 2) float32
+        As `annotate` takes it, drawn anew from the poses of then.
+    """
+    truth = annotate(surface, previous.snapshot, None, previous.camera, frozenset())
+    return replace(previous, depth=truth["depth"])
+
+
+def _poses_of(snapshot: WorldSnapshot, camera: Camera) -> ObservedPoses:
+    return ObservedPoses(
+        camera=camera,
+        ids=snapshot.contents.instance_ids,
+        world_from_instance=snapshot.world_from_body,
+        histories=snapshot.histories,
     )
 
 
-def _lens(intrinsics: CameraIntrinsics) -> NDArray[np.float64]:
-    return np.array(
-        [intrinsics.fx, intrinsics.cx, intrinsics.cy, intrinsics.near_m, intrinsics.far_m]
+def _add_motion(
+    arrays: dict[str, NDArray[Any]],
+    moved: dict[str, NDArray[Any]],
+    snapshot: WorldSnapshot,
+    previous: Observation | None,
+    now: ObservedPoses,
+    threads: int,
+) -> None:
+    """Fill in the views of the motion to the previous frame; without one nothing has moved."""
+    lens = now.camera.intrinsics
+    if (
+        previous is None
+        or previous.snapshot.contents.epoch != snapshot.contents.epoch
+        or previous.camera.intrinsics != lens
+    ):
+        unknown = {"flow": np.nan, "valid": False, "hidden": True}
+        for name, array in moved.items():
+            array[:] = unknown[name]
+        return
+    table = motion_table(now, _poses_of(previous.snapshot, previous.camera))
+    duration_s = (previous.snapshot.sim_time_ns - snapshot.sim_time_ns) * 1e-9
+    depth = previous.depth if "hidden" in moved else None
+    move_points(
+        arrays["depth"],
+        arrays["instance"],
+        table.row_of_instance,
+        table.motions,
+        None,
+        lens.lens_record,
+        previous.camera.intrinsics.lens_record,
+        None if depth is None else np.ascontiguousarray(depth),
+        None,
+        OCCLUSION_TOLERANCE,
+        moved,
+        duration_s=duration_s if duration_s < 0.0 else -1.0,
+        threads=threads,
     )

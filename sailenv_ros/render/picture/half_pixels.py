@@ -1,43 +1,15 @@
 """Samples half a pixel apart, of which pictures with smooth edges are made.
 
-A camera comes in, the camera of its samples goes out: sample k lies at pixel (k - 1) / 2, so W
-pixels have 2 W + 1 samples, and those of odd numbers are the pixels' centres. The native renderer
-has the same samples, see `native/src/kernels/edges.cpp`.
+They are the pixels of `Camera.of_half_pixels`; those of odd numbers are the centres of the camera's
+own. The native renderer has the same samples, see `native/src/kernels/edges.cpp`.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
-
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
-
-__all__ = ["half_pixel_camera", "pixel_shares"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Samples(CameraIntrinsics):
-    """Of samples: they may be more, and see further, than the pixels of a picture may."""
-
-    def __post_init__(self) -> None:
-        pass
-
-
-def half_pixel_camera(camera: Camera) -> Camera:
-    """Return the camera whose pixels are the samples of this one's."""
-    lens = camera.intrinsics
-    width, height = 2 * lens.width + 1, 2 * lens.height + 1
-    samples = _Samples(
-        width=width,
-        height=height,
-        vertical_fov_deg=2.0 * math.degrees(math.atan2(0.5 * height, 2.0 * lens.fy)),
-        near_m=lens.near_m,
-        far_m=lens.far_m,
-    )
-    return replace(camera, intrinsics=samples)
+__all__ = ["pixel_shares"]
 
 
 def pixel_shares(samples: NDArray[np.bool_]) -> NDArray[np.float32]:

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.picture.half_pixels import half_pixel_camera, pixel_shares
+from sailenv_ros.render.picture.half_pixels import pixel_shares
 from sailenv_ros.render.scene.flat_mirrors import NEAR_PLANE_M, SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 
@@ -62,7 +62,7 @@ def reflect(
         partly = np.zeros_like(whole)
         if samples is not None:
             closer = closer_window(mirror.window)
-            lens = half_pixel_camera(camera).intrinsics
+            lens = camera.of_half_pixels().intrinsics
             mask, _ = _pixels(replace(mirror, window=closer), lens, camera, samples(mirror.window))
             covered = pixel_shares(mask)
             whole, partly = covered == 1.0, (covered > 0.0) & (covered < 1.0)
@@ -109,12 +109,11 @@ def _pixels(
 ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
     """Return which pixels of the window show the mirror, and the cosine of the viewing angle."""
     rows, columns = mirror.window
-    x = (np.arange(columns.start, columns.stop) - lens.cx) / lens.fx
-    y = (np.arange(rows.start, rows.stop) - lens.cy) / lens.fy
+    x, y, _ = np.moveaxis(lens.rays(rows, columns), -1, 0)
     normal = camera.camera_from_world[:3, :3] @ mirror.normal
     offset = float(mirror.normal @ (mirror.point - camera.world_from_camera[:3, 3]))
-    along = normal[0] * x[None, :] + normal[1] * y[:, None] + normal[2]
-    length = np.sqrt(1.0 + x[None, :] ** 2 + y[:, None] ** 2)
+    along = normal[0] * x + normal[1] * y + normal[2]
+    length = np.sqrt(1.0 + x**2 + y**2)
     mask = surface[..., 1] == mirror.instance_id
     depth = np.where(mask, surface[..., 0], 0.0)
     mask &= np.abs(along * depth - offset) < NEAR_PLANE_M

@@ -212,7 +212,7 @@ def _window(camera: Camera, pose: NDArray[np.float64], face: _Face, front: float
         return None
     low, high = np.zeros(2), np.array([lens.width, lens.height], float)
     if ahead.all():
-        at = seen[:, :2] / seen[:, 2:] * lens.fx + (lens.cx, lens.cy)
+        at = lens.project(seen)
         low = np.clip(np.floor(at.min(axis=0)) - 1.0, low, high)
         high = np.clip(np.ceil(at.max(axis=0)) + 2.0, low, high)
     size = high - low

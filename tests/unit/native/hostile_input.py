@@ -20,14 +20,15 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.native.ambient_visibility import find_ambient_visibility
+from sailenv_ros.native.ambient_visibility import AmbientSettings, find_ambient_visibility
 from sailenv_ros.native.annotation import annotate_pixels
 from sailenv_ros.native.client_views import convert_views
 from sailenv_ros.native.instance_measures import measure_instances
+from sailenv_ros.native.lens import LENS
 from sailenv_ros.native.library import using_instruction_set
 from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
-from sailenv_ros.native.motion_kernels import move_points, transform_points
+from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points, transform_points
 from sailenv_ros.native.picture_kernels import make_picture
 from sailenv_ros.native.ray_kernels import RayModels, build_tree, cast_rays
 from sailenv_ros.native.ray_tracing import build_box_tree
@@ -72,34 +73,22 @@ def surfaces(*sizes: tuple[int, int]) -> Iterator[NDArray[np.float32]]:
         yield numbers
 
 
+PLAIN = np.array([(500.0, 500.0, 0.5, 0.5, 0.05, 60.0)], LENS)
+WILD = np.array([(np.nan, 1e30, 1e30, -np.inf, np.nan, np.nan)], LENS)
+
+
 def drive_annotate() -> None:
-    """Ids that are none, motions and lenses that are no numbers, a past of another size."""
-    rng = np.random.default_rng(1)
-    rows = rng.integers(0, 65536, 65536).astype(np.uint16)
-    rows[:1000] %= 5
+    """Ids that are none, lenses that are no numbers."""
     categories = np.zeros(65536, np.uint8)
-    motions = rng.choice(np.array(NUMBERS), (4, 3, 4))
-    motions[1] = 0.0
     for surface in surfaces(*SIZES, LARGEST):
-        height, width = surface.shape[:2]
+        size = surface.shape[:2]
         views = {
-            "depth": np.empty((height, width), np.float32),
-            "category": np.empty((height, width), np.uint8),
-            "instance": np.empty((height, width), np.uint16),
-            "flow": np.empty((height, width, 2), np.float32),
-            "flow_valid": np.empty((height, width), np.bool_),
-            "occlusion": np.empty((height, width), np.bool_),
+            "depth": np.empty(size, np.float32),
+            "category": np.empty(size, np.uint8),
+            "instance": np.empty(size, np.uint16),
         }
-        pasts = (None, np.ones((3, 2), np.float32), surface[..., 0].copy())
-        lenses = ((500.0, 0.5, 0.5, 0.05, 60.0), (np.nan, 1e30, -np.inf, np.nan, np.nan))
-        large = surface.shape[:2] == LARGEST
-        for lens in lenses[:1] if large else lenses:
-            for past in pasts[2:] if large else pasts:
-                annotate_pixels(
-                    *(surface, categories, rows, motions, np.array(lens), 1e-30, np.nan, past),
-                    views,
-                    threads=THREADS[1],
-                )
+        for lens in (PLAIN,) if size == LARGEST else (PLAIN, WILD):
+            annotate_pixels(surface, categories, lens, views, threads=THREADS[1])
 
 
 def drive_motion() -> None:
@@ -109,18 +98,23 @@ def drive_motion() -> None:
     rows[::5] = 65535
     motions, displacements = rng.choice(np.array(NUMBERS), (2, 4, 3, 4))
     motions[1] = 0.0
-    plain = np.array((500.0, 0.5, 0.5, 0.05, 60.0))
-    wild = np.array((np.nan, 1e30, -np.inf, np.nan, np.nan))
     others = [(np.full(size, 0.3, np.float32), np.zeros(size, np.uint16)) for size in SIZES[:4]]
+    others += [(others[2][0], None), (None, None), (np.zeros((0, 0), np.float32), None)]
     for surface in surfaces(*SIZES, LARGEST):
         depth = np.ascontiguousarray(surface[..., 0])
         ids = np.nan_to_num(surface[..., 1], posinf=9.0).clip(0, 65535).astype(np.uint16)
         large = depth.shape == LARGEST
-        for lens in (plain,) if large else (plain, wild):
+        found = {
+            name: np.empty((*depth.shape, *channels), dtype)
+            for name, (dtype, channels) in MOTION_OUTPUTS.items()
+        }
+        for lens in (PLAIN,) if large else (PLAIN, WILD):
             for other in others[:1] if large else (*others, (depth, ids)):
-                for to in (plain, wild):
+                for to in (PLAIN, WILD):
                     move_points(
                         *(depth, ids, rows, motions, displacements, lens, to, *other, np.nan),
+                        found,
+                        duration_s=-1e-30,
                         threads=THREADS[1],
                     )
             transform_points(depth, ids, rows, motions, lens, threads=THREADS[1])
@@ -154,13 +148,12 @@ def drive_ambient_visibility() -> None:
     """Radii that are endless or none, depths that are no depths."""
     baked = np.zeros(65536, np.bool_)
     baked[0] = True
-    plain = (300.0, 2.0, 2.0, 0.3, 1.5, 48.0, 0.08, 1.3, 0.03, 4.0)
-    wild = (np.nan, np.inf, -1.0, np.inf, 1.5, 48.0, np.nan, 1e30, np.nan, 1.0)
+    plain = AmbientSettings(0.3, 1.5, 48.0, 0.08, 1.3, 0.03, 4)
+    wild = AmbientSettings(np.inf, 1.5, 48.0, np.nan, 1e30, np.nan, 1)
     for surface in surfaces(*SIZES, LARGEST):
-        for numbers in (plain,) if surface.shape[:2] == LARGEST else (plain, wild):
-            find_ambient_visibility(
-                surface, baked, np.array(numbers, np.float32), PATTERN, threads=THREADS[1]
-            )
+        large = surface.shape[:2] == LARGEST
+        for lens, settings in ((PLAIN, plain),) if large else ((PLAIN, plain), (WILD, wild)):
+            find_ambient_visibility(surface, baked, lens, settings, PATTERN, threads=THREADS[1])
 
 
 def drive_pictures() -> None:

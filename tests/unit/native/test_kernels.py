@@ -21,7 +21,7 @@ from sailenv_ros.native import (
     resolve,
 )
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.render.picture.ambient_occlusion import PATTERN, kernel_numbers
+from sailenv_ros.render.picture.ambient_occlusion import PATTERN, kernel_settings
 from sailenv_ros.render.picture.tone import code_table
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.labels import instance_colours
@@ -55,31 +55,11 @@ def blocky_surface(rng: np.random.Generator, height: int, width: int) -> np.ndar
     return np.stack([depth, ids], axis=-1).astype(np.float32)
 
 
-def annotation_input(rng: np.random.Generator, height: int, width: int) -> tuple:
-    surface = blocky_surface(rng, height, width)
-    rows = np.zeros(65536, np.uint16)
-    rows[:40] = np.arange(1, 41)
-    rows[7] = 0
-    rows[9] = 60000  # beyond the motions
-    motions = rng.normal(0.0, 0.02, (41, 3, 4))
-    motions[::3] = 0.0
-    motions[0] = np.nan  # of what has no past: must not be looked at
-    intrinsics = CameraIntrinsics(width=max(width, 8), height=max(height, 8))
-    lens = np.array([intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.05, 60.0])
-    factor = np.where(rng.random((height, width)) < 0.5, 1.0, 0.9)
-    past = (surface[..., 0] * factor).astype(np.float32)
-    categories = rng.integers(0, 256, 65536).astype(np.uint8)
-    return surface, categories, rows, motions, lens, 1.0 / 30.0, 0.01, past
-
-
 def empty_views(height: int, width: int) -> Arrays:
     return {
         "depth": np.empty((height, width), np.float32),
         "category": np.empty((height, width), np.uint8),
         "instance": np.empty((height, width), np.uint16),
-        "flow": np.empty((height, width, 2), np.float32),
-        "flow_valid": np.empty((height, width), np.bool_),
-        "occlusion": np.empty((height, width), np.bool_),
     }
 
 
@@ -87,15 +67,16 @@ def empty_views(height: int, width: int) -> Arrays:
 @pytest.mark.usefixtures("instruction_set")
 def test_annotations_are_those_of_the_definition(size: tuple[int, int]) -> None:
     """All views, bit by bit; and each of them alone."""
-    given = annotation_input(np.random.default_rng(size), *size)
+    rng = np.random.default_rng(size)
+    lens = CameraIntrinsics(near_m=0.05, far_m=60.0).lens_record
+    categories = rng.integers(0, 256, 65536).astype(np.uint8)
+    given = (blocky_surface(rng, *size), categories, lens)
     expected = empty_views(*size)
     reference.annotate_pixels(*given, expected, threads=1)
-    # Everything happens in this picture.
-    assert expected["flow_valid"].any()
-    assert not expected["flow_valid"].all()
     if size[0] > 60:
-        assert expected["occlusion"][expected["flow_valid"]].any()
-        assert not expected["occlusion"][expected["flow_valid"]].all()
+        # Everything happens in this picture.
+        assert np.isnan(expected["depth"]).any()
+        assert np.isinf(expected["depth"]).any()
     for threads in THREADS:
         got = empty_views(*size)
         annotation.annotate_pixels(*given, got, threads=threads)
@@ -105,17 +86,6 @@ def test_annotations_are_those_of_the_definition(size: tuple[int, int]) -> None:
         some = {key: array for key, array in empty_views(*size).items() if key in ("depth", name)}
         annotation.annotate_pixels(*given, some, threads=2)
         assert some[name].tobytes() == expected[name].tobytes(), name
-
-
-@pytest.mark.usefixtures("instruction_set")
-def test_without_a_past_picture_everything_counts_as_hidden() -> None:
-    """And flow is what it is."""
-    given = annotation_input(np.random.default_rng(3), 40, 60)
-    for kernels in (annotation, reference):
-        views = empty_views(40, 60)
-        kernels.annotate_pixels(*given[:-1], None, views, threads=2)
-        assert views["occlusion"].all()
-        assert views["flow_valid"].any()
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -128,16 +98,13 @@ def test_ambient_visibility_is_that_of_the_definition(
     rng = np.random.default_rng(size)
     surface = blocky_surface(rng, *size)
     baked = rng.random(65536) < share_baked
-    numbers = kernel_numbers(CameraIntrinsics(width=size[1], height=size[0]), 0.8, 0.6)
-    visibility, inverse = reference.find_ambient_visibility(
-        surface, baked, numbers, PATTERN, threads=1
-    )
+    intrinsics = CameraIntrinsics(width=size[1], height=size[0])
+    given = (intrinsics.lens_record, kernel_settings(intrinsics, 0.8, 0.6), PATTERN)
+    visibility, inverse = reference.find_ambient_visibility(surface, baked, *given, threads=1)
     if share_baked == 0.0 and size[0] > 40:
         assert visibility.min() < 200
     for threads in THREADS:
-        got = ambient_visibility.find_ambient_visibility(
-            surface, baked, numbers, PATTERN, threads=threads
-        )
+        got = ambient_visibility.find_ambient_visibility(surface, baked, *given, threads=threads)
         np.testing.assert_array_equal(got[0], visibility)
         np.testing.assert_array_equal(got[1], inverse)
 
@@ -151,9 +118,10 @@ def test_pictures_are_those_of_the_definition(size: tuple[int, int], shaded: boo
     surface = blocky_surface(rng, *size)
     radiance = picture_radiance(rng, surface)
     table = code_table(PictureSettings())
-    numbers = kernel_numbers(CameraIntrinsics(width=size[1], height=size[0]), 1.0, 0.6)
+    intrinsics = CameraIntrinsics(width=size[1], height=size[0])
+    settings = kernel_settings(intrinsics, 1.0, 0.6)
     shade = reference.find_ambient_visibility(
-        surface, np.zeros(65536, np.bool_), numbers, PATTERN, threads=1
+        *(surface, np.zeros(65536, np.bool_), intrinsics.lens_record, settings, PATTERN), threads=1
     )
     given = (radiance, table, *(shade if shaded else (None, None)), surface)
     expected = reference.make_picture(*given, same_surface=0.04, threads=1)

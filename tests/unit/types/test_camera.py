@@ -45,6 +45,28 @@ def test_unprojection_undoes_projection(lens: CameraIntrinsics, depth: float) ->
     np.testing.assert_allclose(lens.project(points), np.stack([u, v], axis=-1), atol=1e-6)
 
 
+@given(LENSES)
+def test_rays_are_those_of_the_whole_picture_in_any_part_of_it(lens: CameraIntrinsics) -> None:
+    """By a window and by places of pixels: the same bits; between pixels they project back."""
+    rays = lens.rays()
+    rows, columns = slice(1, lens.height - 2), slice(2, lens.width)
+    np.testing.assert_array_equal(lens.rays(rows, columns), rays[rows, columns])
+    v, u = np.mgrid[0 : lens.height, 0 : lens.width]
+    np.testing.assert_array_equal(lens.rays_through(np.stack([u, v], axis=-1)), rays)
+    places = np.array([[0.25, -3.5], [lens.width + 7.5, 2.75]])
+    np.testing.assert_allclose(lens.project(lens.rays_through(places)), places, atol=1e-6)
+
+
+@given(LENSES)
+def test_kernels_are_given_the_numbers_of_the_lens(lens: CameraIntrinsics) -> None:
+    """Each under its name, read-only, and made once."""
+    record = lens.lens_record
+    for name in ("fx", "fy", "cx", "cy", "near_m", "far_m"):
+        assert record[name][0] == getattr(lens, name)
+    assert not record.flags.writeable
+    assert lens.lens_record is record
+
+
 @given(LENSES, st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(0.1, 50.0)))
 def test_the_opengl_matrix_says_the_same_as_the_projection(lens: CameraIntrinsics, point) -> None:  # type: ignore[no-untyped-def]  # drawn tuple
     """Clip coordinates through the viewport give the same pixel; w is the depth."""

@@ -1,9 +1,29 @@
 // How much of the light from around reaches each surface past its neighbours in the picture; see
 // render/ambient_occlusion.py for the method. Works at half resolution, on eight samples at a time.
-#include "../abi.h"
 #include "../threads.h"
 #include "lanes.h"
+#include "lens.h"
+#include "record.h"
 #include "scratch.h"
+
+#define AMBIENT_FIELDS(FIELD)                                                           \
+    FIELD(int64_t, height)                                                              \
+    FIELD(int64_t, width)                                                               \
+    FIELD(const float*, surface) /* (H, W, 2): depth [m], id */                         \
+    FIELD(const uint8_t*, baked) /* (65536,) */                                         \
+    FIELD(const float*, pattern) /* (16, 2, TAPS) */                                    \
+    FIELD(const sailenv::Lens*, lens)                                                   \
+    FIELD(double, radius_m)                                                             \
+    FIELD(double, least_reach_px) /* of the radius, in samples */                       \
+    FIELD(double, reach_px)                                                             \
+    FIELD(double, bias)                                                                 \
+    FIELD(double, scale)        /* how much one tap that hides everything takes away */ \
+    FIELD(double, same_surface) /* share of its depth a sample lies off another's */    \
+    FIELD(int64_t, step)        /* from one sample to the next of the second average */ \
+    FIELD(float*, inverse)      /* (h, w), half the size, rounded up */                 \
+    FIELD(uint8_t*, visibility)
+
+SAILENV_RECORD(Ambient, ambient_visibility, AMBIENT_FIELDS)
 
 namespace {
 
@@ -15,7 +35,7 @@ constexpr int64_t PAD = 16;       // samples beyond both ends of a row that coun
 constexpr int64_t INSTANCES = 65536;
 
 struct Settings {
-    float focal, cx, cy;  // of the samples [px]
+    sailenv::FastLens lens;  // of the samples
     float radius_m;
     float least_reach_px, reach_px;
     float bias, scale;  // scale: how much one tap that hides everything takes away
@@ -86,9 +106,8 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
     const float* below = v + 1 < s.rows ? row + s.columns : row;
     const uint8_t* tiles = s.tiles + v / TILE * s.tile_columns;
     const f8 zero = splat(0.0f), one = splat(1.0f);
-    const float per_f = 1.0f / set.focal;
     const float per_r2 = 1.0f / (set.radius_m * set.radius_m);
-    const float y = (static_cast<float>(v) - set.cy) * per_f;
+    const float y = set.lens.ray_y(static_cast<float>(v));
     const f8 wide = splat(static_cast<float>(s.columns)), high = splat(static_cast<float>(s.rows));
     const f8 right = wide - 1.0f, bottom = high - 1.0f;
     const int32_t columns = static_cast<int32_t>(s.columns);
@@ -108,7 +127,7 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         }
         const f8 own = load_some(row + u, count);
         const f8 w = abs8(own);
-        const f8 reach = min8(set.radius_m * set.focal * w, splat(set.reach_px));
+        const f8 reach = min8(set.radius_m * set.lens.fx * w, splat(set.reach_px));
         const i8 active = reach >= set.least_reach_px;
         if (!any(active)) {
             memset(out + u, 255, static_cast<size_t>(count));
@@ -134,10 +153,10 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         f8 b = slope(w - abs8(load_some(above + u, count)), abs8(load_some(below + u, count)) - w,
                      v == 0 ? ~none : none, v + 1 == s.rows ? ~none : none);
         // The plane is where (a, b, c) · point = 1.
-        a = a * set.focal;
-        b = b * set.focal;
+        a = a * set.lens.fx;
+        b = b * set.lens.fy;
         const f8 column = counting() + static_cast<float>(u);
-        const f8 x = (column - set.cx) * per_f;
+        const f8 x = set.lens.ray_x(column);
         const f8 c = w - a * x - b * y;
         const f8 plane_m = one / sqrt8(a * a + b * b + c * c);
         const f8 z = one / w;
@@ -157,8 +176,8 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             f8 other;
             for (int k = 0; k < 8; k++) other[k] = s.depth[place[k]];
             const f8 tz = abs8(other);
-            const f8 qx = (to_float(tu) - set.cx) * per_f * tz;
-            const f8 qy = (to_float(tv) - set.cy) * per_f * tz;
+            const f8 qx = set.lens.ray_x(to_float(tu)) * tz;
+            const f8 qy = set.lens.ray_y(to_float(tv)) * tz;
             const f8 dx = qx - px, dy = qy - py, dz = tz - z;
             const f8 d2 = dx * dx + dy * dy + dz * dz + self_m2;
             const f8 fall = max8(one - d2 * per_r2, zero);
@@ -244,17 +263,17 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
 
 }  // namespace
 
-// `surface` is (height, width, 2); `inverse` and `visibility` are of half that size, rounded up.
-// `numbers` holds fx, cx, cy of the samples, radius_m, least_reach_px, reach_px, bias, scale,
-// same_surface, step of the second average.
-SAILENV_KERNEL(ambient_visibility)
-(int64_t threads, int64_t height, int64_t width, const float* surface, const uint8_t* baked,
- const float* numbers, const float* pattern, float* inverse, uint8_t* visibility) {
-    if (height < 1 || width < 1) return sailenv::STATUS_INVALID_ARGUMENT;
-    const Settings set{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4],
-                       numbers[5], numbers[6], numbers[7], numbers[8]};
-    const int64_t step = numbers[9] >= 1.0f && numbers[9] <= MOST_STEP ? int64_t(numbers[9]) : 0;
-    if (step == 0) return sailenv::STATUS_INVALID_ARGUMENT;
+SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
+    const Ambient& in = *given;
+    const int64_t height = in.height, width = in.width, step = in.step;
+    if (height < 1 || width < 1 || step < 1 || step > MOST_STEP) {
+        return sailenv::STATUS_INVALID_ARGUMENT;
+    }
+    const auto in_single = [](double x) { return static_cast<float>(x); };
+    const Settings set{
+        sailenv::FastLens(*in.lens, 0.5), in_single(in.radius_m), in_single(in.least_reach_px),
+        in_single(in.reach_px),           in_single(in.bias),     in_single(in.scale),
+        in_single(in.same_surface)};
     const int64_t rows = (height + 1) / 2, columns = (width + 1) / 2;
     const int64_t tile_rows = (rows + TILE - 1) / TILE, tile_columns = (columns + TILE - 1) / TILE;
     const int64_t tile_count = tile_rows * tile_columns;
@@ -266,15 +285,16 @@ SAILENV_KERNEL(ambient_visibility)
     if (!depth || !tiles || !raw || !bands) return sailenv::STATUS_OUT_OF_MEMORY;
     uint8_t* own = tiles.get() + tile_count;
     memset(tiles.get(), 0, static_cast<size_t>(2 * tile_count));
-    const Samples samples{rows, columns, inverse, depth.get(), tiles.get(), tile_columns};
+    const Samples samples{rows, columns, in.inverse, depth.get(), tiles.get(), tile_columns};
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
-        halve_rows(surface, width, baked, samples, own + first / TILE * tile_columns, first, last);
+        halve_rows(in.surface, width, in.baked, samples, own + first / TILE * tile_columns, first,
+                   last);
     });
     const int64_t reach = static_cast<int64_t>(set.reach_px) / TILE;
     dilate_tiles(own, tile_rows, tile_columns, reach, tiles.get());
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t v = first; v < last; v++) {
-            find_row(samples, set, pattern, v, raw.get() + v * columns);
+            find_row(samples, set, in.pattern, v, raw.get() + v * columns);
         }
     });
     uint8_t* means = raw.get() + rows * columns;
@@ -285,6 +305,6 @@ SAILENV_KERNEL(ambient_visibility)
         });
     };
     average(raw.get(), 1, means);
-    average(means, step, visibility);
+    average(means, step, in.visibility);
     return sailenv::STATUS_OK;
 }

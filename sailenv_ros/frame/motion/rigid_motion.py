@@ -1,0 +1,150 @@
+"""How rigid instances move from one instant to another, as a camera sees it: tables for kernels.
+
+A surface point at X in the optical frame of the camera c at one instant belongs to an instance of
+pose W (world_from_instance). At another instant, with camera c' and pose W', it is at
+
+    T X,    T = camera'_from_world  W'  W⁻¹  world_from_camera
+
+in that camera's optical frame, and has been displaced in the world by W' W⁻¹ - 1. Tables hold
+D = T - 1 and the displacement in the axes of c, so that both are exactly 0 where nothing moves.
+Motion between any two frames and the flow of each frame, which is its motion to the one before,
+come of these tables and one kernel (`native.motion_kernels.move_points`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.motion_kernels import transform_points
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import invert
+
+__all__ = ["OCCLUSION_TOLERANCE", "ObservedPoses", "MotionTable", "motion_table", "object_points"]
+
+OCCLUSION_TOLERANCE = 0.01
+"""Share of its depth by which a point must lie behind all four nearest pixels of the other picture
+to count as hidden there: a slanted surface differs by less within one pixel up to about 80 degrees
+at common fields of view, and thin gaps smaller than this are not told apart."""
+
+_SKY_ROW = 1
+_FIRST_ROW = 2
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ObservedPoses:
+    """A camera and the poses of all instances at one instant.
+
+    Attributes
+    ----------
+    camera : Camera
+    ids : (N,) uint16
+        Instance ids, each once.
+    world_from_instance : (N, 4, 4) float64
+        Rigid.
+    histories : (N,) int64
+        Numbers that change when an instance's past is cut off.
+    """
+
+    camera: Camera
+    ids: NDArray[np.uint16]
+    world_from_instance: NDArray[np.float64]
+    histories: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MotionTable:
+    """What the kernel takes; computed by `motion_table`.
+
+    Attributes
+    ----------
+    row_of_instance : (65536,) uint16
+        Row of each instance id; 0 for what has no motion. Id 0 is the background's.
+    motions : (R, 3, 4) float64
+        D of the docstring above.
+    """
+
+    row_of_instance: NDArray[np.uint16]
+    motions: NDArray[np.float64]
+    _camera: Camera
+    _first: NDArray[np.float64]
+    _last: NDArray[np.float64]
+
+    @cached_property
+    def displacements(self) -> NDArray[np.float64]:
+        """(R, 3, 4) float64: displacement in the world, in the axes of the first camera."""
+        result = np.zeros_like(self.motions)
+        moves = np.flatnonzero((self._first != self._last).any(axis=(1, 2)))
+        if len(moves):
+            carried = self._last[moves] @ invert(self._first[moves])
+            moved = (carried - np.eye(4)) @ self._camera.world_from_camera
+            axes = self._camera.camera_from_world[:3, :3]
+            result[_FIRST_ROW + moves] = axes @ moved[:, :3]
+        return result
+
+
+def motion_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
+    """Compute how what the one instant's camera sees has moved at the other.
+
+    Instances that there are at both, with one history, have a motion; and so has the background, by
+    the camera's turn.
+    """
+    _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
+    same = begin.histories[rows] == end.histories[others]
+    rows, others = rows[same], others[same]
+    row_of_instance = np.zeros(65536, np.uint16)
+    row_of_instance[0] = _SKY_ROW
+    row_of_instance[begin.ids[rows]] = np.arange(len(rows)) + _FIRST_ROW
+    motions = np.zeros((_FIRST_ROW + len(rows), 3, 4))
+    first, last = begin.world_from_instance[rows], end.world_from_instance[others]
+    world_from_camera = begin.camera.world_from_camera
+    to_camera = end.camera.camera_from_world
+    camera_is_still = np.array_equal(begin.camera.camera_from_world, to_camera)
+    if not camera_is_still:
+        turn = to_camera[:3, :3] @ world_from_camera[:3, :3]
+        motions[_SKY_ROW, :, :3] = turn - np.eye(3)
+    if len(rows):
+        chain = to_camera @ last @ invert(first)
+        motion = (chain @ world_from_camera)[:, :3] - np.eye(4)[:3]
+        if camera_is_still:
+            # Rounding must not make a still world move.
+            motion[(first == last).all(axis=(1, 2))] = 0.0
+        motions[_FIRST_ROW:] = motion
+    return MotionTable(
+        row_of_instance=row_of_instance,
+        motions=motions,
+        _camera=begin.camera,
+        _first=first,
+        _last=last,
+    )
+
+
+def object_points(
+    depth: NDArray[np.float32], instance: NDArray[np.uint16], poses: ObservedPoses, *, threads: int
+) -> NDArray[np.float32]:
+    """Return each pixel's surface point in its instance's own frame.
+
+    Parameters
+    ----------
+    depth, instance : (H, W) float32, uint16
+        The camera's views.
+    poses : ObservedPoses
+    threads : int
+
+    Returns
+    -------
+    points : (H, W, 3) float32
+        [m]; nan where nothing was hit, or its depth is not known.
+    """
+    count = len(poses.ids)
+    rows = np.zeros(65536, np.uint16)
+    rows[poses.ids] = np.arange(1, count + 1)
+    transforms = np.zeros((count + 1, 3, 4))
+    if count:
+        own_from_camera = invert(poses.world_from_instance) @ poses.camera.world_from_camera
+        transforms[1:] = own_from_camera[:, :3]
+    lens = poses.camera.intrinsics.lens_record
+    return transform_points(depth, instance, rows, transforms, lens, threads=threads)
