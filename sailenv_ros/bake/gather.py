@@ -93,9 +93,8 @@ class Surroundings:
             self.faces, self.two_sided, self.paired.other, self.paired.corner, self.places,
             self.index,
         )  # fmt: skip
-        triangle, second, third = (
-            np.ascontiguousarray(of) for of in (hits.triangle, hits.second, hits.third)
-        )
+        triangle = np.ascontiguousarray(hits.triangle)
+        second, third = (np.ascontiguousarray(weight) for weight in (hits.second, hits.third))
         return met_texels(triangles, triangle, second, third, directions)
 
 

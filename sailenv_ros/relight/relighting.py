@@ -27,6 +27,7 @@ from sailenv_ros.native.relight_kernels import (
     smooth_change,
     spread_change,
 )
+from sailenv_ros.native.relight_types import MappedTexels, PatchMap
 from sailenv_ros.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.relight.quality import Quality
 from sailenv_ros.relight.ray_world import ray_world
@@ -230,16 +231,19 @@ class _Relighting:
         )  # fmt: skip
         # Both in one go: they share their neighbours.
         smooth_found, both = smooth_change(
-            self._scene.patches.of_map, self._patches(), self._quality.smoothing, found, nearness,
+            self._patches(), self._quality.smoothing, found, nearness,
             np.concatenate([change, area], axis=1), threads=self._threads,
         )  # fmt: skip
         channels = change.shape[1]
         change, area = (np.ascontiguousarray(part) for part in np.split(both, [channels], axis=1))
         return smooth_found, change, area
 
-    def _patches(self) -> tuple[Floats, Floats, Floats, NDArray[np.int32]]:
+    def _patches(self) -> PatchMap:
         patches = self._scene.patches
-        return patches.places, self._patch_positions, self._patch_normals, patches.owners
+        return PatchMap(
+            patches.of_map, patches.places, self._patch_positions, self._patch_normals,
+            patches.owners,
+        )  # fmt: skip
 
     def _take_area(self, direct: Floats, found: NDArray[np.uint8], area: Floats) -> None:
         for place, number in enumerate(self._area):
@@ -387,12 +391,9 @@ class _Relighting:
         change: Floats,
         layers: list[NDArray[np.float16]],
     ) -> None:
-        scene, patches = self._scene, self._scene.patches
-        spread_change(
-            scene.side, (scene.places, self._positions, self._normals, scene.owners),
-            patches.of_map,
-            self._patches(), found, change, layers, threads=self._threads,
-        )  # fmt: skip
+        scene = self._scene
+        texels = MappedTexels(scene.places, self._positions, self._normals, scene.owners)
+        spread_change(texels, self._patches(), found, change, layers, threads=self._threads)
 
     def _with_direct(
         self, layer: LightLayer, deltas: tuple[NDArray[np.uint8], Floats, Floats] | None
