@@ -208,6 +208,8 @@ setup(
     package_data={
         "sailenv_ros": ["py.typed"],
         "sailenv_ros.dataset": ["preview/*"],
+        # The law of light, which shaders include.
+        "sailenv_ros.native": ["src/kernels/light_law.h"],
         "sailenv_ros.render": ["shaders/*"],
         "sailenv_ros.viewer": ["page/*"],
         "sailenv_msgs_py": ["py.typed"],

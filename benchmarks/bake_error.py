@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from sailenv_ros.bake.pipeline import bake
 from sailenv_ros.bake.settings import BakeSettings
 from sailenv_ros.baked_light import BakedLight
+from sailenv_ros.colour import LUMINANCE
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.snapshot import WorldSnapshot
 
 PASS_RAYS = 256
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 LEAST = 0.05
 PERCENTILES = (50, 95, 99)
 

@@ -16,6 +16,7 @@ from sailenv_ros.errors import InvalidRequest
 
 __all__ = [
     "LINEAR_OF_SRGB8",
+    "LUMINANCE",
     "hex_from_linear",
     "linear_from_hex",
     "linear_from_srgb",
@@ -43,6 +44,10 @@ def srgb_from_linear(linear: ArrayLike) -> NDArray[np.float64]:
 LINEAR_OF_SRGB8: NDArray[np.float64] = linear_from_srgb(np.arange(256) / 255.0)
 """(256,) float64: linear light, 0 to 1, by the 8-bit code."""
 LINEAR_OF_SRGB8.flags.writeable = False
+
+LUMINANCE: NDArray[np.float64] = np.array([0.2126, 0.7152, 0.0722])
+"""(3,) float64: share of linear red, green and blue in luminance (ITU-R BT.709)."""
+LUMINANCE.flags.writeable = False
 
 
 def linear_from_srgb8(what: str, colour: Iterable[Any]) -> Rgb:

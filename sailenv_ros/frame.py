@@ -39,7 +39,7 @@ __all__ = [
     "ALWAYS_MADE",
     "FIVE_VIEWS",
     "VIEWS",
-    "DrawAlone",
+    "DrawAmodal",
     "Frame",
     "RENDERED_VIEWS",
     "ImageCodec",
@@ -52,7 +52,7 @@ __all__ = [
 ]
 
 
-class DrawAlone(Protocol):
+class DrawAmodal(Protocol):
     """Draws the objects of a frame, each alone."""
 
     def __call__(self, only: int = 0) -> AmodalMasks:
@@ -92,7 +92,7 @@ class Frame:
         Record of what was drawn at random for it, which `randomise` takes; None if nothing was.
     lesson : LessonState or None
         Which lesson it is of; None if the scene has none.
-    draw_alone : callable or None
+    draw_amodal : callable or None
         Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
     """
 
@@ -111,7 +111,7 @@ class Frame:
     states: InstanceStates | None = None
     randomised: Mapping[str, Any] | None = None
     lesson: LessonState | None = None
-    draw_alone: DrawAlone | None = None
+    draw_amodal: DrawAmodal | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width
@@ -171,12 +171,12 @@ class Frame:
         SimulationClosed
             If the simulation has ended.
         """
-        if self.draw_alone is None:
+        if self.draw_amodal is None:
             raise InvalidState(
                 "the frame has no amodal masks: ask a frame of a Simulation or of an Agent for "
                 "them, or record them"
             )
-        return self.draw_alone()
+        return self.draw_amodal()
 
     def amodal_of(self, instance_id: int) -> AmodalMasks:
         """Return what one object covers, perhaps among others; quicker than `amodal`.
@@ -188,9 +188,9 @@ class Frame:
         InvalidState, SimulationClosed
             As `amodal`.
         """
-        if self.draw_alone is None or "amodal" in self.__dict__:
+        if self.draw_amodal is None or "amodal" in self.__dict__:
             return self.amodal
-        return self.draw_alone(instance_id)
+        return self.draw_amodal(instance_id)
 
     @property
     def objects_with_amodal(self) -> ObjectTable:

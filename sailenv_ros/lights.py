@@ -5,7 +5,7 @@ Colours are linear RGB. Positions and directions are in the world frame.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
@@ -16,12 +16,15 @@ from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.validation import checked_number, vector
 
 __all__ = [
+    "LAMP",
     "LIGHT_ATTRIBUTES",
+    "LIGHT_KINDS",
     "LIGHT_LIMITS",
     "Environment",
     "Light",
     "LightType",
     "SkyMap",
+    "lamp_rows",
     "light_named",
 ]
 
@@ -104,6 +107,12 @@ class Light:
         object.__setattr__(self, "direction", (x, y, z))
         object.__setattr__(self, "position_m", position)
 
+    @property
+    def power(self) -> tuple[float, float, float]:
+        """Colour times intensity, (3,): of the unit of `intensity`."""
+        red, green, blue = self.colour
+        return red * self.intensity, green * self.intensity, blue * self.intensity
+
 
 UNIT_TOLERANCE = 1e-12
 """A direction whose length differs from 1 by no more stays as it is: dividing a unit vector by its
@@ -112,6 +121,58 @@ length again changes last bits, and a light that only became brighter must not s
 
 LIGHT_ATTRIBUTES: tuple[str, ...] = tuple(f.name for f in fields(Light) if f.name != "name")
 """Names of everything that can be changed of a light, in their order."""
+
+LIGHT_KINDS: dict[LightType, int] = {kind: k for k, kind in enumerate(get_args(LightType))}
+"""Number of each type of light in kernels and shaders, as light_law.h has them."""
+
+LAMP = np.dtype(
+    [
+        ("colour", "<f4", 3),
+        ("kind", "<i4"),
+        ("position", "<f4", 3),
+        ("range_m", "<f4"),
+        ("direction", "<f4", 3),
+        ("inner_cosine", "<f4"),
+        ("outer_cosine", "<f4"),
+        ("padding", "<f4", 3),
+    ]
+)
+"""A lamp in kernels and shaders: the structure of this name in light_law.h."""
+
+
+def lamp_rows(
+    lights: Sequence[Light], frame_from_world: NDArray[np.float64] | None = None
+) -> NDArray[np.void]:
+    """Return lights as kernels and shaders take them.
+
+    Parameters
+    ----------
+    lights : sequence of Light
+    frame_from_world : (4, 4) float64 or None
+        Rigid transform to the frame that positions and directions are wanted in; None for the
+        world's.
+
+    Returns
+    -------
+    rows : (N,) LAMP
+        The colour is radiant intensity, of directional lights irradiance. Seen from afar an area
+        light is a point with the area's radiant intensity.
+    """
+    rows = np.zeros(len(lights), LAMP)
+    for row, light in zip(rows, lights, strict=True):
+        area_m2 = light.width_m * light.height_m if light.type == "area" else 1.0
+        position, direction = np.array(light.position_m), np.array(light.direction)
+        if frame_from_world is not None:
+            turn = frame_from_world[:3, :3]
+            position, direction = turn @ position + frame_from_world[:3, 3], turn @ direction
+        row["colour"] = np.array(light.power) * area_m2
+        row["kind"] = LIGHT_KINDS[light.type]
+        row["position"], row["direction"] = position, direction
+        # The law divides by the range; within a millimetre nothing is lit by it.
+        row["range_m"] = max(light.range_m, 1e-3)
+        row["inner_cosine"] = np.cos(np.radians(light.inner_cone_deg))
+        row["outer_cosine"] = np.cos(np.radians(light.outer_cone_deg))
+    return rows
 
 
 def light_named(name: str, lights: Iterable[Light]) -> Light:

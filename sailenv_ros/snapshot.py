@@ -52,11 +52,8 @@ class DrawnInstance:
         """Return (3,): radiant intensity of the lights whose lamp it is, summed [W/sr]."""
         if not self.lit_by:
             return (0.0, 0.0, 0.0)
-        own = [light for light in lights if light.name in self.lit_by]
-        red, green, blue = (
-            float(sum(light.colour[channel] * light.intensity for light in own))
-            for channel in range(3)
-        )
+        own = [light.power for light in lights if light.name in self.lit_by]
+        red, green, blue = (float(sum(power[channel] for power in own)) for channel in range(3))
         return red, green, blue
 
     @property

@@ -18,7 +18,7 @@ from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.agent.frame_sync import Bundle
 from sailenv_ros.camera import CameraIntrinsics
-from sailenv_ros.frame import VIEWS, DrawAlone, Frame
+from sailenv_ros.frame import VIEWS, DrawAmodal, Frame
 from sailenv_ros.scene_info import SceneInfo
 from sailenv_ros.system.memory import keep_freed_memory
 
@@ -41,7 +41,7 @@ def frame_of_info(
     views: Mapping[str, NDArray[Any]],
     intrinsics: CameraIntrinsics,
     scene_info: SceneInfo | None,
-    draw_alone: DrawAlone | None = None,
+    draw_amodal: DrawAmodal | None = None,
 ) -> Frame:
     """Make one frame of its info and its arrays, which nobody else has.
 
@@ -54,7 +54,7 @@ def frame_of_info(
         Of the agent that the frame is of.
     scene_info : SceneInfo or None
         The one of the frame's revision, if it is known.
-    draw_alone : callable or None
+    draw_amodal : callable or None
         As `Frame` has it.
     """
     _keep_freed_memory_once()
@@ -71,7 +71,7 @@ def frame_of_info(
         views={view: views[view] for view in VIEWS if view in views},
         timings_s={"render": info.render_s},
         info=scene_info,
-        draw_alone=draw_alone,
+        draw_amodal=draw_amodal,
         states=states_of_frame_info(info),
         randomised=randomised_of_frame_info(info),
         lesson=lesson_of_frame_info(info),

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
+from sailenv_ros.colour import LUMINANCE
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.extras import need
 from sailenv_ros.lights import SkyMap
@@ -31,8 +32,6 @@ MEAN_RADIANCE = 0.65
 
 SUN_RADIANCE = 6.0
 """Brighter than this times the median is the sun: lights stand for it, the map does not."""
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def sky_files(folders: Iterable[Path]) -> Mapping[str, Path]:

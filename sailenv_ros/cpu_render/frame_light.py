@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
 from sailenv_ros.cpu_render.part_table import PartTable
-from sailenv_ros.lights import Light, SkyMap
+from sailenv_ros.lights import LAMP, Light, SkyMap, lamp_rows
 from sailenv_ros.native.drawing import ROW_PADDING, Drawing
 from sailenv_ros.native.light_maps import LayeredMap, blur_directions, sum_texels
-from sailenv_ros.native.render_types import LAMP, LIGHT, REFLECTION_POINT, address, record
+from sailenv_ros.native.render_types import LIGHT, REFLECTION_POINT, address, record
 from sailenv_ros.render import reflection_map as reflections
 from sailenv_ros.render.baked_state import BakedState
-from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
+from sailenv_ros.render.lamps import MAX_LIGHTS, strongest_lamps
 from sailenv_ros.render.lightmap_compositing import (
     CompositedLight,
     composite_lightmap,
@@ -127,7 +127,7 @@ class FrameLight:
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
         self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None
-        self._lamps = np.zeros(MAX_LIGHTS, LAMP)
+        self._lamps = np.zeros(0, LAMP)
         self._warned_of: Sequence[Light] | None = None
         self._light = np.zeros(1, LIGHT)
         self._light_map: LayeredMap | None = None
@@ -197,7 +197,7 @@ class FrameLight:
             exposure=2.0**environment.exposure,
         )
         if main is not None:
-            light["main_colour"][0] = lamp_power(main)
+            light["main_colour"][0] = main.power
             light["main_towards"][0] = -np.asarray(main.direction)
         if environment.sky is not None:
             wanted = environment.sky, seen_exposure(environment)
@@ -218,10 +218,8 @@ class FrameLight:
         if shining > MAX_LIGHTS and self._warned_of != lamps:
             self._warned_of = lamps
             _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, shining)
-        chosen = strongest_lamps(lamps)
-        for row, lamp in zip(self._lamps, chosen, strict=False):
-            _describe(row, lamp)
-        light["lamp_count"] = len(chosen)
+        self._lamps = lamp_rows(strongest_lamps(lamps))
+        light["lamp_count"] = len(self._lamps)
         light["lamps_at"] = address(self._lamps)
 
     def _set_reflections(self, light: NDArray[np.void]) -> None:
@@ -259,7 +257,7 @@ class FrameLight:
         # Nothing that moves casts a shadow into what is mirrored.
         unshadowed = _empty_map()
         light["shadow_at"] = address(unshadowed)
-        lamp, sky = np.zeros(1, LAMP), contents.environment.sky
+        lamp, sky = lamp_rows(()), contents.environment.sky
         if alone is None and sky is not None:
             texels = _sky_texels(sky, None)
             _set_sky(light, texels)
@@ -270,9 +268,9 @@ class FrameLight:
             composited = light_alone(contents.baked, alone, is_main=is_main)
             light["background_plain"], light["background"] = 1, 0.0
             if is_main:
-                light["main_colour"][0] = lamp_power(alone)
+                light["main_colour"][0] = alone.power
             elif composited.live:
-                _describe(lamp[0], alone)
+                lamp = lamp_rows((alone,))
                 light["lamp_count"], light["lamps_at"] = 1, address(lamp)
         light_map = _layered(composited)
         _set_baked(light, composited, light_map)
@@ -302,14 +300,6 @@ def _set_baked(light: NDArray[np.void], composited: CompositedLight, light_map: 
     edges = composited.main_edges  # kept by `composited`, as long as it is shown
     light["edge_index_at"] = address(None if edges is None else edges.index)
     light["edge_blocks_at"] = address(None if edges is None else edges.blocks)
-
-
-def _describe(row: np.void, lamp: Light) -> None:
-    row["colour"], row["kind"] = lamp_power(lamp), LAMP_KINDS[lamp.type]
-    row["position"], row["range"] = lamp.position_m, max(lamp.range_m, 1e-3)
-    row["direction"] = lamp.direction
-    row["inner_cosine"] = np.cos(np.radians(lamp.inner_cone_deg))
-    row["outer_cosine"] = np.cos(np.radians(lamp.outer_cone_deg))
 
 
 def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16]) -> None:

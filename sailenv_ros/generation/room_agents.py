@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
+from sailenv_ros.cpu_render.amodal_renderer import AmodalRenderer
 from sailenv_ros.geometry import look_at
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
 from sailenv_ros.render.backend import RenderBackend
@@ -57,9 +57,9 @@ class StandingWorld(ViewScene):
         """Return these views of the world."""
         return self._backend.render(self.snapshot, None, camera, views).views
 
-    def draw_alone(self, camera: Camera, only: int) -> AmodalMasks:
+    def draw_amodal(self, camera: Camera, only: int) -> AmodalMasks:
         """Return each object drawn alone, or only the one of that id."""
-        return AloneRenderer().draw(self.snapshot, camera, only)
+        return AmodalRenderer().draw(self.snapshot, camera, only)
 
     def free_space(self, body: BodySize) -> FreeSpace:
         """Return where a body can stand."""

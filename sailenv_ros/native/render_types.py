@@ -14,7 +14,6 @@ __all__ = [
     "CLUSTER",
     "DRAW_LIST",
     "INSTANCES",
-    "LAMP",
     "LAYER_SUM",
     "LIGHT",
     "OUTPUTS",
@@ -86,16 +85,6 @@ INSTANCES = _structure(
 )
 
 DRAW_LIST = _structure(("parts_at", _ADDRESS), ("count", "<i8"))
-
-LAMP = _structure(
-    ("colour", "<f4", 3),
-    ("kind", "<f4"),
-    ("position", "<f4", 3),
-    ("range", "<f4"),
-    ("direction", "<f4", 3),
-    ("inner_cosine", "<f4"),
-    ("outer_cosine", "<f4"),
-)
 
 LAYER_SUM = _structure(
     ("count", "<i8"),

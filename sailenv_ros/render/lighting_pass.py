@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera
-from sailenv_ros.lights import Environment, Light, SkyMap
+from sailenv_ros.lights import LAMP, Environment, Light, SkyMap, lamp_rows
 from sailenv_ros.render.baked_textures import BakedTextures
 from sailenv_ros.render.geometry_pass import Targets
-from sailenv_ros.render.lamps import LAMP_KINDS, MAX_LIGHTS, lamp_power, strongest_lamps
+from sailenv_ros.render.lamps import MAX_LIGHTS, strongest_lamps
 from sailenv_ros.render.programs import ProgramCache, set_uniform
 from sailenv_ros.render.reflection_points import MOST
 from sailenv_ros.render.reflection_texture import ReflectionTexture
@@ -37,15 +37,6 @@ SKY_UNIT = 7
 
 LIGHT_AT_UNIT, STATIC_SHADOW_UNIT = 11, 12
 """Texture units beyond those of materials."""
-
-ROW = np.dtype(
-    [
-        ("colour_kind", "<f4", 4),
-        ("position_range", "<f4", 4),
-        ("direction_inner", "<f4", 4),
-        ("outer_cone", "<f4", 4),
-    ]
-)
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -98,7 +89,7 @@ class LightingPass:
         self._sky_shown: tuple[SkyMap, float | None] | None = None
         self._sky_texture: moderngl.Texture | None = None
         self._warned_of: Sequence[Light] | None = None
-        self._lights = context.buffer(reserve=MAX_LIGHTS * ROW.itemsize, dynamic=True)
+        self._lamps = context.buffer(reserve=MAX_LIGHTS * LAMP.itemsize, dynamic=True)
 
     def draw(self, targets: Targets, camera: Camera, illumination: Illumination) -> None:
         """Light the surfaces of `targets` into its picture."""
@@ -128,7 +119,7 @@ class LightingPass:
 
     def close(self) -> None:
         """Free the buffers."""
-        for resource in (*self._arrays.values(), self._lights, self._sky_texture):
+        for resource in (*self._arrays.values(), self._lamps, self._sky_texture):
             if resource is not None:
                 resource.release()
 
@@ -179,15 +170,16 @@ class LightingPass:
         if len(lamps) > MAX_LIGHTS and self._warned_of != illumination.lamps:
             self._warned_of = illumination.lamps
             _log.warning("only the %d strongest of %d lights are drawn", MAX_LIGHTS, len(lamps))
-        self._lights.write(_light_rows(lamps, camera).tobytes())
-        self._lights.bind_to_uniform_block(0)
+        rows = lamp_rows(strongest_lamps(lamps), camera.camera_from_world)
+        self._lamps.write(rows.tobytes())
+        self._lamps.bind_to_uniform_block(0)
         set_uniform(program, "glow", float(illumination.glows))
-        set_uniform(program, "light_count", min(len(lamps), MAX_LIGHTS))
-        colour, towards = np.zeros(3), np.array([0.0, 0.0, 1.0])
+        set_uniform(program, "lamp_count", len(rows))
+        colour, towards = (0.0, 0.0, 0.0), np.array([0.0, 0.0, 1.0])
         if sun is not None:
-            colour = np.asarray(sun.colour) * sun.intensity
+            colour = sun.power
             towards = -camera.camera_from_world[:3, :3] @ np.asarray(sun.direction)
-        set_uniform(program, "main_colour", tuple(colour))
+        set_uniform(program, "main_colour", colour)
         set_uniform(program, "main_towards", tuple(towards))
         shadow = illumination.shadow
         matrix = shadow.plan.map_from_world @ camera.world_from_camera
@@ -234,18 +226,6 @@ def set_camera(program: moderngl.Program, camera: Camera, environment: Environme
         set_uniform(program, name, getattr(environment, name))
     plain = 1.0 if environment.background == "colour" else 0.0
     set_uniform(program, "background", (*environment.background_colour, plain))
-
-
-def _light_rows(lamps: Sequence[Light], camera: Camera) -> NDArray[np.void]:
-    rows = np.zeros(MAX_LIGHTS, ROW)
-    for row, light in zip(rows, strongest_lamps(lamps), strict=False):
-        row["colour_kind"] = [*lamp_power(light), LAMP_KINDS[light.type]]
-        position = camera.camera_from_world @ [*light.position_m, 1.0]
-        row["position_range"] = [*position[:3], max(light.range_m, 1e-3)]
-        direction = camera.camera_from_world[:3, :3] @ np.asarray(light.direction)
-        row["direction_inner"] = [*direction, np.cos(np.radians(light.inner_cone_deg))]
-        row["outer_cone"] = np.cos(np.radians(light.outer_cone_deg))
-    return rows
 
 
 def _columns(matrix: NDArray[np.float64]) -> tuple[float, ...]:

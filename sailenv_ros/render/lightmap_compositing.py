@@ -229,7 +229,7 @@ def _add(
     *,
     direct: bool,
 ) -> None:
-    power = (np.asarray(light.colour) * light.intensity).astype(np.float32)
+    power = np.array(light.power, np.float32)
     bounced = power * np.float32(light.indirect_multiplier)
     if not power.any():
         return

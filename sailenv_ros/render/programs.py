@@ -15,10 +15,19 @@ __all__ = ["ProgramCache", "shader_source"]
 
 _INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
 
+_FOR_CPP = re.compile(
+    r"^#ifdef __cplusplus\n.*?^(?:#else\n(.*?)^)?#endif\n", re.MULTILINE | re.DOTALL
+)
+
 
 @cache
 def _read(name: str) -> str:
-    text = (resources.files("sailenv_ros.render") / "shaders" / name).read_text(encoding="utf-8")
+    """Return a shader, or a header that kernels share with shaders, with all that it includes."""
+    native = name.endswith(".h")
+    package = "sailenv_ros.native" if native else "sailenv_ros.render"
+    folder = resources.files(package) / ("src/kernels" if native else "shaders")
+    text = (folder / name).read_text(encoding="utf-8")
+    text = _FOR_CPP.sub(lambda match: match[1] or "", text)
     return _INCLUDE.sub(lambda match: _read(match[1]), text)
 
 

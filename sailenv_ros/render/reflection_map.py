@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.baked_light import ProbeGrid
 from sailenv_ros.camera import Camera, CameraIntrinsics
+from sailenv_ros.colour import LUMINANCE
 from sailenv_ros.geometry import Pose
 from sailenv_ros.picture_settings import PictureSettings
 
@@ -39,8 +40,6 @@ ROUGHNESSES = (0.0, 0.15, 0.3, 0.45, 0.6)
 """Of the layers; what is rougher mirrors the light around it, which the light map knows better."""
 
 SAMPLES = 96
-
-LUMA = np.array([0.299, 0.587, 0.114])
 
 EYE_HEIGHT_M = 1.4
 """From where reflections are seen, above the floor of the probes' box."""
@@ -164,12 +163,13 @@ def light_from_around(radiance: NDArray[np.float64]) -> NDArray[np.float64]:
     Returns
     -------
     light : (4,) float64
-        c0, cx, cy, cz: irradiance / pi on a surface of normal n is about c0 + c · n; its luma.
+        c0, cx, cy, cz: irradiance / pi on a surface of normal n is about c0 + c · n; its
+        luminance.
     """
     directions = octahedral_directions(len(radiance)).astype(np.float64)
     # A texel's solid angle shrinks with the cube of its distance from the octahedron's middle.
     share = np.abs(directions).sum(axis=-1) ** 3
-    weighted = radiance @ LUMA * share / share.sum()
+    weighted = radiance @ LUMINANCE * share / share.sum()
     along = np.einsum("vu,vux->x", weighted, directions)
     return np.array([weighted.sum(), *(2.0 * along)])
 

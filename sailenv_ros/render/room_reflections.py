@@ -116,7 +116,7 @@ class RoomReflections:
             if alone is None:
                 alone = replace(light, colour=(1.0, 1.0, 1.0), intensity=1.0)
             alone_of[light] = alone
-            power = np.asarray(light.colour, np.float32) * np.float32(light.intensity)
+            power = np.array(light.power, np.float32)
             if power.any():
                 wanted.append(((alone, light is main), alone, power))
         self._alone_of = alone_of

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.colour import LUMINANCE
 from sailenv_ros.lights import Environment, SkyMap
 
 __all__ = ["FINER", "seen_exposure", "seen_sky"]
@@ -44,8 +45,6 @@ picture, and lenses are sharper."""
 
 BRIGHTEST = 0.85
 """Exposed luminance that no pixel passes."""
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 def seen_exposure(environment: Environment) -> float | None:
@@ -82,7 +81,7 @@ def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:
 
 
 def _without_spots(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
-    light = radiance @ LUMINANCE
+    light = radiance @ LUMINANCE.astype(np.float32)
     glare = (light >= CAPPED * light.max()).astype(np.uint8)
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (SPOT_PX, SPOT_PX))
     capped = glare.astype(np.float32)
@@ -98,7 +97,7 @@ def _without_spots(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def _blended(radiance: NDArray[np.float32], factor: float) -> NDArray[np.float32]:
     """Return radiance with its broad differences compressed for a picture of that exposure."""
-    light = np.maximum(radiance @ LUMINANCE, 1e-4) * np.float32(factor)
+    light = np.maximum(radiance @ LUMINANCE.astype(np.float32), 1e-4) * np.float32(factor)
     fine = np.log2(light)
     broad = _broad(fine)
     target = np.log2(compressed(np.exp2(broad))) + np.float32(DETAIL) * (fine - broad)

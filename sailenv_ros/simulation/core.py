@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.camera import Camera, CameraIntrinsics
-from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
+from sailenv_ros.cpu_render.amodal_renderer import AmodalRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.frame import Frame, checked_views
 from sailenv_ros.object_truth.amodal_masks import AmodalMasks
@@ -123,7 +123,7 @@ class SimulationCore(WorldOperations):
         self.run_later: Callable[[Callable[[], AmodalMasks]], AmodalMasks] = lambda draw: draw()
         self.skipped_frames = 0
         self._renderer = renderer
-        self._alone: AloneRenderer | None = None
+        self._amodal: AmodalRenderer | None = None
         self._should_end = should_end
         self._revision = 0
         self._announced: SceneInfo | None = None
@@ -369,8 +369,8 @@ class SimulationCore(WorldOperations):
             states=self.world.states(),
             randomised=self.randomiser.record,
             lesson=self.orchestrator.state,
-            draw_alone=lambda only=0: self.run_later(
-                lambda: self.draw_alone(snapshot, camera, only)
+            draw_amodal=lambda only=0: self.run_later(
+                lambda: self.draw_amodal(snapshot, camera, only)
             ),
         )
 
@@ -382,7 +382,7 @@ class SimulationCore(WorldOperations):
         """Return the scene as it stands now, for rules of cameras."""
         return PresentScene(self, lens)
 
-    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+    def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
 
         Raises
@@ -390,11 +390,11 @@ class SimulationCore(WorldOperations):
         NativeLibraryError
             If there is no native library, which draws them.
         """
-        if self._alone is None:
+        if self._amodal is None:
             renderer = self._renderer
             table = renderer.part_table if isinstance(renderer, NativeRenderer) else None
-            self._alone = AloneRenderer(table)
-        return self._alone.draw(snapshot, camera, only)
+            self._amodal = AmodalRenderer(table)
+        return self._amodal.draw(snapshot, camera, only)
 
     def open_stream(
         self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]
@@ -414,8 +414,8 @@ class SimulationCore(WorldOperations):
                 stream.end(f"the simulation has ended: {why}")
         self.world.close()
         self._relighter.close()
-        if self._alone is not None:
-            self._alone.close()
+        if self._amodal is not None:
+            self._amodal.close()
         self._renderer.close()
 
     # -- inside ----------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import pytest
 
 from sailenv_ros.colour import srgb_from_linear
 from sailenv_ros.frame import RENDERED_VIEWS
-from sailenv_ros.geometry import Pose
+from sailenv_ros.geometry import Pose, look_at
 from sailenv_ros.lights import Environment
 from sailenv_ros.picture_settings import PictureSettings
 from tests.render.conftest import Render
@@ -131,3 +131,23 @@ def test_a_map_colours_glass(render: Render) -> None:
     left, right = rgb[36, 46].astype(int), rgb[36, 50].astype(int)
     assert left[0] > left[1] + 40
     assert np.ptp(right) <= 1
+
+
+@pytest.mark.parametrize(("facing", "matt", "mirrored"), [("up", 0.54, 0.9), ("aside", 0.1, 0.1)])
+def test_panes_are_lit_by_the_sky_as_other_surfaces_are(
+    facing: str, matt: float, mirrored: float, render: Render
+) -> None:
+    """A white pane that lets nothing through shows the law's irradiance, and 4 % of a mirror."""
+    sheet = model_of(
+        WALL, base_colour=(1, 1, 1, 1), alpha="blend", roughness=0.05, double_sided=True
+    )
+    low, high = (0.1, 0.1, 0.1), (0.9, 0.9, 0.9)
+    sky = Environment(sky_zenith=high, sky_horizon=low, sky_ground=low)
+    pose, eye = Pose((2.0, 0.0, 0.0)), EYE
+    if facing == "up":
+        pose = Pose.from_rpy_deg((0.0, 0.0, 0.0), (0, 90, 0))
+        eye = replace(EYE, pose=look_at((0.0, 0.0, 2.0), (1e-3, 0.0, 0.0)))
+    scene = snapshot_of([Thing(sheet, pose)], lights=(), environment=sky)
+    seen = render(scene, eye, "rgb")["rgb"][36, 48].astype(float)
+    wanted = 0.04 * mirrored + 0.96 * matt
+    np.testing.assert_allclose(seen, 255.0 * srgb_from_linear(wanted), atol=1.0)

@@ -215,6 +215,28 @@ def test_pictures_are_those_of_opengl(
     assert (off <= 2).mean() >= 0.95
 
 
+def test_a_cone_without_width_ends_at_once(native: NativeRenderer) -> None:
+    """Where the angle is that of both cones all light arrives: 0 / 0 is no darkness."""
+    beam = Light(
+        name="beam",
+        type="spot",
+        intensity=20.0,
+        position_m=(1.0, 0.0, 0.0),
+        direction=(1.0, 0.0, 0.0),
+        inner_cone_deg=0.0,
+        outer_cone_deg=0.0,
+    )
+    scene = snapshot_of([Thing(model_of(wall_mesh(6, 6)), Pose((3.0, 0, 0)))], lights=(beam,))
+    dark = snapshot_of([Thing(model_of(wall_mesh(6, 6)), Pose((3.0, 0, 0)))], lights=())
+    camera = camera_at(width=97, height=73)
+    lit, unlit = (
+        native.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(int)
+        for snapshot in (scene, dark)
+    )
+    assert (lit - unlit)[36, 48].min() > 20
+    assert (lit != unlit).any(axis=-1).sum() < 10
+
+
 def test_textures_are_as_bright_as_those_of_opengl(pair: tuple[NativeRenderer, Renderer]) -> None:
     """Fine grain that is smaller than a pixel is averaged without rounding down."""
     grain = np.random.default_rng(3).integers(110, 146, (256, 256, 4)).astype(np.uint8)

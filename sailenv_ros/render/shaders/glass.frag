@@ -8,8 +8,6 @@ layout(location = 0, index = 1) out vec4 out_through;  // share of what lies beh
 #include "textures.glsl"
 #include "reflections.glsl"
 
-uniform vec3 ambient;
-uniform float sky_share;
 #ifdef BAKED
 uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
 #endif
@@ -27,8 +25,7 @@ vec3 light_around(vec3 world_normal) {
                     dot(texelFetch(instance_light, row + ivec2(1, 0), 0), facing_to),
                     dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to)), 0.0);
 #else
-    return ambient + sky_share * mix(sky_ground, mix(sky_horizon, sky_zenith, 0.5),
-                                     0.5 + 0.5 * world_normal.z);
+    return light_of_sky(world_normal);
 #endif
 }
 

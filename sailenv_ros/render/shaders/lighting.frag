@@ -9,21 +9,13 @@ uniform sampler2DShadow shadow_map;
 
 #include "picture.glsl"
 
-struct Light {
-    vec4 colour_kind;     // linear colour times intensity; 0 directional, 1 point, 2 spot, 3 area
-    vec4 position_range;  // optical frame [m]
-    vec4 direction_inner; // where it travels to, optical frame; cosine of the inner cone
-    vec4 outer_cone;      // its cosine, of a spot light
-};
-layout(std140, binding = 0) uniform Lights { Light lights[MAX_LIGHTS]; };
+layout(std140, binding = 0) uniform Lamps { Lamp lamps[MAX_LIGHTS]; };  // optical frame
 
-uniform int light_count;           // lamps beside the main light
+uniform int lamp_count;            // lamps beside the main light
 uniform vec3 main_colour;          // linear colour times intensity; 0 if there is none
 uniform vec3 main_towards;         // optical frame
 uniform mat4 shadow_from_optical;
 uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, penumbra [texels]
-uniform vec3 ambient;
-uniform float sky_share;
 uniform float glow;                // 1 if what emits light does so
 #ifdef BAKED
 uniform sampler2D light_at;        // place in the light map, 0 where there is none
@@ -39,14 +31,6 @@ uniform sampler2D edge_blocks;     // 6 by 6 shares of main light each, 128 bloc
 #include "octahedral.glsl"
 
 const float PI = 3.14159265;
-
-// Irradiance / pi of that sky on a surface that faces world_normal: its average over the
-// hemisphere, fitted to within a few per cent by the share of sky that the surface sees.
-vec3 sky_light(vec3 world_normal) {
-    vec3 dome = mix(sky_horizon, sky_zenith, 0.55);
-    return mix(sky_ground, mix(sky_horizon, dome, max(world_normal.z, 0.0)),
-               0.5 + 0.5 * world_normal.z);
-}
 
 vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {
     vec3 lifted = point + normal * shadow_texel.x * (1.0 + 2.0 * slope);
@@ -107,22 +91,13 @@ vec3 reflected_light(Surface s, vec3 towards, vec3 power) {
     return power * nl * (s.diffuse * (1.0 - fresnel) / PI + fresnel * distribution * visibility);
 }
 
-vec3 lamp_light(Light light, Surface s) {
-    vec3 towards = -light.direction_inner.xyz;
-    vec3 power = light.colour_kind.rgb;
-    if (light.colour_kind.w > 0.5) {
-        vec3 offset = light.position_range.xyz - s.point;
-        float d2 = max(dot(offset, offset), 1e-4);
-        towards = offset * inversesqrt(d2);
-        float reach = d2 / (light.position_range.w * light.position_range.w);
-        float window = clamp(1.0 - reach * reach, 0.0, 1.0);
-        power *= window * window / d2;
-        float along = dot(-towards, light.direction_inner.xyz);
-        if (light.colour_kind.w > 2.5) power *= max(along, 0.0);
-        else if (light.colour_kind.w > 1.5)
-            power *= smoothstep(light.outer_cone.x, light.direction_inner.w, along);
-    }
-    return reflected_light(s, towards, power);
+vec3 lamp_light(Lamp lamp, Surface s) {
+    if (lamp.kind == LIGHT_DIRECTIONAL) return reflected_light(s, -lamp.direction, lamp.colour);
+    vec3 offset = lamp.position - s.point;
+    float square = lamp_square(offset);
+    vec3 towards = offset * inversesqrt(square);
+    float share = lamp_falloff(lamp, square, -dot(towards, lamp.direction));
+    return reflected_light(s, towards, lamp.colour * share);
 }
 
 // Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on mobile").
@@ -171,7 +146,7 @@ void main() {
     vec3 reflected = around;
 #else
     float main_arrives = four_taps(shadow_map, in_shadow);
-    vec3 around = ambient + sky_share * sky_light(world_normal);
+    vec3 around = light_of_sky(world_normal);
 #endif
 #if defined(REFLECTIONS) || !defined(BAKED)
     vec3 mirrored = world_from_optical * reflect(-view, normal);
@@ -181,12 +156,13 @@ void main() {
     vec3 room = mirrored_room(seen_from, world_from_optical * point + eye, mirrored, roughness);
     // Where less light arrives than where the room was seen from, less of it is seen as well.
     float in_the_open = dot(room_light[seen_from], vec4(1.0, world_normal));
-    room *= clamp(dot(around, LUMA) / max(in_the_open, 1e-4), 0.0, 1.0);
+    room *= clamp(luminance(around) / max(in_the_open, 1e-4), 0.0, 1.0);
     // The rougher, the more of the half space it mirrors: that is the light around the point.
     reflected = mix(room, around, smoothstep(0.25, 0.7, roughness));
 #elif !defined(BAKED)
+    vec3 soft = sky_irradiance(mirrored.z, sky_zenith, sky_horizon, sky_ground);
     vec3 reflected =
-        ambient + sky_share * mix(sky(mirrored), sky_light(mirrored), min(1.0, roughness * 1.4));
+        ambient + sky_share * mix(sky(mirrored), soft, min(1.0, roughness * 1.4));
 #endif
     vec2 term = environment_term(min(nv, 1.0), roughness);
     // What single bounces in the microfacets lose comes back from further ones, so that a white
@@ -201,7 +177,7 @@ void main() {
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     radiance += reflected_light(here, main_towards, main_colour * main_arrives);
 #ifdef LAMPS
-    for (int i = 0; i < light_count; i++) radiance += lamp_light(lights[i], here);
+    for (int i = 0; i < lamp_count; i++) radiance += lamp_light(lamps[i], here);
 #endif
     out_colour = finished(radiance, from_around);
 }

@@ -2,21 +2,27 @@
 uniform vec3 sky_zenith;
 uniform vec3 sky_horizon;
 uniform vec3 sky_ground;
+uniform vec3 ambient;
+uniform float sky_share;         // of the sky's light that reaches the objects
 uniform vec4 lens;               // focal length, cx, cy [px], exposure factor
 uniform mat3 world_from_optical;
 
-const vec3 LUMA = vec3(0.299, 0.587, 0.114);
+#include "light_law.h"
 
 vec3 sky(vec3 world_direction) {
-    float up = world_direction.z;
-    vec3 upper = mix(sky_horizon, sky_zenith, sqrt(clamp(up, 0.0, 1.0)));
-    return mix(upper, sky_ground, smoothstep(0.0, 0.12, -up));
+    return sky_radiance(world_direction.z, sky_zenith, sky_horizon, sky_ground);
+}
+
+// The sky's light on a surface: irradiance / pi.
+vec3 light_of_sky(vec3 world_normal) {
+    return ambient +
+           sky_share * sky_irradiance(world_normal.z, sky_zenith, sky_horizon, sky_ground);
 }
 
 // What a picture holds of a pixel: exposed radiance, and the share of it that came from around and
-// not straight from a lamp. Tone curve and sRGB follow on the processor (develop.py).
+// not straight from a lamp. Tone curve and sRGB follow on the processor (post_pass.py).
 vec4 finished(vec3 radiance, vec3 from_around) {
-    float share = dot(from_around, LUMA) / max(dot(radiance, LUMA), 1e-6);
+    float share = luminance(from_around) / max(luminance(radiance), 1e-6);
     // Half precision ends at 65504.
     return vec4(min(radiance * lens.w, vec3(6e4)), min(share, 1.0));
 }

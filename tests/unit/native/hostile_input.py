@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.cpu_render.alone_renderer import AloneRenderer
+from sailenv_ros.cpu_render.amodal_renderer import AmodalRenderer
 from sailenv_ros.cpu_render.cpu_renderer import NativeRenderer
 from sailenv_ros.geometry import Pose
 from sailenv_ros.lights import Light
@@ -273,11 +273,11 @@ def drive_alone() -> None:
         for make in hostile_scenes().values():
             snapshot = make()
             for width, height in ((8, 8), (97, 61)):
-                drawing = AloneRenderer(threads=threads)
+                drawing = AmodalRenderer(threads=threads)
                 with np.errstate(all="ignore"):
                     drawing.draw(snapshot, camera_at(width=width, height=height))
                 drawing.close()
-    drawing = AloneRenderer(threads=2)
+    drawing = AmodalRenderer(threads=2)
     around = snapshot_of([Thing(model_of(box_mesh(4.0), double_sided=True), Pose())])
     drawing.draw(around, camera_at(width=1024, height=1024))
     drawing.close()

@@ -65,4 +65,4 @@ def test_light_from_around_is_that_of_the_half_space() -> None:
     above = np.where(directions[..., 2:] > 0.0, 2.0, 0.0) * np.ones(3)
     np.testing.assert_allclose(light_from_around(above), [1.0, 0.0, 0.0, 1.0], atol=2e-2)
     red = above * np.array([1.0, 0.0, 0.0])
-    np.testing.assert_allclose(light_from_around(red), 0.299 * light_from_around(above), atol=1e-9)
+    np.testing.assert_allclose(light_from_around(red), 0.2126 * light_from_around(above), atol=1e-9)

@@ -94,7 +94,7 @@ LANES_INLINE f8 arriving_factors(const SampleRows& rows, int64_t column, const f
     }
     i8 halves;
     for (int k = 0; k < 8; k++) halves[k] = radiance[4 * k + 3];
-    const f8 share = number(halves << 13) * 0x1p112f;
+    const f8 share = bit_cast_float(halves << 13) * 0x1p112f;
     const f8 closed = (255.0f - visibility) * (1.0f / 255.0f);
     return 1.0f - (share < 1.0f ? share : splat(1.0f)) * closed;
 }

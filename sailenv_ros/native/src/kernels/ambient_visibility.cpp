@@ -157,8 +157,8 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             f8 other;
             for (int k = 0; k < 8; k++) other[k] = s.depth[place[k]];
             const f8 tz = abs8(other);
-            const f8 qx = (as_float(tu) - set.cx) * per_f * tz;
-            const f8 qy = (as_float(tv) - set.cy) * per_f * tz;
+            const f8 qx = (to_float(tu) - set.cx) * per_f * tz;
+            const f8 qy = (to_float(tv) - set.cy) * per_f * tz;
             const f8 dx = qx - px, dy = qy - py, dz = tz - z;
             const f8 d2 = dx * dx + dy * dy + dz * dz + self_m2;
             const f8 fall = max8(one - d2 * per_r2, zero);
@@ -187,7 +187,7 @@ LANES_INLINE i8 mean_of_four(const float* inverse, const float* share, int64_t n
     }
     // Half of the count is added before the division rounds down. Of such small numbers the
     // quotient is rounded down exactly.
-    return truncated((total + as_float(truncated(count) >> 1)) / count);
+    return truncated((total + to_float(truncated(count) >> 1)) / count);
 }
 
 // Averages a band of rows over samples `step` apart: first along the rows, 3 * step rows beyond
@@ -217,7 +217,7 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
                                 ? mean_of_four(inverse_row + u - step, shares + PAD + u - step,
                                                step, own, set.same_surface)
                                 : splat(255);
-            store(mean_row + u, as_float(mean));
+            store(mean_row + u, to_float(mean));
         }
     }
     for (int64_t v = first; v < last; v++) {

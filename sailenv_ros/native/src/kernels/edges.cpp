@@ -14,11 +14,11 @@ namespace sailenv {
 namespace {
 
 constexpr int32_t SAMPLES = 9;
-constexpr float LEAST_COSINE = 0.9f;    // between normals within one smooth surface
-constexpr float SAME_NEARNESS = 0.01f;  // as a share, within one smooth surface
+constexpr float LEAST_COSINE = 0.9f;         // between normals within one smooth surface
+constexpr float SAME_INVERSE_DEPTH = 0.01f;  // as a share, within one smooth surface
 // By how much samples half a pixel to both sides may lie off the plane through the middle, as a
-// share of its nearness and over the focal length: 3 degrees of bend or so, or a sharper one near
-// the pixel's rim.
+// share of its inverse_depth and over the focal length: 3 degrees of bend or so, or a sharper one
+// near the pixel's rim.
 constexpr float LEAST_BEND = 0.03f;
 constexpr float LEAST_HEIGHT_PX = 2.0f;  // of a triangle over the edge that ends a surface
 constexpr float WEIGHT = 1.0f / 16.0f;
@@ -48,7 +48,7 @@ struct Plane {
     float normal[3], square;
 };
 LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
-    const float* n = t.nearness;
+    const float* n = t.inverse_depth;
     Plane p = {{n[0] * s.focal, n[1] * s.focal, n[0] * s.cx + n[1] * s.cy + n[2]}, 0.0f};
     for (const float along : p.normal) p.square += along * along;
     return p;
@@ -58,9 +58,10 @@ LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
 LANES_INLINE bool are_alike(const Triangle& a, const Plane& p, const Triangle& b, const Plane& q,
                             float x, float y) {
     if (a.part != b.part) return false;
-    const float there = b.nearness[0] * x + (b.nearness[1] * y + b.nearness[2]);
-    const float off = a.nearness[0] * x + (a.nearness[1] * y + a.nearness[2]) - there;
-    if (__builtin_fabsf(off) > SAME_NEARNESS * there) return false;
+    const float there = b.inverse_depth[0] * x + (b.inverse_depth[1] * y + b.inverse_depth[2]);
+    const float off =
+        a.inverse_depth[0] * x + (a.inverse_depth[1] * y + a.inverse_depth[2]) - there;
+    if (__builtin_fabsf(off) > SAME_INVERSE_DEPTH * there) return false;
     const float dot =
         p.normal[0] * q.normal[0] + p.normal[1] * q.normal[1] + p.normal[2] * q.normal[2];
     return dot > 0.0f && dot * dot >= LEAST_COSINE * LEAST_COSINE * (p.square * q.square);
@@ -118,7 +119,7 @@ float share_within(const Triangle& t, const int32_t* surface, float x, float y, 
     float most = -1.0f;
     // At the opposite corner an edge's function is this, if the triangle's depth varies little.
     const float opposite =
-        (t.nearness[0] * x + (t.nearness[1] * y + t.nearness[2])) / t.inverse_det;
+        (t.inverse_depth[0] * x + (t.inverse_depth[1] * y + t.inverse_depth[2])) / t.inverse_det;
     for (int32_t j = 0; j < 3; j++) {
         const Line line = line_at(t.edge + 3 * j, x, y, inside);
         const float slope = line.a * line.a + line.b * line.b;
@@ -135,8 +136,8 @@ float share_within(const Triangle& t, const int32_t* surface, float x, float y, 
 float exact_share(const Seen* seen, const int32_t* surface, float x, float y) {
     const Triangle *first = seen[0].triangle, *second = seen[1].triangle;
     const Line empty = {0.0f, 0.0f, -1.0f};
-    const Line a = first == nullptr ? empty : line_at(first->nearness, x, y, 1.0f);
-    const Line b = second == nullptr ? empty : line_at(second->nearness, x, y, 1.0f);
+    const Line a = first == nullptr ? empty : line_at(first->inverse_depth, x, y, 1.0f);
+    const Line b = second == nullptr ? empty : line_at(second->inverse_depth, x, y, 1.0f);
     // What is in front ends the other.
     const bool second_first = b.c > a.c;
     for (const bool of_second : {second_first, !second_first}) {
@@ -242,7 +243,7 @@ void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratc
             }
             if (!any(differs)) continue;
             const int64_t at = corner - scratch.visible.data();
-            const i8 bends = bent(s, scratch.nearness.data() + at, stride);
+            const i8 bends = bent(s, scratch.inverse_depth.data() + at, stride);
             const int32_t rest = static_cast<int32_t>(s.width) - x, count = rest < 8 ? rest : 8;
             for (int32_t k = 0; k < count; k++) {
                 if (differs[k] == 0) continue;
@@ -279,7 +280,9 @@ void mix_in(const Shading& s, const EdgeScratch& scratch) {
 
 }  // namespace
 
-int64_t fine_stride(int64_t width) { return (2 * width + 1 + 8 + 16 + 15) & ~int64_t{15}; }
+int64_t fine_stride(int64_t width) {
+    return (2 * width + 1 + ROW_PADDING + 16 + 15) & ~int64_t{15};
+}
 
 void take_centres(const uint32_t* fine, int64_t width, uint32_t* pixels) {
     for (int64_t x = 0; x < width; x += 8) {

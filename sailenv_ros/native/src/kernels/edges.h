@@ -12,7 +12,7 @@ namespace sailenv {
 // Memory of a thread for one band of fine samples.
 struct EdgeScratch {
     std::vector<uint32_t> visible;  // as in `Scratch`, of fine samples
-    std::vector<float> nearness;
+    std::vector<float> inverse_depth;
     int64_t stride = 0;
     std::vector<Fragment> fragments;
     std::vector<uint16_t> light;  // four halves of each

@@ -23,24 +23,25 @@ Planes planes_of(const Triangle& t, const Part& part) {
 
 // Square root of base colour, and alpha.
 struct Base8 {
-    f8 r, g, b, a;
+    Vec3x8 colour;
+    f8 alpha;
 };
 
 Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, f8 depth, f8 u, f8 v,
                   i8 wanted) {
     const float* factor = part.colour;
     if (part.colour_map == nullptr) {
-        return {splat(factor[0]), splat(factor[1]), splat(factor[2]), splat(factor[3])};
+        return {splat(vec3(factor[0], factor[1], factor[2])), splat(factor[3])};
     }
     const i8 size = splat(static_cast<int32_t>(part.colour_map->log2_size));
-    const f8 level = level_of_detail(depth * (p.along_x[3] - u * t.nearness[0]),
-                                     depth * (p.along_x[4] - v * t.nearness[0]),
-                                     depth * (p.along_y[3] - u * t.nearness[1]),
-                                     depth * (p.along_y[4] - v * t.nearness[1]), size, 0.0f);
+    const f8 level = level_of_detail(depth * (p.along_x[3] - u * t.inverse_depth[0]),
+                                     depth * (p.along_x[4] - v * t.inverse_depth[0]),
+                                     depth * (p.along_y[3] - u * t.inverse_depth[1]),
+                                     depth * (p.along_y[4] - v * t.inverse_depth[1]), size, 0.0f);
     const i8 fine = truncated(level);
     const i8 coarse = fine < size ? fine + 1 : fine;
     const Taps near = texture_taps(u, v, size, fine), far = texture_taps(u, v, size, coarse);
-    const f8 share = level - as_float(fine);
+    const f8 share = level - to_float(fine);
     const uint32_t* texels = part.colour_map->texels;
     alignas(32) float found[4 * 8] = {};
     for (int k = 0; k < 8; k++) {
@@ -51,85 +52,69 @@ Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, f8 depth
         *reinterpret_cast<f4_any*>(found + 4 * k) = a + (b - a) * share[k];
     }
     Base8 c;
-    transpose4(found, c.r, c.g, c.b, c.a);
+    transpose4(found, c.colour.x, c.colour.y, c.colour.z, c.alpha);
     const float over = 1.0f / 255.0f;
-    return {c.r * (factor[0] * over), c.g * (factor[1] * over), c.b * (factor[2] * over),
-            c.a * (factor[3] * over)};
+    return {c.colour * vec3(factor[0] * over, factor[1] * over, factor[2] * over),
+            c.alpha * (factor[3] * over)};
 }
 
 // Irradiance / pi on a surface.
-Colour8 light_around(const Light& light, int32_t id, f8 nx, f8 ny, f8 nz) {
-    if (light.baked) {
-        const float* p = light.instance_light + 12 * static_cast<int64_t>(id);
-        const f8 none = splat(0.0f);
-        return {max8(p[0] + p[1] * nx + p[2] * ny + p[3] * nz, none),
-                max8(p[4] + p[5] * nx + p[6] * ny + p[7] * nz, none),
-                max8(p[8] + p[9] * nx + p[10] * ny + p[11] * nz, none)};
+Vec3x8 light_around(const Light& light, int32_t id, Vec3x8 normal) {
+    if (!light.baked) return light_of_sky(light, normal.z);
+    const float* p = light.instance_light + 12 * static_cast<int64_t>(id);
+    const auto probed = [&](const float* q) {
+        return max(q[0] + q[1] * normal.x + q[2] * normal.y + q[3] * normal.z, 0.0f);
+    };
+    return {probed(p), probed(p + 4), probed(p + 8)};
+}
+
+// Radiance that eight points of an instance mirror.
+Vec3x8 mirrored_light(const Light& light, const Part& part, Vec3x8 point, Vec3x8 direction) {
+    if (!light.baked || !light.reflecting) {
+        return light.ambient + light.sky_share * analytic_sky(light, direction.z);
     }
-    const Colour8 horizon = splat3(light.sky_horizon);
-    const Colour8 dome = mix3(horizon, splat3(light.sky_zenith), splat(0.5f));
-    const Colour8 sky = mix3(splat3(light.sky_ground), dome, 0.5f + 0.5f * nz);
-    return {light.ambient[0] + light.sky_share * sky.r, light.ambient[1] + light.sky_share * sky.g,
-            light.ambient[2] + light.sky_share * sky.b};
+    const i8 seen_from = splat(light.reflection_table[part.id]);
+    return mirrored_room(light, seen_from, point, direction, splat(part.roughness));
 }
 
 // Dims what lies behind eight pixels and adds what the glass mirrors and scatters.
 void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& p, int32_t x,
-           int32_t y, f8 nearness, i8 wanted) {
+           int32_t y, f8 inverse_depth, i8 wanted) {
     const Light& light = *s.light;
     const f8 at = counting() + static_cast<float>(x);
     const float row = static_cast<float>(y);
-    const f8 depth = 1.0f / (wanted ? nearness : splat(1.0f));
+    const f8 depth = 1.0f / (wanted ? inverse_depth : splat(1.0f));
     auto attribute = [&](int k) {
         return (p.along_x[k] * at + (p.along_y[k] * row + p.at_0[k])) * depth;
     };
     const f8 u = attribute(3), v = attribute(4);
-    Base8 base = base_colour(part, p, t, depth, u, v, wanted);
-    base.r *= base.r;
-    base.g *= base.g;
-    base.b *= base.b;
-    const float* m = s.world_from_camera;
-    const f8 cx = (at - s.cx) * (1.0f / s.focal);
-    const float cy = (row - s.cy) / s.focal;
-    const f8 rx = m[0] * cx + (m[1] * cy + m[2]), ry = m[3] * cx + (m[4] * cy + m[5]),
-             rz = m[6] * cx + (m[7] * cy + m[8]);
-    const f8 to_eye = -inverse_length(rx, ry, rz);
-    const f8 vx = rx * to_eye, vy = ry * to_eye, vz = rz * to_eye;
-    const InstanceFrame& frame = s.frames[part.instance];
-    const f8 ox = attribute(0), oy = attribute(1), oz = attribute(2);
-    const float (*n)[8] = frame.normal_columns;
-    f8 nx = n[0][0] * ox + n[1][0] * oy + n[2][0] * oz;
-    f8 ny = n[0][1] * ox + n[1][1] * oy + n[2][1] * oz;
-    f8 nz = n[0][2] * ox + n[1][2] * oy + n[2][2] * oz;
-    const f8 unit = inverse_length(nx, ny, nz);
-    f8 facing = (nx * vx + ny * vy + nz * vz) * unit;
-    const f8 side = facing < 0.0f ? -unit : unit;
-    nx *= side;
-    ny *= side;
-    nz *= side;
+    const Base8 base = base_colour(part, p, t, depth, u, v, wanted);
+    const Vec3x8 colour = base.colour * base.colour;
+    const Vec3x8 ray =
+        ray_at(s.world_from_camera, (at - s.cx) * (1.0f / s.focal), (row - s.cy) / s.focal);
+    const Vec3x8 view = ray * -inverse_length(ray);
+    const float (*n)[8] = s.frames[part.instance].normal_columns;
+    Vec3x8 normal = vec3(n[0][0], n[0][1], n[0][2]) * attribute(0) +
+                    vec3(n[1][0], n[1][1], n[1][2]) * attribute(1) +
+                    vec3(n[2][0], n[2][1], n[2][2]) * attribute(2);
+    const f8 unit = inverse_length(normal);
+    f8 facing = dot(normal, view) * unit;
+    normal = normal * (facing < 0.0f ? -unit : unit);
     facing = abs8(facing);
     // Schlick's term for a refractive index of 1.5.
     const f8 grazing = 1.0f - min8(facing, splat(1.0f));
     const f8 g2 = grazing * grazing;
     const f8 fresnel = 0.04f + 0.96f * (g2 * g2 * grazing);
     const f8 rest = 1.0f - fresnel;
-    const f8 brightest = max8(max8(base.r, max8(base.g, base.b)), splat(1e-3f));
-    const f8 clear = rest * (1.0f - base.a);
-    const f8 mx = 2.0f * facing * nx - vx, my = 2.0f * facing * ny - vy,
-             mz = 2.0f * facing * nz - vz;
-    Colour8 seen;
-    if (light.baked && light.reflecting) {
-        seen = mirrored_room(light, splat(light.reflection_table[part.id]), s.eye[0] + rx * depth,
-                             s.eye[1] + ry * depth, s.eye[2] + rz * depth, mx, my, mz,
-                             splat(part.roughness));
-    } else {
-        const Colour8 sky = analytic_sky(light, mz);
-        seen = {light.ambient[0] + light.sky_share * sky.r,
-                light.ambient[1] + light.sky_share * sky.g,
-                light.ambient[2] + light.sky_share * sky.b};
-    }
-    const Colour8 around = light_around(light, part.id, nx, ny, nz);
-    const f8 scattered = rest * base.a;
+    const Vec3x8 mirrored =
+        mirrored_light(light, part, s.eye + ray * depth, 2.0f * facing * normal - view);
+    const Vec3x8 around = light_around(light, part.id, normal);
+    const Vec3x8 added =
+        fresnel * mirrored + rest * base.alpha * colour * around + colour * part.emission;
+    // What comes through takes the hue of the material, the more the denser it is.
+    const Vec3x8 hue = colour / max(largest(colour), 1e-3f);
+    const Vec3x8 through =
+        rest * (1.0f - base.alpha) * mix(vec3(1.0f, 1.0f, 1.0f), hue, base.alpha);
     uint16_t* radiance = s.outputs->radiance + 4 * (y * s.width + x);
     alignas(32) float behind[4 * 8] = {};
     for (int k = 0; k < 8; k++) {
@@ -138,16 +123,9 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
             behind[8 * j + k] = from_half(splat(static_cast<int32_t>(radiance[4 * k + j])))[0];
         }
     }
-    auto over = [&](int j, f8 colour, f8 mirrored, f8 from_around) {
-        const f8 added =
-            fresnel * mirrored + scattered * colour * from_around + colour * part.emission;
-        // What comes through takes the hue of the material, the more the denser it is.
-        const f8 through = clear * mix8(splat(1.0f), colour / brightest, base.a);
-        const f8 sum = clamp8(added * light.exposure, 0.0f, 6e4f) + load(behind + 8 * j) * through;
-        return to_half(clamp8(sum, 0.0f, 6e4f));
-    };
-    const i8 r = over(0, base.r, seen.r, around.r), g = over(1, base.g, seen.g, around.g),
-             b = over(2, base.b, seen.b, around.b);
+    const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
+    const Vec3x8 sum = clamp(clamp(added * light.exposure, 0.0f, 6e4f) + seen_through, 0.0f, 6e4f);
+    const i8 r = to_half(sum.x), g = to_half(sum.y), b = to_half(sum.z);
     for (int k = 0; k < 8; k++) {
         if (!wanted[k]) continue;
         // The share of light from around stays that of what lies behind.
@@ -157,16 +135,11 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     }
 }
 
-LANES_INLINE float least_inside(const float* edge) {
-    const bool own = edge[0] > 0.0f || (edge[0] == 0.0f && edge[1] > 0.0f);
-    return own ? 0.0f : 1.1754944e-38f;
-}
-
 }  // namespace
 
 void draw_glass_band(const Shading& s, const TriangleSet& glass, const DrawList& parts,
                      const Projection& projection, int32_t band, int32_t band_rows,
-                     const float* nearness) {
+                     const float* inverse_depth) {
     const int32_t first_row = band * band_rows;
     const int32_t end = first_row + band_rows;
     const int32_t last_row = (end < projection.height ? end : projection.height) - 1;
@@ -185,16 +158,17 @@ void draw_glass_band(const Shading& s, const TriangleSet& glass, const DrawList&
                 const float row = static_cast<float>(y);
                 const float c0 = t.edge[1] * row + t.edge[2], c1 = t.edge[4] * row + t.edge[5],
                             c2 = t.edge[7] * row + t.edge[8],
-                            cn = t.nearness[1] * row + t.nearness[2];
+                            cn = t.inverse_depth[1] * row + t.inverse_depth[2];
                 for (int32_t x = t.x0; x <= t.x1; x += 8) {
                     const f8 at = counting() + static_cast<float>(x);
-                    const f8 n = t.nearness[0] * at + cn;
+                    const f8 n = t.inverse_depth[0] * at + cn;
                     // Beyond the picture's right side are other pixels' numbers.
-                    const i8 drawn =
-                        (t.edge[0] * at + c0 >= least0) & (t.edge[3] * at + c1 >= least1) &
-                        (t.edge[6] * at + c2 >= least2) & (n > load(nearness + y * s.stride + x)) &
-                        (n <= projection.greatest_nearness) &
-                        (at < static_cast<float>(projection.width));
+                    const i8 drawn = (t.edge[0] * at + c0 >= least0) &
+                                     (t.edge[3] * at + c1 >= least1) &
+                                     (t.edge[6] * at + c2 >= least2) &
+                                     (n > load(inverse_depth + y * s.stride + x)) &
+                                     (n <= projection.greatest_inverse_depth) &
+                                     (at < static_cast<float>(projection.width));
                     if (any(drawn)) blend(s, t, part, planes, x, y, n, drawn);
                 }
             }

@@ -14,6 +14,7 @@
 #endif
 
 #define LANES_INLINE static inline __attribute__((always_inline))
+#define LANES_METHOD __attribute__((always_inline))
 
 typedef float f8 __attribute__((vector_size(32)));
 typedef int32_t i8 __attribute__((vector_size(32)));
@@ -44,7 +45,7 @@ LANES_INLINE i8 bits(f8 x) {
     memcpy(&r, &x, sizeof r);
     return r;
 }
-LANES_INLINE f8 number(i8 x) {
+LANES_INLINE f8 bit_cast_float(i8 x) {
     f8 r;
     memcpy(&r, &x, sizeof r);
     return r;
@@ -85,18 +86,18 @@ LANES_INLINE f8 sqrt8(f8 x) {
     return r;
 #endif
 }
-LANES_INLINE f8 abs8(f8 x) { return number(bits(x) & 0x7fffffff); }
+LANES_INLINE f8 abs8(f8 x) { return bit_cast_float(bits(x) & 0x7fffffff); }
 LANES_INLINE f8 negated_if(f8 x, i8 mask) {
-    return number(bits(x) ^ (mask & static_cast<int32_t>(0x80000000u)));
+    return bit_cast_float(bits(x) ^ (mask & static_cast<int32_t>(0x80000000u)));
 }
 LANES_INLINE i8 truncated(f8 x) { return __builtin_convertvector(x, i8); }
-LANES_INLINE f8 as_float(i8 x) { return __builtin_convertvector(x, f8); }
+LANES_INLINE f8 to_float(i8 x) { return __builtin_convertvector(x, f8); }
 // The integer part below; of numbers that fit into 32 bits.
 LANES_INLINE f8 floor8(f8 x) {
 #if defined(__AVX__)
     return (f8)_mm256_floor_ps((__m256)x);
 #else
-    const f8 t = as_float(truncated(x));
+    const f8 t = to_float(truncated(x));
     return t > x ? t - 1.0f : t;
 #endif
 }
@@ -110,19 +111,12 @@ LANES_INLINE bool any(i8 mask) {
 #endif
 }
 LANES_INLINE f8 mix8(f8 a, f8 b, f8 share) { return a + (b - a) * share; }
-LANES_INLINE f8 smoothstep8(f8 low, f8 high, f8 x) {
-    const f8 t = clamp8((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
-LANES_INLINE f8 inverse_length(f8 x, f8 y, f8 z) {
-    return 1.0f / sqrt8(max8(x * x + y * y + z * z, splat(1e-20f)));
-}
 
 // Logarithm to base 2 of positive numbers, to 1e-4: the exponent and a quartic of the rest.
 LANES_INLINE f8 log2_8(f8 x) {
     const i8 i = bits(x);
-    const f8 exponent = as_float((i >> 23) - 127);
-    const f8 m = number((i & 0x7fffff) | 0x3f800000);
+    const f8 exponent = to_float((i >> 23) - 127);
+    const f8 m = bit_cast_float((i & 0x7fffff) | 0x3f800000);
     return exponent + (-1.7417939f +
                        (2.8212026f + (-1.4699568f + (0.44717955f - 0.056570851f * m) * m) * m) * m);
 }
@@ -134,7 +128,7 @@ LANES_INLINE f8 exp2_8(f8 x) {
     const f8 p =
         1.0f +
         r * (0.6931472f + r * (0.2402265f + r * (0.0555041f + r * (0.0096181f + r * 0.0013333f))));
-    return number((truncated(whole) + 127) << 23) * p;
+    return bit_cast_float((truncated(whole) + 127) << 23) * p;
 }
 
 // Eight rows of eight floats to eight columns.
@@ -180,7 +174,7 @@ LANES_INLINE i8 to_half(f8 x) {
 }
 LANES_INLINE f8 from_half(i8 h) {
     // The bits of a half, shifted, are those of a float 2^112 times smaller.
-    return number((h & 0x7fff) << 13) * 0x1p112f;
+    return bit_cast_float((h & 0x7fff) << 13) * 0x1p112f;
 }
 // Eight halves that lie side by side.
 LANES_INLINE f8 load_halves(const uint16_t* p) {

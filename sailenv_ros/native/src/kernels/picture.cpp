@@ -57,7 +57,7 @@ void scale_chunk(const Picture& p, int64_t v, int64_t first, int64_t count, uint
     for (; k + 2 <= count; k += 2) {
         const float a = factors[k], b = factors[k + 1];
         const i8 light = sailenv::load_half_bits(radiance + 4 * k);
-        const f8 left = number(light << 13) * f8{a, a, a, 1.0f, b, b, b, 1.0f};
+        const f8 left = bit_cast_float(light << 13) * f8{a, a, a, 1.0f, b, b, b, 1.0f};
         sailenv::store_half_bits(out + 4 * k, (bits(left) + 4096) >> 13);
     }
     if (k < count) {

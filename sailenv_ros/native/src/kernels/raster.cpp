@@ -87,7 +87,7 @@ LANES_INLINE void store_double(float* p, d4 x) {
 struct ClusterRows {
     alignas(32) float corner[9][CLUSTER_TRIANGLES];  // x, y, z of three corners
     alignas(32) float edge[9][CLUSTER_TRIANGLES];
-    alignas(32) float nearness[3][CLUSTER_TRIANGLES];
+    alignas(32) float inverse_depth[3][CLUSTER_TRIANGLES];
     alignas(32) float inverse_det[CLUSTER_TRIANGLES];
     alignas(32) float x0[CLUSTER_TRIANGLES], x1[CLUSTER_TRIANGLES];
     alignas(32) float y0[CLUSTER_TRIANGLES], y1[CLUSTER_TRIANGLES];
@@ -137,9 +137,9 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
         store_double(r.edge[8] + k, c2);
         store_double(r.inverse_det + k, inverse);
         if (PERSPECTIVE) {
-            store_double(r.nearness[0] + k, (a0 + a1 + a2) * inverse);
-            store_double(r.nearness[1] + k, (b0 + b1 + b2) * inverse);
-            store_double(r.nearness[2] + k, (c0 + c1 + c2) * inverse);
+            store_double(r.inverse_depth[0] + k, (a0 + a1 + a2) * inverse);
+            store_double(r.inverse_depth[1] + k, (b0 + b1 + b2) * inverse);
+            store_double(r.inverse_depth[2] + k, (c0 + c1 + c2) * inverse);
         } else {
             const d4 na = 1.0 - ad, nb = 1.0 - bd, nc = 1.0 - cd;
             const d4 nx = (a0 * na + a1 * nb + a2 * nc) * inverse;
@@ -148,9 +148,9 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
             // What shadow maps need so that surfaces do not shade themselves: as OpenGL's
             // polygon offset of 1.5 slopes and 2 units of 24 bits.
             const d4 offset = 1.5 * (steep_x > steep_y ? steep_x : steep_y) + 0x1p-23;
-            store_double(r.nearness[0] + k, nx);
-            store_double(r.nearness[1] + k, ny);
-            store_double(r.nearness[2] + k, (c0 * na + c1 * nb + c2 * nc) * inverse - offset);
+            store_double(r.inverse_depth[0] + k, nx);
+            store_double(r.inverse_depth[1] + k, ny);
+            store_double(r.inverse_depth[2] + k, (c0 * na + c1 * nb + c2 * nc) * inverse - offset);
         }
     }
 }
@@ -258,7 +258,7 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
         if (!faces) continue;
         Triangle& t = out[made++];
         for (int j = 0; j < 9; j++) t.edge[j] = r.edge[j][k];
-        for (int j = 0; j < 3; j++) t.nearness[j] = r.nearness[j][k];
+        for (int j = 0; j < 3; j++) t.inverse_depth[j] = r.inverse_depth[j][k];
         for (int j = 0; j < 3; j++) t.vertex[j] = r.vertex[j][k];
         t.inverse_det = r.inverse_det[k];
         t.part = seen.part;
@@ -339,18 +339,19 @@ MaskedTriangle masked_triangle(const Triangle& t, const Part& part) {
 
 // Which of eight pixels of a masked material are there.
 i8 opaque_pixels(const Triangle& t, const MaskedTriangle& m, const Part& part, f8 x, float y,
-                 f8 nearness, i8 wanted) {
-    const f8 depth = 1.0f / nearness;
+                 f8 inverse_depth, i8 wanted) {
+    const f8 depth = 1.0f / inverse_depth;
     const f8 u = (m.u[0] * x + (m.u[1] * y + m.u[2])) * depth;
     const f8 v = (m.v[0] * x + (m.v[1] * y + m.v[2])) * depth;
     const i8 size = splat(m.log2_size);
-    const f8 level = level_of_detail(
-        depth * (m.u[0] - u * t.nearness[0]), depth * (m.v[0] - v * t.nearness[0]),
-        depth * (m.u[1] - u * t.nearness[1]), depth * (m.v[1] - v * t.nearness[1]), size, 0.0f);
+    const f8 level = level_of_detail(depth * (m.u[0] - u * t.inverse_depth[0]),
+                                     depth * (m.v[0] - v * t.inverse_depth[0]),
+                                     depth * (m.u[1] - u * t.inverse_depth[1]),
+                                     depth * (m.v[1] - v * t.inverse_depth[1]), size, 0.0f);
     const i8 fine = truncated(level);
     const i8 coarse = fine < size ? fine + 1 : fine;
     const Taps near = texture_taps(u, v, size, fine), far = texture_taps(u, v, size, coarse);
-    const f8 share = level - as_float(fine);
+    const f8 share = level - to_float(fine);
     f8 alpha = splat(0.0f);
     for (int k = 0; k < 8; k++) {
         if (!wanted[k]) continue;
@@ -363,13 +364,6 @@ i8 opaque_pixels(const Triangle& t, const MaskedTriangle& m, const Part& part, f
     const float least = smaller(part.alpha_cutoff, part.least_cutoff);
     const f8 cutoff = max8(part.alpha_cutoff - part.cutoff_fall * level, splat(least));
     return wanted & (alpha * part.colour[3] >= cutoff);
-}
-
-// An edge belongs to one of the two triangles that share it: the one that lies to its right, or
-// below it if it runs along a row. A function that is not of this triangle must be above 0.
-LANES_INLINE float least_inside(const float* edge) {
-    const bool own = edge[0] > 0.0f || (edge[0] == 0.0f && edge[1] > 0.0f);
-    return own ? 0.0f : 1.1754944e-38f;
 }
 
 // Where a row of a wide triangle begins and ends, give or take a sample.
@@ -386,14 +380,14 @@ LANES_INLINE bool narrow(float slope, float offset, float inverse, float& low, f
     return true;
 }
 
-// `nearness` and `visible` (may be null) begin at the sample in row 0 and column 0.
+// `inverse_depth` and `visible` (may be null) begin at the sample in row 0 and column 0.
 template <bool MASKED, bool FINE>
 void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const Projection& p,
                    int32_t first_row, int32_t last_row, int64_t stride, uint32_t* visible,
-                   float* nearness) {
+                   float* inverse_depth) {
     const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
     const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
-    const float a0 = t.edge[0], a1 = t.edge[3], a2 = t.edge[6], an = t.nearness[0];
+    const float a0 = t.edge[0], a1 = t.edge[3], a2 = t.edge[6], an = t.inverse_depth[0];
     const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
                 least2 = least_inside(t.edge + 6);
     const bool wide = t.x1 - t.x0 >= 16;
@@ -409,7 +403,8 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
     for (int32_t row = y0; row <= y1; row++) {
         const float y = FINE ? 0.5f * static_cast<float>(row - 1) : static_cast<float>(row);
         const float c0 = t.edge[1] * y + t.edge[2], c1 = t.edge[4] * y + t.edge[5],
-                    c2 = t.edge[7] * y + t.edge[8], cn = t.nearness[1] * y + t.nearness[2];
+                    c2 = t.edge[7] * y + t.edge[8],
+                    cn = t.inverse_depth[1] * y + t.inverse_depth[2];
         int32_t first = t.x0, last = t.x1;
         if (wide) {
             float low = static_cast<float>(first), high = static_cast<float>(last);
@@ -421,7 +416,7 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
             first = static_cast<int32_t>(low);
             last = static_cast<int32_t>(high);
         }
-        float* near_row = nearness + row * stride;
+        float* near_row = inverse_depth + row * stride;
         int32_t* seen_row =
             visible == nullptr ? nullptr : reinterpret_cast<int32_t*>(visible + row * stride);
         for (int32_t x = first; x <= last; x += 8) {
@@ -430,7 +425,7 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
             const f8 e0 = a0 * at + c0, e1 = a1 * at + c1, e2 = a2 * at + c2, n = an * at + cn;
             const f8 before = load(near_row + x);
             i8 drawn = (e0 >= least0) & (e1 >= least1) & (e2 >= least2) & (n > before) &
-                       (n <= p.greatest_nearness);
+                       (n <= p.greatest_inverse_depth);
             if (MASKED) {
                 if (!any(drawn)) continue;
                 drawn = opaque_pixels(t, masked, part, at, y, n, drawn);
@@ -568,16 +563,16 @@ RowRange rows_of_band(const Projection& projection, int32_t band, int32_t band_r
 }
 
 void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
-                uint32_t* visible, float* nearness) {
+                uint32_t* visible, float* inverse_depth) {
     const RowRange rows = rows_of_band(projection, band, band_rows);
     const int64_t count = (rows.last - rows.first + 1) * stride;
-    for (int64_t k = 0; k < count; k++) nearness[k] = projection.least_nearness;
+    for (int64_t k = 0; k < count; k++) inverse_depth[k] = projection.least_inverse_depth;
     if (visible != nullptr) memset(visible, 0xff, static_cast<size_t>(count) * 4);
 }
 
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
-               float* nearness) {
+               float* inverse_depth) {
     const RowRange rows = rows_of_band(projection, band, band_rows);
     const int64_t before = rows.first * stride;
     uint32_t* seen = visible == nullptr ? nullptr : visible - before;
@@ -597,15 +592,15 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
             const Triangle& t = set.triangles[number];
             const auto draw = t.masked ? masked : plain;
             draw(t, number, parts.parts[t.part], projection, rows.first, rows.last, stride, seen,
-                 nearness - before);
+                 inverse_depth - before);
         }
     }
 }
 
 void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,
-                 int64_t stride, float* nearness) {
+                 int64_t stride, float* inverse_depth) {
     // Of the pixel (0, 0), which need not lie in the window.
-    float* origin = nearness - projection.y0 * stride - projection.x0;
+    float* origin = inverse_depth - projection.y0 * stride - projection.x0;
     for (int64_t s = 0; s < set.segment_count; s++) {
         const Segment& segment = set.segments[static_cast<size_t>(s)];
         for (int64_t k = 0; k < segment.triangle_count; k++) {

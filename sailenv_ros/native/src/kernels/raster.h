@@ -12,12 +12,12 @@ namespace sailenv {
 
 // A triangle on the screen. `edge` holds a, b, c of three functions a x + b y + c of the pixel
 // (integers are pixel centres): each is 0 on the edge opposite to its corner, positive inside, and
-// together with `inverse_det` they are the corners' weights over depth. `nearness` is such a
+// together with `inverse_det` they are the corners' weights over depth. `inverse_depth` is such a
 // function too: 1 / depth in perspective, 1 - depth in a shadow map. `x0` to `y1` are the first and
 // last samples that it can cover.
 struct Triangle {
     float edge[9];
-    float nearness[3];
+    float inverse_depth[3];
     float inverse_det;
     int32_t vertex[3];
     int32_t part;
@@ -27,6 +27,16 @@ struct Triangle {
 };
 
 constexpr uint32_t NOTHING = 0xffffffffu;
+
+// Numbers behind the last of a row, so that eight may be read and written at any column.
+constexpr int64_t ROW_PADDING = 8;
+
+// An edge belongs to one of the two triangles that share it: the one that lies to its right, or
+// below it if it runs along a row. A function that is not of this triangle must be above 0.
+LANES_INLINE float least_inside(const float* edge) {
+    const bool own = edge[0] > 0.0f || (edge[0] == 0.0f && edge[1] > 0.0f);
+    return own ? 0.0f : 1.1754944e-38f;
+}
 
 // What a frame knows of an instance.
 struct InstanceFrame {
@@ -44,8 +54,8 @@ struct Projection {
     // Samples are the centres of pixels. Fine ones are half a pixel apart: sample k lies at pixel
     // (k - 1) / 2, so there are 2 n + 1 to n pixels, and those of odd numbers are centres.
     bool fine;
-    float least_nearness;  // what is not nearer is not drawn
-    float greatest_nearness;
+    float least_inverse_depth;  // what is not nearer is not drawn
+    float greatest_inverse_depth;
 };
 
 enum Facing : int32_t { FACING_BOTH = 0, FACING_FRONT = 1, FACING_BACK = 2 };
@@ -78,7 +88,7 @@ struct Scratch {
     std::vector<InstanceFrame> frames;
     TriangleSet opaque, glass;
     std::vector<uint32_t> visible;  // number of the triangle that each pixel sees
-    std::vector<float> nearness;
+    std::vector<float> inverse_depth;
     int64_t stride = 0;  // numbers from row to row, of both
     int32_t band_rows = 16;
     std::vector<int32_t> order;
@@ -101,17 +111,18 @@ struct RowRange {
 };
 RowRange rows_of_band(const Projection& projection, int32_t band, int32_t band_rows);
 
-// Draws one band: `visible` (may be null) and `nearness` begin at the band's first sample.
+// Draws one band: `visible` (may be null) and `inverse_depth` begin at the band's first sample.
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
-               int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible, float* nearness);
+               int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
+               float* inverse_depth);
 
 // Draws all triangles of a set into the window of a projection, whose first pixel is the first
-// number of `nearness`. Rows of the window are followed by room for eight numbers.
+// number of `inverse_depth`. Rows of the window are followed by room for eight numbers.
 void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,
-                 int64_t stride, float* nearness);
+                 int64_t stride, float* inverse_depth);
 
 // Makes that every sample of a band sees nothing.
 void clear_band(const Projection& projection, int32_t band, int32_t band_rows, int64_t stride,
-                uint32_t* visible, float* nearness);
+                uint32_t* visible, float* inverse_depth);
 
 }  // namespace sailenv

@@ -23,10 +23,10 @@ int32_t band_rows_of(int64_t height) { return height <= 128 ? 8 : 16; }
 
 void reserve_pixels(Scratch& scratch, int64_t width, int64_t height) {
     // Rows are read and written in steps of eight pixels from any column.
-    scratch.stride = (width + 8 + 15) & ~static_cast<int64_t>(15);
+    scratch.stride = (width + ROW_PADDING + 15) & ~static_cast<int64_t>(15);
     const size_t count = static_cast<size_t>(scratch.stride * height + 16);
-    if (scratch.nearness.size() < count) {
-        scratch.nearness.resize(count);
+    if (scratch.inverse_depth.size() < count) {
+        scratch.inverse_depth.resize(count);
         scratch.visible.resize(count);
     }
 }
@@ -39,7 +39,7 @@ void reserve_samples(std::vector<EdgeScratch>& edges, int64_t threads, int64_t w
         const size_t count = static_cast<size_t>(scratch.stride * (2 * band_rows + 1) + 16);
         if (scratch.visible.size() >= count) continue;
         scratch.visible.resize(count);
-        scratch.nearness.resize(count);
+        scratch.inverse_depth.resize(count);
     }
 }
 
@@ -66,15 +66,24 @@ void draw_fine_band(const Projection& fine, const DrawList& parts, int32_t band,
                     EdgeScratch& edges) {
     const RowRange rows = rows_of_band(fine, band, scratch.band_rows);
     uint32_t* visible = edges.visible.data();
-    float* nearness = edges.nearness.data();
-    clear_band(fine, band, scratch.band_rows, edges.stride, visible, nearness);
+    float* inverse_depth = edges.inverse_depth.data();
+    clear_band(fine, band, scratch.band_rows, edges.stride, visible, inverse_depth);
     draw_band(scratch.opaque, parts, fine, band, scratch.band_rows, edges.stride, visible,
-              nearness);
+              inverse_depth);
     for (int64_t row = rows.first + 1; row < rows.last; row += 2) {
         const int64_t from = (row - rows.first) * edges.stride, to = row / 2 * scratch.stride;
         take_centres(visible + from, fine.width, scratch.visible.data() + to);
-        take_centres(nearness + from, fine.width, scratch.nearness.data() + to);
+        take_centres(inverse_depth + from, fine.width, scratch.inverse_depth.data() + to);
     }
+}
+
+// The rotation in a matrix of four rows, in single precision.
+Mat3 turn_of(const double* m) {
+    const auto row = [m](int k) {
+        return vec3(static_cast<float>(m[4 * k]), static_cast<float>(m[4 * k + 1]),
+                    static_cast<float>(m[4 * k + 2]));
+    };
+    return {{row(0), row(1), row(2)}};
 }
 
 void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
@@ -90,8 +99,8 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     projection.x1 = projection.width - 1;
     projection.y1 = projection.height - 1;
     // A little less: annotations compare depths with the far distance exactly.
-    projection.least_nearness = std::nextafter(static_cast<float>(1.0 / view.far_m), 0.0f);
-    projection.greatest_nearness = 3e38f;
+    projection.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view.far_m), 0.0f);
+    projection.greatest_inverse_depth = 3e38f;
     const bool shaded = outputs.radiance != nullptr;
     const bool smoothed = shaded && view.smooth_edges != 0;
     Projection sampled = projection;
@@ -125,28 +134,24 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     shading.focal = static_cast<float>(view.focal);
     shading.cx = static_cast<float>(view.cx);
     shading.cy = static_cast<float>(view.cy);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            shading.world_from_camera[3 * i + j] =
-                static_cast<float>(view.world_from_camera[4 * i + j]);
-            shading.camera_from_world[3 * i + j] =
-                static_cast<float>(view.camera_from_world[4 * i + j]);
-        }
-        shading.eye[i] = static_cast<float>(view.world_from_camera[4 * i + 3]);
-    }
+    shading.world_from_camera = turn_of(view.world_from_camera);
+    shading.camera_from_world = turn_of(view.camera_from_world);
+    const double* m = view.world_from_camera;
+    shading.eye =
+        vec3(static_cast<float>(m[3]), static_cast<float>(m[7]), static_cast<float>(m[11]));
     const int32_t band_rows = scratch.band_rows;
     parallel_for(threads, view.height, band_rows, [&](int64_t first, int64_t last, int64_t slot) {
         const int32_t band = static_cast<int32_t>(first / band_rows);
         const int32_t first_row = static_cast<int32_t>(first);
         const int32_t end_row = static_cast<int32_t>(last);
         uint32_t* visible = scratch.visible.data() + first * scratch.stride;
-        float* nearness = scratch.nearness.data() + first * scratch.stride;
+        float* inverse_depth = scratch.inverse_depth.data() + first * scratch.stride;
         if (smoothed) {
             draw_fine_band(sampled, parts, band, scratch, scratch.edges[static_cast<size_t>(slot)]);
         } else {
-            clear_band(projection, band, band_rows, scratch.stride, visible, nearness);
+            clear_band(projection, band, band_rows, scratch.stride, visible, inverse_depth);
             draw_band(scratch.opaque, parts, projection, band, band_rows, scratch.stride, visible,
-                      nearness);
+                      inverse_depth);
         }
         shade_band(shading, first_row, end_row);
         if (smoothed) {
@@ -155,7 +160,7 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
         }
         if (glazed) {
             draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows,
-                            scratch.nearness.data());
+                            scratch.inverse_depth.data());
         }
     });
 }
@@ -195,10 +200,10 @@ SAILENV_KERNEL(draw_picture)
 }
 
 // Draws what a directional light sees into a shadow map: 1 - depth of the nearest surface. Rows of
-// `nearness` and `resting` hold `size` + 8 numbers. `map_from_world` (4, 4) leads to pixels
-// (integers are centres) and depth, 0 to 1. Without `resting` the map is cleared first, else it
-// begins as a copy of that. `changed` has a number for each 16 rows: 1 where the map differs from
-// `resting`.
+// `nearness` and `resting` hold `size` + ROW_PADDING numbers. `map_from_world` (4, 4) leads to
+// pixels (integers are centres) and depth, 0 to 1. Without `resting` the map is cleared first, else
+// it begins as a copy of that. `changed` has a number for each 16 rows: 1 where the map differs
+// from `resting`.
 SAILENV_KERNEL(draw_shadow_map)
 (int64_t threads, sailenv::DrawingScratch** handle, const double* map_from_world,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, int64_t size,
@@ -212,13 +217,13 @@ SAILENV_KERNEL(draw_shadow_map)
         projection.focal = 1.0;
         projection.width = projection.height = static_cast<int32_t>(size);
         projection.x1 = projection.y1 = projection.width - 1;
-        projection.greatest_nearness = 1.0f;
+        projection.greatest_inverse_depth = 1.0f;
         scratch.band_rows = BAND_ROWS;
         set_frames(scratch, *instances, map_from_world, projection);
         const TriangleSet& set = scratch.opaque;
         make_triangles(threads, scratch, *parts, *instances, projection, nullptr, parts->count,
                        false, scratch.opaque);
-        const int64_t stride = size + 8;
+        const int64_t stride = size + ROW_PADDING;
         parallel_for(threads, size, BAND_ROWS, [&](int64_t first, int64_t last, int64_t) {
             const int32_t band = static_cast<int32_t>(first / BAND_ROWS);
             float* band_nearness = nearness + first * stride;

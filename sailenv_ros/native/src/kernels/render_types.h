@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "light_law.h"
+
 namespace sailenv {
 
 // A group of neighbouring triangles that face alike; see render/clusters.py.
@@ -64,20 +66,11 @@ struct DrawList {
     int64_t count;
 };
 
-enum LightKind : int32_t { LIGHT_DIRECTIONAL = 0, LIGHT_POINT = 1, LIGHT_SPOT = 2, LIGHT_AREA = 3 };
-
-struct Lamp {
-    float colour[3];     // linear colour times intensity
-    float kind;          // LightKind
-    float position[3];   // world [m]
-    float range;         // [m]
-    float direction[3];  // where it travels to, world
-    float inner_cosine, outer_cosine;
-};
+static_assert(sizeof(Lamp) == 64, "shaders and lights.py take it for so long");
 
 // A shadow map: 1 - depth as the light sees it, the nearest surface, 0 where there is none.
 struct ShadowMap {
-    const float* nearness;  // (size, size + 8)
+    const float* nearness;  // (size, size + ROW_PADDING)
 };
 
 // A light map that is added up where it is looked at: texels from `LAYER_RUN` to `LAYER_RUN`, each
@@ -96,21 +89,21 @@ struct LayerSum {
 
 // From where a room was looked at for what is mirrored.
 struct ReflectionPoint {
-    float position[3];
-    float light[4];  // irradiance / pi there: c0, cx, cy, cz; luma
+    vec3 position;
+    float light[4];  // irradiance / pi there: c0, cx, cy, cz; luminance
 };
 
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
-    float main_colour[3];
-    float main_towards[3];
-    float map_from_world[12];  // first three rows; the map's sides are 0 and 1
+    vec3 main_colour, main_towards;
+    Mat3x4 map_from_world;  // the map's sides are 0 and 1
     float texel_m;
     int32_t shadow_size;
     ShadowMap shadow, static_shadow;
-    float ambient[3], sky_share;
-    float sky_zenith[3], sky_horizon[3], sky_ground[3];
-    float background[3];
+    vec3 ambient;
+    float sky_share;
+    vec3 sky_zenith, sky_horizon, sky_ground;
+    vec3 background;
     int32_t background_plain;  // 1: the background is a colour
     const uint16_t* sky_map;   // halves (height, width, 4), or null
     int32_t sky_width, sky_height;
@@ -131,7 +124,7 @@ struct Light {
     float layers_per_roughness;
     const ReflectionPoint* reflection_points;
     const int32_t* reflection_table;  // (ids,): the point that an instance uses
-    float room_low[3], room_high[3];
+    vec3 room_low, room_high;
 };
 
 struct View {

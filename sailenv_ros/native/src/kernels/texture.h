@@ -18,16 +18,17 @@ struct Taps {
 // Level of detail: `ux` and so forth are the changes of uv from pixel to pixel, `log2_size` the
 // texture's size. 0 is the finest level.
 LANES_INLINE f8 level_of_detail(f8 ux, f8 vx, f8 uy, f8 vy, i8 log2_size, float bias) {
-    const f8 size = number((log2_size + 127) << 23);
+    const f8 size = bit_cast_float((log2_size + 127) << 23);
     const f8 longest = max8(ux * ux + vx * vx, uy * uy + vy * vy) * size * size;
     const f8 level = 0.5f * log2_8(min8(max8(longest, splat(1e-12f)), splat(1e30f))) + bias;
-    return min8(max8(level, splat(0.0f)), as_float(log2_size));
+    return min8(max8(level, splat(0.0f)), to_float(log2_size));
 }
 
 LANES_INLINE Taps texture_taps(f8 u, f8 v, i8 log2_size, i8 level) {
     const i8 exponent = log2_size - level;
     // Of 2^n: the bits of such floats are cheaper than shifts by lanes.
-    const f8 size = number((exponent + 127) << 23), finest = number((log2_size + 127) << 23);
+    const f8 size = bit_cast_float((exponent + 127) << 23),
+             finest = bit_cast_float((log2_size + 127) << 23);
     const i8 edge = truncated(size), mask = edge - 1;
     // The levels before this one hold the sum of s (s + 1) texels.
     const f8 squares = (finest * finest - size * size) * (4.0f / 3.0f);

@@ -14,19 +14,19 @@
 namespace sailenv {
 
 // Memory of a thread, and what was drawn of each object.
-struct AloneThread {
+struct AmodalThread {
     TriangleSet set;
-    std::vector<float> nearness;
+    std::vector<float> inverse_depth;
 };
-struct AloneScratch {
+struct AmodalScratch {
     Scratch shared;  // frames alone
-    std::vector<AloneThread> threads;
+    std::vector<AmodalThread> threads;
     std::vector<std::vector<float>> crops;
 };
 
 namespace {
 
-constexpr int64_t NUMBERS = 10;  // of a result: see draw_alone
+constexpr int64_t NUMBERS = 10;  // of a result: see draw_amodal
 constexpr int32_t ONE_BAND = 1 << 20;
 
 struct Rectangle {
@@ -40,12 +40,13 @@ struct Rectangle {
     bool empty() const { return x0 > x1 || y0 > y1; }
 };
 
-// Turns a row of nearness to depths, infinite where there is nothing; counts those that are not.
-int64_t set_depths(float* row, int64_t count, float least_nearness, float far_m) {
+// Turns a row of inverse_depth to depths, infinite where there is nothing; counts those that are
+// not.
+int64_t set_depths(float* row, int64_t count, float least_inverse_depth, float far_m) {
     int32_t covered = 0;
     for (int64_t k = 0; k < count; k++) {
         const float n = row[k], z = 1.0f / n;
-        const bool there = n > least_nearness && !(z > far_m);
+        const bool there = n > least_inverse_depth && !(z > far_m);
         row[k] = there ? z : __builtin_inff();
         covered += there;
     }
@@ -67,7 +68,7 @@ int64_t include_row(const float* row, int32_t origin, int32_t begin, int32_t end
 }
 
 void draw_object(const Projection& canvas, const Scratch& shared, const Instances& instances,
-                 const DrawList& parts, float far_m, float near_m, AloneThread& own,
+                 const DrawList& parts, float far_m, float near_m, AmodalThread& own,
                  std::vector<float>& crop, int64_t* result) {
     crop.clear();
     std::fill(result, result + NUMBERS, 0);
@@ -88,17 +89,17 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
     window.x1 = reach.x1;
     window.y1 = reach.y1;
     const int64_t width = reach.x1 - reach.x0 + 1, height = reach.y1 - reach.y0 + 1;
-    const int64_t stride = width + 8;
+    const int64_t stride = width + ROW_PADDING;
     const size_t size = static_cast<size_t>(stride * height + 8);
-    if (own.nearness.size() < size) own.nearness.resize(size);
-    float* pixels = own.nearness.data();
-    std::fill(pixels, pixels + size, canvas.least_nearness);
+    if (own.inverse_depth.size() < size) own.inverse_depth.resize(size);
+    float* pixels = own.inverse_depth.data();
+    std::fill(pixels, pixels + size, canvas.least_inverse_depth);
     draw_window(own.set, parts, window, stride, pixels);
     Rectangle whole, seen;
     const int32_t left = std::max(reach.x0, 0), right = std::min(reach.x1, canvas.width - 1);
     for (int32_t y = reach.y0; y <= reach.y1; y++) {
         float* row = pixels + (y - reach.y0) * stride;
-        const int64_t covered = set_depths(row, width, canvas.least_nearness, far_m);
+        const int64_t covered = set_depths(row, width, canvas.least_inverse_depth, far_m);
         if (covered == 0) continue;
         result[0] += include_row(row, reach.x0, reach.x0, reach.x1, y, whole);
         if (y >= 0 && y < canvas.height && left <= right) {
@@ -128,12 +129,12 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
 }  // namespace sailenv
 
 // Makes the memory that objects are drawn in, and frees it. One drawing at a time may use it.
-SAILENV_KERNEL(make_alone_scratch)(sailenv::AloneScratch** made) {
-    *made = new (std::nothrow) sailenv::AloneScratch;
+SAILENV_KERNEL(make_amodal_scratch)(sailenv::AmodalScratch** made) {
+    *made = new (std::nothrow) sailenv::AmodalScratch;
     return *made == nullptr ? sailenv::STATUS_OUT_OF_MEMORY : sailenv::STATUS_OK;
 }
 
-SAILENV_KERNEL(free_alone_scratch)(sailenv::AloneScratch** made) {
+SAILENV_KERNEL(free_amodal_scratch)(sailenv::AmodalScratch** made) {
     delete *made;
     *made = nullptr;
     return sailenv::STATUS_OK;
@@ -144,8 +145,8 @@ SAILENV_KERNEL(free_alone_scratch)(sailenv::AloneScratch** made) {
 // (count, 10) takes of each object: the pixels that it covers on the canvas and in the picture; the
 // boxes around the ones and around the others (left, top, right, bottom, the last ones included; -1
 // where it covers none).
-SAILENV_KERNEL(draw_alone)
-(int64_t threads, sailenv::AloneScratch** handle, const sailenv::View* view,
+SAILENV_KERNEL(draw_amodal)
+(int64_t threads, sailenv::AmodalScratch** handle, const sailenv::View* view,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, const int64_t* starts,
  int64_t count, double near_m, int64_t* results) {
     using namespace sailenv;
@@ -169,10 +170,10 @@ SAILENV_KERNEL(draw_alone)
     canvas.y0 = -canvas.height;
     canvas.x1 = 2 * canvas.width - 1;
     canvas.y1 = 2 * canvas.height - 1;
-    canvas.least_nearness = std::nextafter(static_cast<float>(1.0 / view->far_m), 0.0f);
-    canvas.greatest_nearness = 3e38f;
+    canvas.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view->far_m), 0.0f);
+    canvas.greatest_inverse_depth = 3e38f;
     try {
-        AloneScratch& scratch = **handle;
+        AmodalScratch& scratch = **handle;
         scratch.shared.band_rows = ONE_BAND;
         set_frames(scratch.shared, *instances, view->camera_from_world, canvas);
         if (scratch.threads.size() < static_cast<size_t>(threads)) {
@@ -199,7 +200,7 @@ SAILENV_KERNEL(draw_alone)
 
 // Copies the depths that were drawn: of each object those in its box in the picture, row by row,
 // one object after the other; infinite where it is not, not a number where it is nearer than near.
-SAILENV_KERNEL(copy_alone)(sailenv::AloneScratch** handle, int64_t size, float* depths) {
+SAILENV_KERNEL(copy_amodal)(sailenv::AmodalScratch** handle, int64_t size, float* depths) {
     int64_t at = 0;
     for (const std::vector<float>& crop : (*handle)->crops) {
         const int64_t count = static_cast<int64_t>(crop.size());

@@ -1,0 +1,87 @@
+// 64 pixels of a row on their way from surfaces to light: what each stage of shading reads and
+// writes. A chunk's numbers lie in arrays, one for each quantity, and each stage goes over them
+// eight at a time.
+#pragma once
+
+#include "shade.h"
+
+namespace sailenv {
+
+constexpr int32_t CHUNK = 64;
+constexpr float PI = 3.14159265f;
+
+// Vectors or colours of a chunk.
+struct Vectors {
+    alignas(32) float x[CHUNK], y[CHUNK], z[CHUNK];
+
+    LANES_METHOD Vec3x8 at(int32_t i) const { return {load(x + i), load(y + i), load(z + i)}; }
+    LANES_METHOD void set(int32_t i, Vec3x8 v) {
+        store(x + i, v.x);
+        store(y + i, v.y);
+        store(z + i, v.z);
+    }
+};
+
+struct Chunk {
+    int32_t x, y, count, padded;                 // of a row; `x` and `y` not of fragments
+    alignas(32) float at_x[CHUNK], at_y[CHUNK];  // [pixels]
+    bool hit, missed, coloured, detailed;        // what there is among the pixels
+    alignas(32) float depth[CHUNK];
+    Vectors normal;  // world frame
+    alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
+    // Changes of uv / depth and of 1 / depth from pixel to pixel.
+    alignas(32) float ux[CHUNK], vx[CHUNK], uy[CHUNK], vy[CHUNK];
+    alignas(32) float inverse_depth_x[CHUNK], inverse_depth_y[CHUNK];
+    Vectors base;  // base colour: its square root before `place_points`, linear after it
+    alignas(32) float roughness[CHUNK], metallic[CHUNK], emission[CHUNK];
+    alignas(32) float colour_log2[CHUNK], detail_log2[CHUNK], finish[CHUNK], relief[CHUNK];
+    const uint32_t* colour_texels[CHUNK];
+    const uint32_t* detail_texels[CHUNK];
+    alignas(32) int32_t id[CHUNK], empty[CHUNK];  // empty: all bits where nothing is
+    Vectors ray;                                  // world frame, depth 1
+    Vectors point;                                // world [m]
+    Vectors around;                               // irradiance / pi, but for the lamps'
+    Vectors mirrored;                             // radiance
+    alignas(32) float arrives[CHUNK];             // share of the main light
+    Vectors light;                                // radiance towards the eye
+    alignas(32) float from_around[CHUNK];         // luminance of what of it came from around
+};
+
+constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's size
+
+// Interpolates what the triangles' corners know, and notes the materials: of a row's pixels, and of
+// points anywhere in the picture.
+void gather(const Shading& s, Chunk& c);
+void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c);
+
+// Depth and instance id of a row's pixels, with nothing gathered.
+void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count);
+
+// Multiplies base colours by what colour maps hold, as a picture wants it.
+void colour_for_picture(Chunk& c);
+
+// Writes linear base colours. What glows is shaded in the glow's colour, so its own is looked up.
+void write_albedo(const Shading& s, Chunk& c);
+
+// Normal, roughness and metallic as the detail map has them; see shaders/textures.glsl.
+void apply_detail_maps(const Shading& s, Chunk& c);
+
+// The light around each point and the share of the main light that arrives: from baked light, and
+// from an analytic sky and one shadow map where nothing is baked.
+void light_from_bake(const Shading& s, Chunk& c);
+void light_from_sky(const Shading& s, Chunk& c);
+
+// What each point mirrors.
+void mirror_surroundings(const Shading& s, Chunk& c);
+
+// Radiance seen where nothing was hit; see shaders/sky.frag.
+Vec3x8 background(const Light& light, Vec3x8 direction);
+
+// Adds up what surfaces send to the eye of all that arrives.
+void reflect_to_eye(const Shading& s, Chunk& c);
+
+inline bool has_main_light(const Light& light) {
+    return light.main_colour.x + light.main_colour.y + light.main_colour.z > 0.0f;
+}
+
+}  // namespace sailenv

@@ -1,0 +1,94 @@
+// Shading: what surfaces send to the eye of the light that arrives; the same model as
+// shaders/lighting.frag.
+#include "shade_chunk.h"
+
+namespace sailenv {
+namespace {
+
+// A surface of eight pixels, as the light from one direction meets it.
+struct Surface8 {
+    Vec3x8 point, normal, view;  // world frame; `view` leads to the eye
+    Vec3x8 diffuse, f0;
+    f8 a2, nv;  // roughness to the fourth power, cosine of the viewing angle
+};
+
+// GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
+template <class Direction, class Power>
+LANES_INLINE void add_reflected(const Surface8& s, Direction towards, Power power, Vec3x8& sum) {
+    const f8 nl = clamp8(dot(s.normal, towards), 0.0f, 1.0f);
+    Vec3x8 halfway = towards + s.view;
+    halfway = halfway * inverse_length(halfway);
+    const f8 nh = clamp8(dot(s.normal, halfway), 0.0f, 1.0f);
+    const f8 vh = clamp8(dot(s.view, halfway), 0.0f, 1.0f);
+    const f8 rest = 1.0f - s.a2;
+    const f8 spread = 1.0f - nh * nh * rest;
+    const f8 smith = nl * sqrt8(s.nv * s.nv * rest + s.a2) + s.nv * sqrt8(nl * nl * rest + s.a2);
+    // Distribution times visibility.
+    const f8 lobe = 0.5f * s.a2 / (PI * spread * spread * smith);
+    const f8 grazing = 1.0f - vh, g2 = grazing * grazing, g5 = g2 * g2 * grazing;
+    const Vec3x8 fresnel = s.f0 + (1.0f - s.f0) * g5;
+    sum = sum + power * nl * (s.diffuse * (1.0f - fresnel) * (1.0f / PI) + fresnel * lobe);
+}
+
+void add_lamp(const Lamp& lamp, const Surface8& s, Vec3x8& sum) {
+    if (lamp.kind == LIGHT_DIRECTIONAL) {
+        add_reflected(s, -lamp.direction, lamp.colour, sum);
+        return;
+    }
+    const Vec3x8 offset = lamp.position - s.point;
+    const f8 square = lamp_square(offset);
+    const Vec3x8 towards = offset * (1.0f / sqrt8(square));
+    const f8 share = lamp_falloff(lamp, square, -dot(towards, lamp.direction));
+    if (!any((share > 0.0f) & (dot(s.normal, towards) > 0.0f))) return;
+    add_reflected(s, towards, lamp.colour * share, sum);
+}
+
+// What a surface sends to the eye of the light around it and of what it mirrors.
+LANES_INLINE Vec3x8 from_environment(const Surface8& s, f8 roughness, Vec3x8 around,
+                                     Vec3x8 mirrored) {
+    // Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on
+    // mobile").
+    const f8 nv = min8(s.nv, splat(1.0f));
+    const f8 q0 = 1.0f - roughness, q1 = 0.0425f - 0.0275f * roughness,
+             q2 = 1.04f - 0.572f * roughness, q3 = 0.022f * roughness - 0.04f;
+    const f8 a = min8(q0 * q0, exp2_8(-9.28f * nv)) * q0 + q1;
+    const f8 term_x = -1.04f * a + q2, term_y = 1.04f * a + q3;
+    const f8 lost = 1.0f - (term_x + term_y);
+    // Single bounces in the microfacets, and what comes back from further ones (Fdez-Aguera
+    // 2019, "A multiple-scattering microfacet model").
+    const Vec3x8 once = s.f0 * term_x + term_y;
+    const Vec3x8 mean = s.f0 + (1.0f - s.f0) * (1.0f / 21.0f);
+    const Vec3x8 again = lost * once * mean / (1.0f - mean * lost);
+    return once * mirrored + (again + s.diffuse * (1.0f - once - again)) * around;
+}
+
+}  // namespace
+
+void reflect_to_eye(const Shading& s, Chunk& c) {
+    const Light& light = *s.light;
+    const bool has_main = has_main_light(light);
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const Vec3x8 ray = c.ray.at(i), base = c.base.at(i);
+        const f8 metallic = load(c.metallic + i), roughness = load(c.roughness + i);
+        Surface8 here;
+        here.point = c.point.at(i);
+        here.normal = c.normal.at(i);
+        here.view = ray * -inverse_length(ray);
+        here.f0 = mix(vec3(0.04f, 0.04f, 0.04f), base, metallic);
+        here.diffuse = base * (1.0f - metallic);
+        const f8 square = roughness * roughness;
+        here.a2 = square * square;
+        here.nv = abs8(dot(here.normal, here.view)) + 1e-4f;
+        Vec3x8 sum = from_environment(here, roughness, c.around.at(i), c.mirrored.at(i));
+        store(c.from_around + i, luminance(sum));
+        sum = sum + base * load(c.emission + i);
+        const f8 arrives = load(c.arrives + i);
+        if (has_main && any(arrives > 0.0f)) {
+            add_reflected(here, light.main_towards, light.main_colour * arrives, sum);
+        }
+        for (int32_t k = 0; k < light.lamp_count; k++) add_lamp(light.lamps[k], here, sum);
+        c.light.set(i, sum);
+    }
+}
+
+}  // namespace sailenv
