@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "form_factor.h"
+#include "light_law.h"
 #include "net_points.h"
 #include "ray_types.h"
 #include "rays.h"
-#include "render_types.h"
 
 namespace sailenv {
 
@@ -51,17 +51,27 @@ static inline LightSample sample_disc(const RayLight& l, float u, float v) {
     return s;
 }
 
+// Irradiance over radiant intensity by the law of light, at a point from which a light is
+// `towards`.
+static inline float falloff(const RayLight& l, const float* towards) {
+    Lamp lamp = {};
+    lamp.kind = l.kind;
+    lamp.range_m = l.range;
+    lamp.inner_cosine = l.inner_cosine;
+    lamp.outer_cosine = l.outer_cosine;
+    const float square = lamp_square(vec3(towards[0], towards[1], towards[2]));
+    return lamp_falloff(lamp, square, -dot(towards, l.direction) / std::sqrt(square));
+}
+
 // Of an area light's rectangle.
 static inline LightSample sample_rectangle(const RayLight& l, const float* p, float u, float v) {
     LightSample s;
     for (int k = 0; k < 3; k++) {
         s.towards[k] = l.position[k] + (u - 0.5f) * l.across[k] + (v - 0.5f) * l.up[k] - p[k];
     }
-    const float d2 = std::max(dot(s.towards, s.towards), 1e-4f);
-    const float leaving = std::max(-dot(s.towards, l.direction), 0.0f) / std::sqrt(d2);
     const float area = std::sqrt(dot(l.across, l.across)) * std::sqrt(dot(l.up, l.up));
     s.length = 0.999f;
-    s.irradiance = area * leaving / d2;
+    s.irradiance = area * falloff(l, s.towards);
     return s;
 }
 
@@ -71,15 +81,7 @@ static inline LightSample sample_ball(const RayLight& l, const float* p, float u
     LightSample s;
     float middle[3];
     for (int k = 0; k < 3; k++) middle[k] = l.position[k] - p[k];
-    const float d2 = std::max(dot(middle, middle), 1e-4f);
-    const float part = d2 / (l.range * l.range), left = std::max(1.0f - part * part, 0.0f);
-    s.irradiance = left * left / d2;
-    if (l.kind == LIGHT_SPOT) {
-        const float along = -dot(middle, l.direction) / std::sqrt(d2);
-        const float soft = std::max(l.inner_cosine - l.outer_cosine, 1e-6f);
-        const float t = std::min(std::max((along - l.outer_cosine) / soft, 0.0f), 1.0f);
-        s.irradiance *= t * t * (3.0f - 2.0f * t);
-    }
+    s.irradiance = falloff(l, middle);
     const float z = 1.0f - 2.0f * u, ring = std::sqrt(std::max(1.0f - z * z, 0.0f));
     const float turn = 6.28318531f * v;
     s.towards[0] = middle[0] + l.across[0] * ring * std::cos(turn);

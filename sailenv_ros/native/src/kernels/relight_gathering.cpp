@@ -21,7 +21,7 @@ bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* tabl
     if (hit.triangle < 0) {
         const float share = weight * through_panes(s, r);
         double sky[3];
-        sky_radiance(s.sky, s.sky_height, s.sky_width, r.d, sky);
+        picture_radiance(s.sky, s.sky_height, s.sky_width, r.d, sky);
         for (int c = 0; c < 3; c++) sum[c] += share * static_cast<float>(sky[c]);
         return true;
     }

@@ -116,7 +116,7 @@ SAILENV_KERNEL(probe_radiance)
                 if (texel == BACK || texel >= size) continue;
                 const float* d = directions + 3 * m;
                 double from_sky[3] = {0.0, 0.0, 0.0};
-                if (texel < 0) sky_radiance(sky->picture, sky->height, sky->width, d, from_sky);
+                if (texel < 0) picture_radiance(sky->picture, sky->height, sky->width, d, from_sky);
                 const int64_t all = texel < 0 ? 3 : channels;
                 for (int64_t c = 0; c < all; c++) {
                     const double value = texel < 0 ? clear[k * rays + m] * from_sky[c]
