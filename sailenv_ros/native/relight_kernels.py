@@ -58,6 +58,7 @@ def gather_change(
     shot_pattern: Floats,
     least: float,
     *,
+    inside_share: float,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
     """Gather what arrives at patches by way of others, and straight from area lights.
@@ -74,6 +75,8 @@ def gather_change(
     area_lights : (A,) RAY_LIGHT
     least : float
         Patches of whose view changed things may take less than this share are passed over.
+    inside_share : float
+        A patch that sees more backs of surfaces than this share lies inside of something.
 
     Returns
     -------
@@ -98,7 +101,7 @@ def gather_change(
         "shot_pattern": checked("pattern of shots", shot_pattern, np.float32, (shots, 2)),
     }
     numbers = {"count": count, "rays": rays, "light_count": lights, "shots": shots}
-    query = Record(asked, {**numbers, "least": float(least)})
+    query = Record(asked, {**numbers, "least": float(least), "inside_share": float(inside_share)})
     found, nearness = np.zeros(count, np.uint8), np.zeros(count, np.float32)
     change = np.zeros((count, channels), np.float32)
     direct = np.zeros((count, lights), np.float32)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.bake.light_shapes import light_record
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere, low_discrepancy_points
+from sailenv_ros.bake.settings import INSIDE_SHARE
 from sailenv_ros.baked_light import BakedLight, LightChart, ProbeGrid
 from sailenv_ros.geometry import invert
 from sailenv_ros.model import Model
@@ -231,7 +232,7 @@ class _Relighting:
         found, change, area, nearness = gather_change(
             self._rays, self._patch_positions, self._patch_normals, wanted.astype(np.uint8),
             low_discrepancy_points(rays), lights, shots, self._quality.least,
-            threads=self._threads,
+            inside_share=INSIDE_SHARE, threads=self._threads,
         )  # fmt: skip
         # Both in one go: they share their neighbours.
         smooth_found, both = smooth_change(

@@ -19,18 +19,6 @@ static inline float dot(const float* a, const float* b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Two directions across a unit vector (Duff et al. 2017).
-static inline void frame_about(const float* n, float* a, float* b) {
-    const float sign = n[2] >= 0.0f ? 1.0f : -1.0f;
-    const float q = -1.0f / (sign + n[2]), w = n[0] * n[1] * q;
-    a[0] = 1.0f + sign * n[0] * n[0] * q;
-    a[1] = sign * w;
-    a[2] = -sign * n[0];
-    b[0] = w;
-    b[1] = sign + n[1] * n[1] * q;
-    b[2] = -n[1];
-}
-
 // A point of a light, seen from another: not unit length but for directional lights.
 struct LightSample {
     float towards[3], length, irradiance;  // on a surface that faces it
@@ -39,11 +27,9 @@ struct LightSample {
 // Of the disc of a directional light, whose radius `range` holds.
 static inline LightSample sample_disc(const RayLight& l, float u, float v) {
     LightSample s;
-    float a[3], b[3];
-    frame_about(l.direction, a, b);
+    const float axis[3] = {-l.direction[0], -l.direction[1], -l.direction[2]};
     const float radius = l.range * std::sqrt(u), turn = 6.28318531f * v;
-    const float x = radius * std::cos(turn), y = radius * std::sin(turn);
-    for (int k = 0; k < 3; k++) s.towards[k] = -l.direction[k] + x * a[k] + y * b[k];
+    around_axis(axis, radius * std::cos(turn), radius * std::sin(turn), 1.0f, s.towards);
     const float scale = 1.0f / std::sqrt(dot(s.towards, s.towards));
     for (float& t : s.towards) t *= scale;
     s.length = ENDLESS;

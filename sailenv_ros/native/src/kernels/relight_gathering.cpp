@@ -12,8 +12,7 @@
 namespace sailenv {
 namespace {
 
-constexpr float FAR_M = 2.0f;          // what is farther is as good as endless
-constexpr float INSIDE_SHARE = 0.25f;  // of the backs of surfaces that are seen; see bake/gather.py
+constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 
 // Adds what a ray sees, times `weight`, to `sum`; false if that is the back of a surface.
 bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* table, float weight,
@@ -70,7 +69,6 @@ class CosineRays {
 public:
     CosineRays(const float* p, const float* n, uint32_t number)
         : n_(n), turn_u_(scatter(2 * number)), turn_v_(scatter(2 * number + 1)) {
-        frame_about(n, a_, b_);
         for (int c = 0; c < 3; c++) origin_[c] = p[c] + n[c] * LIFT_M;
     }
 
@@ -78,17 +76,14 @@ public:
         float u = point[0] + turn_u_, v = point[1] + turn_v_;
         u -= std::floor(u);
         v -= std::floor(v);
-        const float radius = std::sqrt(u), turn = 6.28318531f * v;
-        const float x = radius * std::cos(turn), y = radius * std::sin(turn);
-        const float z = std::sqrt(std::max(1.0f - u, 0.0f));
         float d[3];
-        for (int c = 0; c < 3; c++) d[c] = x * a_[c] + y * b_[c] + z * n_[c];
+        cosine_direction(n_, u, v, d);
         return ray_of(origin_, d);
     }
 
 private:
     const float* n_;
-    float turn_u_, turn_v_, a_[3], b_[3], origin_[3];
+    float turn_u_, turn_v_, origin_[3];
 };
 
 float nearness_of(float t) { return 1.0f / std::min(std::max(t, 1e-3f), FAR_M); }
@@ -104,7 +99,7 @@ Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuer
         backs += !add_seen(s, hit, r, s.after, each, sum);
         near += nearness_of(hit.t);
     }
-    const bool inside = static_cast<float>(backs) > INSIDE_SHARE * static_cast<float>(q.rays);
+    const bool inside = static_cast<double>(backs) > q.inside_share * static_cast<double>(q.rays);
     return {inside ? PATCH_INSIDE : PATCH_WHOLE, static_cast<float>(q.rays) / near};
 }
 

@@ -45,7 +45,8 @@ struct PatchQuery {
     const RayLight* lights;     // (light_count,): area lights
     const float* shot_pattern;  // (shots, 2), for rays to each of them
     int64_t count, rays, light_count, shots;
-    double least;  // share of a view that changed things must be able to take
+    double least;         // share of a view that changed things must be able to take
+    double inside_share;  // of backs that are seen; a patch that sees more lies inside of something
 };
 
 // What was gathered: irradiance / pi, the difference or all of it.
