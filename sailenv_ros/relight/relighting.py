@@ -13,10 +13,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.bake.light_probes import probe_positions
 from sailenv_ros.bake.light_shapes import light_record
 from sailenv_ros.bake.ray_patterns import fibonacci_sphere, low_discrepancy_points
 from sailenv_ros.bake.settings import INSIDE_SHARE
-from sailenv_ros.baked_light import BakedLight, LightChart, ProbeGrid
+from sailenv_ros.baked_light import BakedLight, LightChart
 from sailenv_ros.geometry import invert
 from sailenv_ros.model import Model
 from sailenv_ros.native.ray_types import RAY_LIGHT
@@ -297,7 +298,7 @@ class _Relighting:
     def _probe_change(self) -> tuple[Floats, Floats]:
         """Return (Z, Y, X, 4, C) float32 twice: see `gather_probe_change`."""
         grid = self._scene.baked.probes
-        points = _probe_points(grid)
+        points = probe_positions(grid)
         far, near = gather_probe_change(
             self._rays, points, fibonacci_sphere(self._quality.probe_rays),
             with_far=self._far, threads=self._threads,
@@ -342,9 +343,3 @@ def _take(values: Floats, found: NDArray[np.uint8], change: Floats) -> None:
     """Add what has changed, and replace what was worked out anew."""
     values[found == 1] += change[found == 1]
     values[found == 2] = change[found == 2]
-
-
-def _probe_points(grid: ProbeGrid) -> Floats:
-    z, y, x = np.indices(grid.shape).reshape(3, -1)
-    points = np.stack([x, y, z], axis=1) * np.asarray(grid.spacing_m) + np.asarray(grid.origin_m)
-    return np.ascontiguousarray(points, np.float32)
