@@ -45,7 +45,7 @@ def main() -> None:
         simulation.capture(VIEWS)
         simulation.step(8)
         frame = simulation.capture(VIEWS)
-        draw = frame.draw_alone
+        draw = frame.draw_amodal
         assert draw is not None
         instance, flow = frame["instance"], frame["flow"]
         masks = draw()

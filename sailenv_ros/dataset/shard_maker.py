@@ -204,7 +204,7 @@ class ShardMaker:
             "info": self._info[1],
         }
         if not self._recipe.amodal:
-            changes["draw_alone"] = None
+            changes["draw_amodal"] = None
         return replace(frame, **changes)
 
     def _chosen(

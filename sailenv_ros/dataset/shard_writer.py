@@ -187,7 +187,7 @@ def _object_rows(frame: Frame) -> list[list[Any]]:
     """Return category, visible pixels, visible share and distance of each visible object."""
     if frame.info is None or "instance" not in frame.views:
         return []
-    table = frame.objects if frame.draw_alone is None else frame.objects.with_amodal(frame.amodal)
+    table = frame.objects if frame.draw_amodal is None else frame.objects.with_amodal(frame.amodal)
     rows = []
     for row in np.flatnonzero(table.visible).tolist():
         if table.category_ids[row] in NO_CATEGORY:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -33,8 +34,8 @@ class Record:
     ----------
     arrays : dict of str to array
         By the names of the structure's pointers, in their order.
-    numbers : dict of str to int
-        The structure's integers, which follow.
+    numbers : dict of str to int or float
+        The structure's numbers, which follow: int64 or double.
 
     Attributes
     ----------
@@ -42,9 +43,12 @@ class Record:
     arrays : dict of str to array
     """
 
-    def __init__(self, arrays: dict[str, NDArray[Any]], numbers: dict[str, int]) -> None:
+    def __init__(self, arrays: dict[str, NDArray[Any]], numbers: Mapping[str, float]) -> None:
         fields: list[Any] = [(name, _ADDRESS) for name in arrays]
-        fields += [(name, "<i8") for name in numbers]
+        fields += [
+            (name, "<f8" if isinstance(number, float) else "<i8")
+            for name, number in numbers.items()
+        ]
         self.arrays = arrays
         self.record: NDArray[np.void] = np.zeros(1, np.dtype(fields, align=True))
         for name, array in arrays.items():

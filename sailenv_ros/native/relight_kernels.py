@@ -5,11 +5,15 @@ Arrays of structures hold addresses; whoever calls keeps what they point to aliv
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.bake_types import Record
 from sailenv_ros.native.library import Kernel, checked
-from sailenv_ros.native.render_types import address
+from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.relight_types import HalfMaps, MappedTexels, PatchMap
 
 __all__ = [
     "gather_change",
@@ -22,15 +26,10 @@ __all__ = [
 
 Floats = NDArray[np.float32]
 
-_GATHER = Kernel(
-    "gather_change",
-    *("integer", "array", "integer", "array", "array", "array", "integer", "array", "integer"),
-    *("array", "integer", "array", "number", "array", "array", "array", "array"),
-)
+_GATHER = Kernel("gather_change", "integer", "array", "array", "array")
 _SMOOTH = Kernel(
     "smooth_change",
-    *("integer", "integer", "integer", "integer", "array", "array", "array", "array", "array"),
-    *("array", "array", "integer", "array", "array", "array"),
+    *("integer", "array", "integer", "array", "array", "integer", "array", "array", "array"),
 )
 _PROBES = Kernel(
     "gather_probe_change",
@@ -46,11 +45,7 @@ _INTERPOLATE = Kernel(
     *("integer", "integer", "integer", "integer", "integer", "array", "array", "array"),
     *("integer", "array", "array", "array"),
 )
-_SPREAD = Kernel(
-    "spread_change",
-    *("integer", "integer", "integer", "array", "array", "array", "array", "integer", "array"),
-    *("array", "array", "array", "array", "array", "integer", "array", "array", "array"),
-)
+_SPREAD = Kernel("spread_change", "integer", "array", "array", "array", "array", "array")
 
 
 def gather_change(
@@ -63,6 +58,7 @@ def gather_change(
     shot_pattern: Floats,
     least: float,
     *,
+    inside_share: float,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
     """Gather what arrives at patches by way of others, and straight from area lights.
@@ -79,6 +75,8 @@ def gather_change(
     area_lights : (A,) RAY_LIGHT
     least : float
         Patches of whose view changed things may take less than this share are passed over.
+    inside_share : float
+        A patch that sees more backs of surfaces than this share lies inside of something.
 
     Returns
     -------
@@ -93,24 +91,27 @@ def gather_change(
         Harmonic mean of the distances of what was looked at [m].
     """
     count, channels = len(positions), int(scene["channels"][0])
-    checked("positions", positions, np.float32, (None, 3))
-    checked("normals", normals, np.float32, (count, 3))
-    checked("wanted", wanted, np.uint8, (count,))
-    found = np.zeros(count, np.uint8)
+    rays, lights, shots = len(pattern), len(area_lights), len(shot_pattern)
+    asked: dict[str, NDArray[Any]] = {
+        "positions": checked("positions", positions, np.float32, (None, 3)),
+        "normals": checked("normals", normals, np.float32, (count, 3)),
+        "wanted": checked("wanted", wanted, np.uint8, (count,)),
+        "pattern": checked("pattern", pattern, np.float32, (rays, 2)),
+        "lights": checked("area lights", area_lights, RAY_LIGHT, (lights,)),
+        "shot_pattern": checked("pattern of shots", shot_pattern, np.float32, (shots, 2)),
+    }
+    numbers = {"count": count, "rays": rays, "light_count": lights, "shots": shots}
+    query = Record(asked, {**numbers, "least": float(least), "inside_share": float(inside_share)})
+    found, nearness = np.zeros(count, np.uint8), np.zeros(count, np.float32)
     change = np.zeros((count, channels), np.float32)
-    direct = np.zeros((count, len(area_lights)), np.float32)
-    nearness = np.zeros(count, np.float32)
-    _GATHER(
-        threads, scene, count, positions, normals, wanted, len(pattern), pattern,
-        len(area_lights), area_lights, len(shot_pattern), shot_pattern, least,
-        found, change, direct, nearness,
-    )  # fmt: skip
+    direct = np.zeros((count, lights), np.float32)
+    result = Record({"found": found, "bounced": change, "direct": direct, "nearness": nearness}, {})
+    _GATHER(threads, scene, query.record, result.record)
     return found, change, direct, nearness
 
 
 def smooth_change(
-    patch_of_texel: NDArray[np.int32],
-    patches: tuple[Floats, Floats, Floats, NDArray[np.int32]],
+    patches: PatchMap,
     radius: int,
     found: NDArray[np.uint8],
     nearness: Floats,
@@ -122,9 +123,7 @@ def smooth_change(
 
     Parameters
     ----------
-    patch_of_texel : (side, side) int32
-    patches : (P, 2), (P, 3), (P, 3) float32, (P,) int32
-        As in `spread_change`.
+    patches : PatchMap
     found : (P,) uint8
     nearness : (P,) float32
     change : (P, C) float32
@@ -134,19 +133,14 @@ def smooth_change(
     found : (P,) uint8
     change : (P, C) float32
     """
-    side, count = len(patch_of_texel), len(found)
-    checked("patches of texels", patch_of_texel, np.int32, (side, side))
-    for array, width in zip(patches[:3], (2, 3, 3), strict=True):
-        checked("patches", array, np.float32, (count, width))
-    checked("owners of patches", patches[3], np.int32, (count,))
-    checked("found", found, np.uint8, (count,))
-    checked("nearness", nearness, np.float32, (count,))
-    checked("change", change, np.float32, (count, None))
+    checked("found", found, np.uint8, (patches.count,))
+    checked("nearness", nearness, np.float32, (patches.count,))
+    checked("change", change, np.float32, (patches.count, None))
     smooth_found, smooth = np.zeros_like(found), np.zeros_like(change)
     if change.size:
         _SMOOTH(
-            threads, side, radius, count, patch_of_texel, *patches, found, nearness,
-            change.shape[1], change, smooth_found, smooth,
+            threads, patches.record, radius, found, nearness, change.shape[1], change,
+            smooth_found, smooth,
         )  # fmt: skip
     return smooth_found, smooth
 
@@ -244,10 +238,8 @@ def light_of_probes(
 
 
 def spread_change(
-    side: int,
-    texels: tuple[NDArray[np.int32], Floats, Floats, NDArray[np.int32]],
-    patch_of_texel: NDArray[np.int32],
-    patches: tuple[Floats, Floats, Floats, NDArray[np.int32]],
+    texels: MappedTexels,
+    patches: PatchMap,
     found: NDArray[np.uint8],
     change: Floats,
     layers: list[NDArray[np.float16]],
@@ -258,47 +250,15 @@ def spread_change(
 
     Parameters
     ----------
-    side : int
-        Of the map [texels].
-    texels : (N,) int32, (N, 3) float32, (N, 3) float32, (N,) int32
-        Place in the map, position, normal and instance of each texel in use.
-    patch_of_texel : (side, side) int32
-    patches : (P, 2), (P, 3), (P, 3) float32, (P,) int32
-        Column and row of each patch's texel, position, normal, instance.
+    texels : MappedTexels
+    patches : PatchMap
     found : (P,) uint8
     change : (P, C) float32
         What was found: the layers' channels in their order.
     layers : list of (side, side, 3) or (side, side) float16
         At least one; written to.
     """
-    count, patch_count = len(texels[0]), len(found)
-    channels = sum(3 if layer.ndim == 3 else 1 for layer in layers)
-    for what, array, dtype, width in (
-        ("places", texels[0], np.int32, None),
-        ("positions", texels[1], np.float32, 3),
-        ("normals", texels[2], np.float32, 3),
-        ("owners", texels[3], np.int32, None),
-    ):
-        checked(what, array, dtype, (count,) if width is None else (count, width))
-    checked("patches of texels", patch_of_texel, np.int32, (side, side))
-    for array, width in zip(patches[:3], (2, 3, 3), strict=True):
-        checked("patches", array, np.float32, (patch_count, width))
-    checked("owners of patches", patches[3], np.int32, (patch_count,))
-    checked("found", found, np.uint8, (patch_count,))
-    checked("change", change, np.float32, (patch_count, channels))
-    for layer in layers:
-        checked("layer", layer, np.float16, (side, side, 3)[: layer.ndim])
-    depths = [3 if layer.ndim == 3 else 1 for layer in layers]
-    addresses = np.array(
-        [
-            address(layer) + 2 * channel
-            for layer, depth in zip(layers, depths, strict=True)
-            for channel in range(depth)
-        ],
-        np.uint64,
-    )
-    steps = np.repeat(np.array(depths, np.int64), depths)
-    _SPREAD(
-        threads, side, count, *texels, patch_count, patch_of_texel, *patches, found,
-        channels, change, addresses, steps,
-    )  # fmt: skip
+    maps = HalfMaps(layers, patches.side)
+    checked("found", found, np.uint8, (patches.count,))
+    checked("change", change, np.float32, (patches.count, maps.channels))
+    _SPREAD(threads, texels.record, patches.record, found, change, maps.record)

@@ -9,7 +9,7 @@ import pytest
 
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -38,9 +38,9 @@ def native() -> Iterator[NativeRenderer]:
 
 
 @pytest.fixture
-def alone(native: NativeRenderer) -> Iterator[AloneRenderer]:
+def alone(native: NativeRenderer) -> Iterator[AmodalRenderer]:
     """What draws objects alone, with the renderer's meshes."""
-    made = AloneRenderer(native.part_table)
+    made = AmodalRenderer(native.part_table)
     yield made
     made.close()
 
@@ -71,7 +71,7 @@ def ring_mesh() -> Mesh:
 
 @pytest.mark.parametrize("size", [(8, 8), (97, 61), (160, 120)])
 def test_what_nothing_hides_covers_its_visible_pixels(
-    native: NativeRenderer, alone: AloneRenderer, size: tuple[int, int]
+    native: NativeRenderer, alone: AmodalRenderer, size: tuple[int, int]
 ) -> None:
     """Each of many objects, drawn in a scene of its own, has the mask and depth of that scene."""
     camera = camera_at(width=size[0], height=size[1])
@@ -91,7 +91,7 @@ def test_what_nothing_hides_covers_its_visible_pixels(
 
 
 def test_the_canvas_is_a_picture_of_three_times_the_size(
-    native: NativeRenderer, alone: AloneRenderer
+    native: NativeRenderer, alone: AmodalRenderer
 ) -> None:
     """Pixels and boxes beside the picture are those that a larger picture shows."""
     camera = camera_at(width=64, height=48, vertical_fov_deg=50.0)
@@ -118,7 +118,7 @@ def test_the_canvas_is_a_picture_of_three_times_the_size(
     assert beside > 3, "some objects should be cut by the border"
 
 
-def test_visible_shares_are_those_of_rays(native: NativeRenderer, alone: AloneRenderer) -> None:
+def test_visible_shares_are_those_of_rays(native: NativeRenderer, alone: AmodalRenderer) -> None:
     """Two rays for each pixel: through the whole scene, and through each object alone."""
     camera = camera_at(width=80, height=60)
     things = crowd(10)
@@ -137,7 +137,7 @@ def test_visible_shares_are_those_of_rays(native: NativeRenderer, alone: AloneRe
 
 
 def test_what_is_seen_through_a_hole_belongs_to_what_lies_behind(
-    native: NativeRenderer, alone: AloneRenderer
+    native: NativeRenderer, alone: AmodalRenderer
 ) -> None:
     """The mask of a plate with a hole has the hole, and what lies behind is seen in it."""
     ring = Thing(model_of(ring_mesh()), Pose((3.0, 0.0, 0.0)))
@@ -152,7 +152,7 @@ def test_what_is_seen_through_a_hole_belongs_to_what_lies_behind(
     assert masks.whole_pixels[1] > masks.pixels[1] == 81 * 61
 
 
-def test_an_object_that_hides_itself_is_covered_once(alone: AloneRenderer) -> None:
+def test_an_object_that_hides_itself_is_covered_once(alone: AmodalRenderer) -> None:
     """Depth is that of its nearest surface."""
     two = mesh_of(
         [(x, y, z) for x in (0, 1) for y, z in ((1, -1), (-1, -1), (-1, 1), (1, 1))],
@@ -166,7 +166,7 @@ def test_an_object_that_hides_itself_is_covered_once(alone: AloneRenderer) -> No
     np.testing.assert_allclose(depth[np.isfinite(depth)], 2.0, rtol=1e-6)
 
 
-def test_glass_covers_nothing_and_hides_nothing(alone: AloneRenderer) -> None:
+def test_glass_covers_nothing_and_hides_nothing(alone: AmodalRenderer) -> None:
     """As in all labels; what has opaque parts is covered by those."""
     glass = Thing(model_of(box_mesh(1.0), alpha="blend"), Pose((2.0, 0.0, 0.0)))
     behind = Thing(model_of(box_mesh(1.0)), Pose((4.0, 0.0, 0.0)))
@@ -177,7 +177,9 @@ def test_glass_covers_nothing_and_hides_nothing(alone: AloneRenderer) -> None:
     assert masks.pixels[1] > 0
 
 
-def test_holes_of_a_masked_material_are_holes(native: NativeRenderer, alone: AloneRenderer) -> None:
+def test_holes_of_a_masked_material_are_holes(
+    native: NativeRenderer, alone: AmodalRenderer
+) -> None:
     """Foliage is not covered where its texture is clear."""
     skin = checker(4, 64)
     skin[..., 3] = np.where(np.indices((64, 64)).sum(axis=0) // 16 % 2, 255, 0)
@@ -190,7 +192,7 @@ def test_holes_of_a_masked_material_are_holes(native: NativeRenderer, alone: Alo
     assert 0 < mask.sum() < 0.8 * (cast(snapshot, camera).row == 0).sum()
 
 
-def test_what_lies_behind_the_camera_is_nowhere(alone: AloneRenderer) -> None:
+def test_what_lies_behind_the_camera_is_nowhere(alone: AmodalRenderer) -> None:
     """It has no pixel, and a box that says so."""
     things = [Thing(model_of(box_mesh(1.0)), Pose((-3.0, 0.0, 0.0)))]
     masks = alone.draw(snapshot_of(things), camera_at())
@@ -200,7 +202,7 @@ def test_what_lies_behind_the_camera_is_nowhere(alone: AloneRenderer) -> None:
 
 
 def test_clip_distances_are_those_of_the_views(
-    native: NativeRenderer, alone: AloneRenderer
+    native: NativeRenderer, alone: AmodalRenderer
 ) -> None:
     """What is nearer than near is covered without a depth; what is beyond far is not covered."""
     near = Thing(model_of(wall_mesh(0.2, 0.2)), Pose((0.5, 0.0, 0.0)))
@@ -214,7 +216,7 @@ def test_clip_distances_are_those_of_the_views(
     assert 0 < masks.pixels[1] < 96 * 72
 
 
-def test_an_object_of_one_pixel(native: NativeRenderer, alone: AloneRenderer) -> None:
+def test_an_object_of_one_pixel(native: NativeRenderer, alone: AmodalRenderer) -> None:
     """A disc so far away that one pixel's centre lies on it has one pixel, here and there."""
     disc = Thing(model_of(disc_mesh(0.02)), Pose((2.5, 0.0, 0.0)))
     camera = camera_at(width=33, height=33)
@@ -226,7 +228,7 @@ def test_an_object_of_one_pixel(native: NativeRenderer, alone: AloneRenderer) ->
 
 
 def bytes_of(snapshot: WorldSnapshot, camera: Camera, threads: int) -> Sequence[bytes]:
-    drawing = AloneRenderer(threads=threads)
+    drawing = AmodalRenderer(threads=threads)
     masks = drawing.draw(snapshot, camera)
     drawing.close()
     assert masks.depths is not None
@@ -245,7 +247,7 @@ def test_masks_do_not_depend_on_threads_or_instruction_set() -> None:
             assert bytes_of(snapshot, camera, 3) == wanted
 
 
-def test_an_empty_scene_has_no_masks(alone: AloneRenderer) -> None:
+def test_an_empty_scene_has_no_masks(alone: AmodalRenderer) -> None:
     """And that is no error."""
     assert len(alone.draw(snapshot_of([]), camera_at())) == 0
 

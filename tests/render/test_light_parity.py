@@ -16,9 +16,9 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake import direct
-from sailenv_ros.light.relight.ray_world import ray_light
+from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.native.ray_types import RAY_SCENE
-from sailenv_ros.native.relight_kernels import shine_change
+from sailenv_ros.native.relight_kernels import direct_light_delta
 from sailenv_ros.native.render_types import address, record
 from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.render.picture.finishing import Finisher
@@ -139,16 +139,20 @@ def test_live_lamps_follow_the_law(
     assert share == 0.0 or wanted.min() > 0.1
 
 
+def without_size(light: Light) -> NDArray[np.void]:
+    """A lamp that is a point, a sun without a disc: shadows' edges are another matter."""
+    row = light_record(light, sun_radius=0.0)
+    if light.type in ("point", "spot"):
+        row["across"] = 0.0
+    return row
+
+
 @EVERY
 @FROM_AFAR
 def test_relighting_follows_the_law(case: Case, distance_m: float) -> None:
     """Irradiance by the kernel that makes the direct part of light anew."""
     small = replace(case, side_m=1e-3)  # what is near a panel sees more than a point of it
-    light = ray_light(small.light(distance_m))
-    if case.type != "area":
-        light["across"] = 0.0  # a lamp without size: its shadows' edges are another matter
-    if case.type == "directional":
-        light["range"] = 0.0
+    light = without_size(small.light(distance_m))
     sky, patches = np.zeros((1, 1, 3), np.float32), np.zeros((1, 1), np.int32)
     scene = record(
         RAY_SCENE,
@@ -158,7 +162,7 @@ def test_relighting_follows_the_law(case: Case, distance_m: float) -> None:
         **dict.fromkeys(("sky_height", "sky_width", "height", "width"), 1),
         channels=3,
     )
-    _, found, _ = shine_change(
+    _, found, _ = direct_light_delta(
         scene,
         light,
         np.array([[AT_X, 0.0, 0.0]], np.float32),
@@ -177,8 +181,7 @@ def test_baking_follows_the_law(
     case: Case, distance_m: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Irradiance of the direct part of a bake."""
-    monkeypatch.setattr(direct, "LAMP_RADIUS_M", 0.0)
-    monkeypatch.setattr(direct, "SUN_RADIUS", 0.0)
+    monkeypatch.setattr(direct, "light_record", without_size)
     small = replace(case, side_m=1e-3)
     normals = np.array([[-1.0, 0.0, 0.0]], np.float32)
     points = direct.Points(

@@ -106,7 +106,7 @@ def test_amodal_masks_are_kept_with_their_frames(node: NodeProcess, tmp_path: Pa
         until(seen, "frames to be recorded")
         assert process.end() == 0, process.log
     with RecordingReader(bag) as reader:
-        read = [frame for frame in RecordedFrames(reader) if frame.draw_alone is not None]
+        read = [frame for frame in RecordedFrames(reader) if frame.draw_amodal is not None]
         assert read
         for frame in read:
             kept = live[frame.sequence]

@@ -16,7 +16,7 @@ from sailenv_ros.authoring.viewpoints import ViewScene, sample_cameras
 from sailenv_ros.authoring.viewpoints.room_view import outlook
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.space.grid import map_free_space
@@ -57,9 +57,9 @@ class StandingWorld(ViewScene):
         """Return these views of the world."""
         return self._backend.render(self.snapshot, None, camera, views).views
 
-    def draw_alone(self, camera: Camera, only: int) -> AmodalMasks:
+    def draw_amodal(self, camera: Camera, only: int) -> AmodalMasks:
         """Return each object drawn alone, or only the one of that id."""
-        return AloneRenderer().draw(self.snapshot, camera, only)
+        return AmodalRenderer().draw(self.snapshot, camera, only)
 
     def free_space(self, body: BodySize) -> FreeSpace:
         """Return where a body can stand."""

@@ -62,7 +62,7 @@ class ViewScene(ABC):
         """Return these views of the scene, with no motion in them."""
 
     @abstractmethod
-    def draw_alone(self, camera: Camera, only: int) -> AmodalMasks:
+    def draw_amodal(self, camera: Camera, only: int) -> AmodalMasks:
         """Return each object drawn alone, or only the one of that id; 0 for all."""
 
     def instances(self, pose: Pose) -> NDArray[np.uint16]:
@@ -78,7 +78,7 @@ class ViewScene(ABC):
 
         The part beyond the picture's borders is counted, up to a picture's size on each side.
         """
-        masks = self.draw_alone(self.camera(pose), only)
+        masks = self.draw_amodal(self.camera(pose), only)
         return dict(zip(masks.ids.tolist(), masks.whole_pixels.tolist(), strict=True))
 
     @abstractmethod

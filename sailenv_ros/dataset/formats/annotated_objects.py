@@ -55,7 +55,7 @@ def annotated_objects(sample: Sample, format_name: str) -> AnnotatedObjects:
     """
     sample.scene_info(format_name)
     frame: Frame = sample.frame
-    masks = None if frame.draw_alone is None else frame.amodal
+    masks = None if frame.draw_amodal is None else frame.amodal
     table = frame.objects if masks is None else frame.objects.with_amodal(masks)
     labelled = ~np.isin(table.category_ids, NO_CATEGORY)
     seen = table.visible

@@ -40,7 +40,7 @@ class McapExport(DatasetFormat):
         if (info.epoch, info.revision) != self._revision:
             self._revision = info.epoch, info.revision
             self._recorder.write_info(info)
-        amodal = frame.draw_alone is not None
+        amodal = frame.draw_amodal is not None
         self._recorder.write_frame(frame, frame.depth_range_m, amodal=amodal)
         return WriteResult(written={"frames": 1})
 

@@ -28,7 +28,7 @@ from sailenv_ros.native.gather_kernels import (
 )
 from sailenv_ros.native.surface_light import add_radiance_met, mean_radiance_met, met_texels
 
-__all__ = ["BACK", "INSIDE_SHARE", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
+__all__ = ["BACK", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
 
 Floats = NDArray[np.float32]
 
@@ -37,10 +37,6 @@ NOTHING = -1
 
 BACK = -2
 """Stands for the back of a surface that has none: such light is lost."""
-
-INSIDE_SHARE = 0.25
-"""A point that sees more backs of surfaces than this share lies inside of something; the same in
-src/kernels/relight_gathering.cpp."""
 
 EMITTER_RAYS = 4
 """From each point to each emitter; texels of a tile of 4 by 4 use different ones."""
@@ -93,9 +89,8 @@ class Surroundings:
             self.faces, self.two_sided, self.paired.other, self.paired.corner, self.places,
             self.index,
         )  # fmt: skip
-        triangle, second, third = (
-            np.ascontiguousarray(of) for of in (hits.triangle, hits.second, hits.third)
-        )
+        triangle = np.ascontiguousarray(hits.triangle)
+        second, third = (np.ascontiguousarray(weight) for weight in (hits.second, hits.third))
         return met_texels(triangles, triangle, second, third, directions)
 
 

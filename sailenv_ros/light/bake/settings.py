@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-__all__ = ["BAKE_VERSION", "BakeSettings", "drafted"]
+__all__ = ["BAKE_VERSION", "INSIDE_SHARE", "BakeSettings", "drafted"]
 
 BAKE_VERSION = 12
 """Grows whenever the same scene and settings would give another result."""
+
+
+INSIDE_SHARE = 0.25
+"""A point that sees more backs of surfaces than this share lies inside of something."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,9 +13,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.light_probes import probe_positions
 from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere, low_discrepancy_points
+from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.light.relight.layer_updates import DirectDelta, LayerUpdates
 from sailenv_ros.light.relight.quality import Quality
 from sailenv_ros.light.relight.ray_world import ray_world
 from sailenv_ros.light.relight.scene_changes import Change
@@ -26,9 +29,9 @@ from sailenv_ros.native.relight_kernels import (
     gather_probe_change,
     light_of_probes,
     smooth_change,
-    spread_change,
 )
-from sailenv_ros.types.baked_light import BakedLight, LightChart, LightLayer, ProbeGrid, SunEdges
+from sailenv_ros.native.relight_types import MappedTexels, PatchMap
+from sailenv_ros.types.baked_light import BakedLight, LightChart
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
 
@@ -108,14 +111,18 @@ class _Relighting:
             wanted = np.where(found == 2, 2, self._wanted)
             found, change, area = self._gather(wanted, quality.rays)
         found_far, change, far, near = self._bounced(found, change, direct)
+        texels = MappedTexels(
+            self._scene.places, self._positions, self._normals, self._scene.owners
+        )
+        updates = LayerUpdates(self._layers, self._area, texels, self._patches(), self._threads)
         if quality.by_texels:
             layers = [
-                self._with_direct(layer, deltas.get(number))
-                for number, layer in enumerate(self._spread(found_far, change, area, {}))
+                updates.with_direct(layer, deltas.get(number))
+                for number, layer in enumerate(updates.spread(found_far, change, area, {}))
             ]
         else:
-            layers = self._spread(found_far, change, area, deltas)
-        layers = self._with_probes(layers, far, near)
+            layers = updates.spread(found_far, change, area, deltas)
+        layers = updates.with_probes(layers, far, near)
         return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
 
     def _send_out(self, irradiance: Floats, direct: Floats) -> None:
@@ -226,20 +233,23 @@ class _Relighting:
         found, change, area, nearness = gather_change(
             self._rays, self._patch_positions, self._patch_normals, wanted.astype(np.uint8),
             low_discrepancy_points(rays), lights, shots, self._quality.least,
-            threads=self._threads,
+            inside_share=INSIDE_SHARE, threads=self._threads,
         )  # fmt: skip
         # Both in one go: they share their neighbours.
         smooth_found, both = smooth_change(
-            self._scene.patches.of_map, self._patches(), self._quality.smoothing, found, nearness,
+            self._patches(), self._quality.smoothing, found, nearness,
             np.concatenate([change, area], axis=1), threads=self._threads,
         )  # fmt: skip
         channels = change.shape[1]
         change, area = (np.ascontiguousarray(part) for part in np.split(both, [channels], axis=1))
         return smooth_found, change, area
 
-    def _patches(self) -> tuple[Floats, Floats, Floats, NDArray[np.int32]]:
+    def _patches(self) -> PatchMap:
         patches = self._scene.patches
-        return patches.places, self._patch_positions, self._patch_normals, patches.owners
+        return PatchMap(
+            patches.of_map, patches.places, self._patch_positions, self._patch_normals,
+            patches.owners,
+        )  # fmt: skip
 
     def _take_area(self, direct: Floats, found: NDArray[np.uint8], area: Floats) -> None:
         for place, number in enumerate(self._area):
@@ -247,9 +257,7 @@ class _Relighting:
             _take(column, found, area[:, place : place + 1])
             np.maximum(column, 0.0, out=column)
 
-    def _direct_deltas(
-        self, found: NDArray[np.uint8], direct: Floats
-    ) -> dict[int, tuple[NDArray[np.uint8], Floats, Floats]]:
+    def _direct_deltas(self, found: NDArray[np.uint8], direct: Floats) -> dict[int, DirectDelta]:
         """Find what changes of lamps and sun, and bring means of patches up to date.
 
         Returns
@@ -290,7 +298,7 @@ class _Relighting:
     def _probe_change(self) -> tuple[Floats, Floats]:
         """Return (Z, Y, X, 4, C) float32 twice: see `gather_probe_change`."""
         grid = self._scene.baked.probes
-        points = _probe_points(grid)
+        points = probe_positions(grid)
         far, near = gather_probe_change(
             self._rays, points, fibonacci_sphere(self._quality.probe_rays),
             with_far=self._far, threads=self._threads,
@@ -330,132 +338,8 @@ class _Relighting:
         change[chosen] += light[chosen]
         found[chosen] = 1
 
-    # -- results -------------------------------------------------------------------------------
-
-    def _spread(
-        self,
-        found: NDArray[np.uint8],
-        change: Floats,
-        area: Floats,
-        deltas: dict[int, tuple[NDArray[np.uint8], Floats, Floats]],
-    ) -> list[LightLayer]:
-        """Bring texels up to date by what was found at patches.
-
-        Parameters
-        ----------
-        deltas : dict of int to tuple
-            What lamps and sun give to patches, by layer; see `_direct_deltas`.
-        """
-        bounced = [layer.bounced.copy() for layer in self._layers]
-        direct = {number: self._layers[number].direct.copy() for number in self._area}
-        columns = [change, area]
-        shares: dict[int, NDArray[np.float16]] = {}
-        for number, (state, value, share) in deltas.items():
-            if not state.any():
-                continue
-            # What is worked out anew is so for all lights alike.
-            found = np.maximum(found, state)
-            layer = self._layers[number]
-            direct[number] = layer.direct.copy()
-            columns.append(np.where(state > 0, value, np.float32(0.0))[:, None])
-            if layer.visibility is not None:
-                shares[number] = layer.visibility.astype(np.float16)
-                columns.append(
-                    np.where(state > 0, np.float32(255.0) * share, np.float32(0.0))[:, None]
-                )
-        maps = [*bounced]
-        for number, texels in direct.items():
-            maps.append(texels)
-            if number in shares:
-                maps.append(shares[number])
-        # In one go: they share their neighbours.
-        self._spread_over(found, np.concatenate(columns, axis=1), maps)
-        result = []
-        for number, (layer, texels) in enumerate(zip(self._layers, bounced, strict=True)):
-            lit = replace(layer, bounced=texels)
-            if number in shares:
-                bytes_ = np.rint(np.minimum(shares[number], np.float16(255.0))).astype(np.uint8)
-                lit = _shown(lit, direct[number], bytes_)
-            elif number in direct:
-                lit = replace(lit, direct=direct[number])
-            result.append(lit)
-        return result
-
-    def _spread_over(
-        self,
-        found: NDArray[np.uint8],
-        change: Floats,
-        layers: list[NDArray[np.float16]],
-    ) -> None:
-        scene, patches = self._scene, self._scene.patches
-        spread_change(
-            scene.side, (scene.places, self._positions, self._normals, scene.owners),
-            patches.of_map,
-            self._patches(), found, change, layers, threads=self._threads,
-        )  # fmt: skip
-
-    def _with_direct(
-        self, layer: LightLayer, deltas: tuple[NDArray[np.uint8], Floats, Floats] | None
-    ) -> LightLayer:
-        if deltas is None:
-            return layer
-        state, value, share = deltas
-        direct = layer.direct.copy()
-        _put(direct, self._scene.places, state, value, 6e4)
-        if layer.visibility is None:
-            return replace(layer, direct=direct)
-        visibility = layer.visibility.copy()
-        _put(visibility, self._scene.places, state, 255.0 * share, 255.0)
-        return _shown(layer, direct, visibility)
-
-    def _with_probes(self, layers: list[LightLayer], far: Floats, near: Floats) -> list[LightLayer]:
-        result = []
-        for number, layer in enumerate(layers):
-            own = slice(3 * number, 3 * number + 3)
-            probes = layer.probe_bounced + far[..., own] + near[..., own]
-            probes[..., 0, :] = np.maximum(probes[..., 0, :], 0.0)
-            result.append(replace(layer, probe_bounced=probes.astype(np.float16)))
-        return result
-
 
 def _take(values: Floats, found: NDArray[np.uint8], change: Floats) -> None:
     """Add what has changed, and replace what was worked out anew."""
     values[found == 1] += change[found == 1]
     values[found == 2] = change[found == 2]
-
-
-def _put(
-    layer: NDArray[np.generic],
-    places: NDArray[np.int32],
-    state: NDArray[np.uint8],
-    value: Floats,
-    most: float,
-) -> None:
-    flat = layer.reshape(-1)
-    chosen = np.flatnonzero(state)
-    at = places[chosen]
-    kept = np.where(state[chosen] == 1, flat[at].astype(np.float32), 0.0)
-    new = np.clip(kept + value[chosen], 0.0, most)
-    flat[at] = np.rint(new) if layer.dtype == np.uint8 else new
-
-
-def _shown(
-    layer: LightLayer, direct: NDArray[np.float16], visibility: NDArray[np.uint8]
-) -> LightLayer:
-    """Return a layer of a light whose share that arrives is known, with other shares."""
-    edges = _elsewhere(layer.edges, visibility != layer.visibility)
-    return replace(layer, direct=direct, visibility=visibility, edges=edges)
-
-
-def _elsewhere(edges: SunEdges | None, changed: NDArray[np.bool_]) -> SunEdges | None:
-    """Return edges of shadows without those at texels whose light has changed."""
-    if edges is None:
-        return None
-    index = np.where(changed, np.int32(-1), edges.index)
-    return replace(edges, index=np.ascontiguousarray(index, np.int32))
-
-
-def _probe_points(grid: ProbeGrid) -> Floats:
-    z, y, x = np.indices(grid.shape).reshape(3, -1)
-    points = np.stack([x, y, z], axis=1) * np.asarray(grid.spacing_m) + np.asarray(grid.origin_m)
-    return np.ascontiguousarray(points, np.float32)

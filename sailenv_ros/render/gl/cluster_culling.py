@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.cluster_kernels import gather_seen_indices
-from sailenv_ros.native.library import native_is_usable
 
 __all__ = ["seen_indices"]
 
@@ -55,8 +54,6 @@ def seen_indices(
     lies : (P, 2) int64
         First index and number of indices of each part in `seen`; 0, 0 for others than `parts`.
     """
-    if not native_is_usable():
-        return _all_indices(parts, ranges, clusters, indices, corner_indices, by_corner)
     wide = (1.0 + MARGIN) * clip_from_part[:, 3:]
     sides = np.concatenate([wide + clip_from_part[:, :2], wide - clip_from_part[:, :2]], axis=1)
     sides /= np.linalg.norm(sides[..., :3], axis=2, keepdims=True)
@@ -64,22 +61,3 @@ def seen_indices(
         parts.astype(np.int64), clusters, ranges, sides, np.ascontiguousarray(eyes), one_sided,
         (indices, corner_indices), by_corner,
     )  # fmt: skip
-
-
-def _all_indices(
-    parts: NDArray[np.intp],
-    ranges: NDArray[np.int64],
-    clusters: NDArray[np.void],
-    indices: NDArray[np.uint32],
-    corner_indices: NDArray[np.uint32],
-    by_corner: NDArray[np.bool_],
-) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
-    """Return the triangles of all clusters: without the native library none is left out."""
-    lies, pieces, count = np.zeros((len(ranges), 2), np.int64), [np.zeros(0, np.uint32)], 0
-    for part in parts:
-        source = corner_indices if by_corner[part] else indices
-        begin = clusters["first_index"][ranges[part, 0]] if ranges[part, 1] else 0
-        pieces.append(source[begin : begin + ranges[part, 2]])
-        lies[part] = count, ranges[part, 2]
-        count += int(ranges[part, 2])
-    return np.concatenate(pieces), lies

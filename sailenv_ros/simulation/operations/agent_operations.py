@@ -276,7 +276,7 @@ class AgentOperations(Caller):
                 f"frame {sequence} is no longer the last of agent {record.spec.name!r}, which is "
                 f"{record.sequence}; ask for amodal masks before the next frame"
             )
-        return core.draw_alone(record.latest.snapshot, record.latest.camera)
+        return core.draw_amodal(record.latest.snapshot, record.latest.camera)
 
     def get_frame(self, views: Sequence[str] = (), *, agent: str | None = None) -> dict[str, Any]:
         """Render one frame now and return it as the dict of the SAILenv client.

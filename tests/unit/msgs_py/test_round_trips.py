@@ -317,7 +317,7 @@ def observed_frames(draw: st.DrawFn) -> Frame:
         },
         info=dataclasses.replace(info, instances=tuple(instances)),
         states=states,
-        draw_alone=lambda: _random_masks(states.ids, rng, size),
+        draw_amodal=lambda: _random_masks(states.ids, rng, size),
     )
 
 

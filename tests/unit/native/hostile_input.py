@@ -35,7 +35,7 @@ from sailenv_ros.native.ray_tracing import build_box_tree
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.native.texel_kernels import cover_texels
-from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
 from sailenv_ros.types.geometry import Pose
@@ -266,11 +266,11 @@ def drive_alone() -> None:
         for make in hostile_scenes().values():
             snapshot = make()
             for width, height in ((8, 8), (97, 61)):
-                drawing = AloneRenderer(threads=threads)
+                drawing = AmodalRenderer(threads=threads)
                 with np.errstate(all="ignore"):
                     drawing.draw(snapshot, camera_at(width=width, height=height))
                 drawing.close()
-    drawing = AloneRenderer(threads=2)
+    drawing = AmodalRenderer(threads=2)
     around = snapshot_of([Thing(model_of(box_mesh(4.0), double_sided=True), Pose())])
     drawing.draw(around, camera_at(width=1024, height=1024))
     drawing.close()

@@ -27,7 +27,7 @@ def test_boxes_edges_and_the_outline_are_told() -> None:
     """Of visible objects alone; JSON holds it; what is not asked for is empty."""
     instance = np.zeros((30, 40), np.uint16)
     instance[5:20, 7:31] = 3
-    frame = replace(frame_of(instance=instance), draw_alone=masks_of)
+    frame = replace(frame_of(instance=instance), draw_amodal=masks_of)
     told = json.loads(json.dumps(overlay_of(frame, boxes=True, space=True, whole=3)))
     assert told["boxes"] == [[3, 7, 5, 30, 19]]
     ((id_, edges),) = told["edges"]

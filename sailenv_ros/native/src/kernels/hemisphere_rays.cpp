@@ -59,9 +59,7 @@ SAILENV_KERNEL(hemisphere_rays)
         for (int64_t m = 0; m < rays; m++) {
             double u, v, d[3];
             shifted_point(pattern + 2 * m, points->shifts + 2 * k, cells, &u, &v);
-            const double radius = std::sqrt(u), turn = 2.0 * PI * v;
-            around_axis(points->normals + 3 * k, radius * std::cos(turn), radius * std::sin(turn),
-                        std::sqrt(std::max(1.0 - u, 0.0)), d);
+            cosine_direction(points->normals + 3 * k, u, v, d);
             const double below = along(d, face);
             float* out = directions + 3 * (k * rays + m);
             float* from = origins + 3 * (k * rays + m);

@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "form_factor.h"
+#include "light_law.h"
 #include "net_points.h"
 #include "ray_types.h"
 #include "rays.h"
-#include "render_types.h"
 
 namespace sailenv {
 
@@ -17,18 +17,6 @@ constexpr float OVER_PI = 0.318309886f;
 
 static inline float dot(const float* a, const float* b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-// Two directions across a unit vector (Duff et al. 2017).
-static inline void frame_about(const float* n, float* a, float* b) {
-    const float sign = n[2] >= 0.0f ? 1.0f : -1.0f;
-    const float q = -1.0f / (sign + n[2]), w = n[0] * n[1] * q;
-    a[0] = 1.0f + sign * n[0] * n[0] * q;
-    a[1] = sign * w;
-    a[2] = -sign * n[0];
-    b[0] = w;
-    b[1] = sign + n[1] * n[1] * q;
-    b[2] = -n[1];
 }
 
 // A point of a light, seen from another: not unit length but for directional lights.
@@ -39,16 +27,26 @@ struct LightSample {
 // Of the disc of a directional light, whose radius `range` holds.
 static inline LightSample sample_disc(const RayLight& l, float u, float v) {
     LightSample s;
-    float a[3], b[3];
-    frame_about(l.direction, a, b);
+    const float axis[3] = {-l.direction[0], -l.direction[1], -l.direction[2]};
     const float radius = l.range * std::sqrt(u), turn = 6.28318531f * v;
-    const float x = radius * std::cos(turn), y = radius * std::sin(turn);
-    for (int k = 0; k < 3; k++) s.towards[k] = -l.direction[k] + x * a[k] + y * b[k];
+    around_axis(axis, radius * std::cos(turn), radius * std::sin(turn), 1.0f, s.towards);
     const float scale = 1.0f / std::sqrt(dot(s.towards, s.towards));
     for (float& t : s.towards) t *= scale;
     s.length = ENDLESS;
     s.irradiance = 1.0f;
     return s;
+}
+
+// Irradiance over radiant intensity by the law of light, at a point from which a light is
+// `towards`.
+static inline float falloff(const RayLight& l, const float* towards) {
+    Lamp lamp = {};
+    lamp.kind = l.kind;
+    lamp.range_m = l.range;
+    lamp.inner_cosine = l.inner_cosine;
+    lamp.outer_cosine = l.outer_cosine;
+    const float square = lamp_square(vec3(towards[0], towards[1], towards[2]));
+    return lamp_falloff(lamp, square, -dot(towards, l.direction) / std::sqrt(square));
 }
 
 // Of an area light's rectangle.
@@ -57,11 +55,9 @@ static inline LightSample sample_rectangle(const RayLight& l, const float* p, fl
     for (int k = 0; k < 3; k++) {
         s.towards[k] = l.position[k] + (u - 0.5f) * l.across[k] + (v - 0.5f) * l.up[k] - p[k];
     }
-    const float d2 = std::max(dot(s.towards, s.towards), 1e-4f);
-    const float leaving = std::max(-dot(s.towards, l.direction), 0.0f) / std::sqrt(d2);
     const float area = std::sqrt(dot(l.across, l.across)) * std::sqrt(dot(l.up, l.up));
     s.length = 0.999f;
-    s.irradiance = area * leaving / d2;
+    s.irradiance = area * falloff(l, s.towards);
     return s;
 }
 
@@ -71,15 +67,7 @@ static inline LightSample sample_ball(const RayLight& l, const float* p, float u
     LightSample s;
     float middle[3];
     for (int k = 0; k < 3; k++) middle[k] = l.position[k] - p[k];
-    const float d2 = std::max(dot(middle, middle), 1e-4f);
-    const float part = d2 / (l.range * l.range), left = std::max(1.0f - part * part, 0.0f);
-    s.irradiance = left * left / d2;
-    if (l.kind == LIGHT_SPOT) {
-        const float along = -dot(middle, l.direction) / std::sqrt(d2);
-        const float soft = std::max(l.inner_cosine - l.outer_cosine, 1e-6f);
-        const float t = std::min(std::max((along - l.outer_cosine) / soft, 0.0f), 1.0f);
-        s.irradiance *= t * t * (3.0f - 2.0f * t);
-    }
+    s.irradiance = falloff(l, middle);
     const float z = 1.0f - 2.0f * u, ring = std::sqrt(std::max(1.0f - z * z, 0.0f));
     const float turn = 6.28318531f * v;
     s.towards[0] = middle[0] + l.across[0] * ring * std::cos(turn);

@@ -6,13 +6,13 @@
 #include "../abi.h"
 #include "../threads.h"
 #include "light_changes.h"
+#include "relight_types.h"
 #include "sky_picture.h"
 
 namespace sailenv {
 namespace {
 
-constexpr float FAR_M = 2.0f;          // what is farther is as good as endless
-constexpr float INSIDE_SHARE = 0.25f;  // of the backs of surfaces that are seen; see bake/gather.py
+constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 
 // Adds what a ray sees, times `weight`, to `sum`; false if that is the back of a surface.
 bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* table, float weight,
@@ -20,7 +20,7 @@ bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* tabl
     if (hit.triangle < 0) {
         const float share = weight * through_panes(s, r);
         double sky[3];
-        sky_radiance(s.sky, s.sky_height, s.sky_width, r.d, sky);
+        picture_radiance(s.sky, s.sky_height, s.sky_width, r.d, sky);
         for (int c = 0; c < 3; c++) sum[c] += share * static_cast<float>(sky[c]);
         return true;
     }
@@ -57,95 +57,118 @@ float reach(const RayScene& s, const float* p, const float* n) {
     return most;
 }
 
+// What one patch gets by way of surfaces and from the sky.
+struct Gathered {
+    PatchState state;
+    float nearness;
+};
+
+// A direction of a pattern about a normal, with the density of the cosine; the pattern is moved by
+// random numbers of the point.
+class CosineRays {
+public:
+    CosineRays(const float* p, const float* n, uint32_t number)
+        : n_(n), turn_u_(scatter(2 * number)), turn_v_(scatter(2 * number + 1)) {
+        for (int c = 0; c < 3; c++) origin_[c] = p[c] + n[c] * LIFT_M;
+    }
+
+    Ray ray(const float* point) const {
+        float u = point[0] + turn_u_, v = point[1] + turn_v_;
+        u -= std::floor(u);
+        v -= std::floor(v);
+        float d[3];
+        cosine_direction(n_, u, v, d);
+        return ray_of(origin_, d);
+    }
+
+private:
+    const float* n_;
+    float turn_u_, turn_v_, origin_[3];
+};
+
+float nearness_of(float t) { return 1.0f / std::min(std::max(t, 1e-3f), FAR_M); }
+
+// All of the light.
+Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuery& q, float* sum) {
+    const float each = 1.0f / static_cast<float>(q.rays);
+    int64_t backs = 0;
+    float near = 0.0f;
+    for (int64_t m = 0; m < q.rays; m++) {
+        const Ray r = rays.ray(q.pattern + 2 * m);
+        const Hit hit = meet_after(s, r);
+        backs += !add_seen(s, hit, r, s.after, each, sum);
+        near += nearness_of(hit.t);
+    }
+    const bool inside = static_cast<double>(backs) > q.inside_share * static_cast<double>(q.rays);
+    return {inside ? PATCH_INSIDE : PATCH_WHOLE, static_cast<float>(q.rays) / near};
+}
+
+// The change; or all of the light, where little of what was baked is of use.
+Gathered gather_difference(const RayScene& s, const CosineRays& rays, const PatchQuery& q,
+                           float* sum) {
+    const float each = 1.0f / static_cast<float>(q.rays);
+    int64_t changed = 0;
+    float near = 0.0f;
+    for (int64_t m = 0; m < q.rays; m++) {
+        const Ray r = rays.ray(q.pattern + 2 * m);
+        Hit before, after;
+        if (!meet_both(s, r, before, after)) continue;
+        changed++;
+        near += nearness_of(std::min(before.t, after.t));
+        add_seen(s, before, r, s.before, -each, sum);
+        add_seen(s, after, r, s.after, each, sum);
+    }
+    if (4 * changed > q.rays) {
+        memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
+        return gather_whole(s, rays, q, sum);
+    }
+    if (changed == 0) return {PATCH_AS_IT_WAS, FAR_M};
+    return {PATCH_CHANGED, static_cast<float>(changed) / near};
+}
+
+// Everything that is wanted of the k-th patch.
+void gather_patch(const RayScene& s, const PatchQuery& q, int64_t k, const PatchChange& result) {
+    const float *p = q.positions + 3 * k, *n = q.normals + 3 * k;
+    float *bounced = result.bounced + k * s.channels, *direct = result.direct + k * q.light_count;
+    std::fill_n(bounced, s.channels, 0.0f);
+    std::fill_n(direct, q.light_count, 0.0f);
+    result.found[k] = PATCH_AS_IT_WAS;
+    result.nearness[k] = FAR_M;
+    if (q.wanted[k] == PATCH_AS_IT_WAS) return;
+    const uint32_t number = static_cast<uint32_t>(k);
+    Gathered own = {PATCH_AS_IT_WAS, FAR_M};
+    if (q.wanted[k] == PATCH_WHOLE) {
+        own = gather_whole(s, CosineRays(p, n, number), q, bounced);
+    } else if (reach(s, p, n) > static_cast<float>(q.least)) {
+        own = gather_difference(s, CosineRays(p, n, number), q, bounced);
+    }
+    result.found[k] = own.state;
+    result.nearness[k] = own.nearness;
+    if (own.state == PATCH_INSIDE) return;
+    const bool whole = own.state == PATCH_WHOLE;
+    for (int64_t l = 0; l < q.light_count; l++) {
+        if (!whole && !comes_between(s, q.lights[l], p, n)) continue;
+        const DirectLightDelta delta =
+            direct_light_delta(s, q.lights[l], p, n, q.shot_pattern, q.shots, number, whole);
+        direct[l] = whole ? delta.total : delta.change;
+        if (delta.touched && result.found[k] == PATCH_AS_IT_WAS) result.found[k] = PATCH_CHANGED;
+    }
+}
+
 }  // namespace
 }  // namespace sailenv
 
 // What arrives at patches by way of others and from the sky, and straight from area lights.
-//
-// positions, normals: (count, 3). wanted: (count,), 0 nothing, 1 the change, 2 all of it. Result:
-// found: (count,), the same, and 2 where so much has changed that all of it was worked out, or 3
-// where that could not be because the patch lies inside of something;
-// change: (count, channels) and direct: (count, lights), irradiance / pi: the difference, or all;
-// nearness: (count,), the harmonic mean of the distances of what was looked at [m].
 SAILENV_KERNEL(gather_change)
-(int64_t threads, const sailenv::RayScene* scene, int64_t count, const float* positions,
- const float* normals, const uint8_t* wanted, int64_t rays, const float* pattern, int64_t lights,
- const sailenv::RayLight* area, int64_t shots, const float* shot_pattern, double least,
- uint8_t* found, float* change, float* direct, float* nearness) {
+(int64_t threads, const sailenv::RayScene* scene, const sailenv::PatchQuery* query,
+ const sailenv::PatchChange* result) {
     using namespace sailenv;
-    const RayScene& s = *scene;
-    if (count < 0 || rays < 1 || shots < 1 || lights < 0 || !sound(s)) {
+    const PatchQuery& q = *query;
+    if (q.count < 0 || q.rays < 1 || q.shots < 1 || q.light_count < 0 || !sound(*scene)) {
         return STATUS_INVALID_ARGUMENT;
     }
-    const float each = 1.0f / static_cast<float>(rays);
-    parallel_for(threads, count, 64, [&](int64_t first, int64_t last, int64_t) {
-        for (int64_t k = first; k < last; k++) {
-            const float *p = positions + 3 * k, *n = normals + 3 * k;
-            float* sum = change + k * s.channels;
-            float* straight = direct + k * lights;
-            found[k] = 0;
-            nearness[k] = FAR_M;
-            memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
-            if (lights > 0) memset(straight, 0, static_cast<size_t>(lights) * sizeof(float));
-            if (wanted[k] == 0) continue;
-            bool whole = wanted[k] == 2;
-            const uint32_t number = static_cast<uint32_t>(k);
-            if (whole || reach(s, p, n) > static_cast<float>(least)) {
-                float a[3], b[3];
-                frame_about(n, a, b);
-                const float turn_u = scatter(2 * number), turn_v = scatter(2 * number + 1);
-                const float o[3] = {p[0] + n[0] * LIFT_M, p[1] + n[1] * LIFT_M,
-                                    p[2] + n[2] * LIFT_M};
-                for (int again = 0; again < 2; again++) {
-                    int64_t changed = 0, backs = 0, looked = 0;
-                    float near = 0.0f;
-                    for (int64_t m = 0; m < rays; m++) {
-                        float u = pattern[2 * m] + turn_u, v = pattern[2 * m + 1] + turn_v;
-                        u -= std::floor(u);
-                        v -= std::floor(v);
-                        const float radius = std::sqrt(u), turn = 6.28318531f * v;
-                        const float x = radius * std::cos(turn), y = radius * std::sin(turn);
-                        const float z = std::sqrt(std::max(1.0f - u, 0.0f));
-                        float d[3];
-                        for (int c = 0; c < 3; c++) d[c] = x * a[c] + y * b[c] + z * n[c];
-                        const Ray r = ray_of(o, d);
-                        if (whole) {
-                            const Hit hit = meet_after(s, r);
-                            backs += !add_seen(s, hit, r, s.after, each, sum);
-                            near += 1.0f / std::min(std::max(hit.t, 1e-3f), FAR_M);
-                            looked++;
-                            continue;
-                        }
-                        Hit before, after;
-                        if (!meet_both(s, r, before, after)) continue;
-                        changed++;
-                        const float t = std::min(before.t, after.t);
-                        near += 1.0f / std::min(std::max(t, 1e-3f), FAR_M);
-                        looked++;
-                        add_seen(s, before, r, s.before, -each, sum);
-                        add_seen(s, after, r, s.after, each, sum);
-                    }
-                    if (looked > 0) nearness[k] = static_cast<float>(looked) / near;
-                    if (changed > 0) found[k] = 1;
-                    if (whole) {
-                        const float most = INSIDE_SHARE * static_cast<float>(rays);
-                        found[k] = static_cast<float>(backs) > most ? 3 : 2;
-                    }
-                    if (whole || 4 * changed <= rays) break;
-                    // Little of what was baked here is of use.
-                    whole = true;
-                    memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
-                }
-            }
-            if (found[k] == 3) continue;
-            for (int64_t l = 0; l < lights; l++) {
-                if (!whole && !comes_between(s, area[l], p, n)) continue;
-                const DirectLightDelta way =
-                    direct_light_delta(s, area[l], p, n, shot_pattern, shots, number, whole);
-                straight[l] = whole ? way.total : way.change;
-                if (way.touched && found[k] == 0) found[k] = 1;
-            }
-        }
+    parallel_for(threads, q.count, 64, [&](int64_t first, int64_t last, int64_t) {
+        for (int64_t k = first; k < last; k++) gather_patch(*scene, q, k, *result);
     });
     return STATUS_OK;
 }
@@ -204,16 +227,16 @@ SAILENV_KERNEL(direct_light_delta)
     if (count < 0 || rays < 1 || !sound(s)) return STATUS_INVALID_ARGUMENT;
     parallel_for(threads, count, 1024, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t k = first; k < last; k++) {
-            state[k] = 0;
+            state[k] = PATCH_AS_IT_WAS;
             const float *p = positions + 3 * k, *n = normals + 3 * k;
             const int32_t own = patch[k];
-            const bool whole = own >= 0 && own < s.patch_count && wanted[own] == 2;
-            if (own >= 0 && own < s.patch_count && wanted[own] == 3) continue;
+            const bool whole = own >= 0 && own < s.patch_count && wanted[own] == PATCH_WHOLE;
+            if (own >= 0 && own < s.patch_count && wanted[own] == PATCH_INSIDE) continue;
             if (!whole && !comes_between(s, l, p, n)) continue;
             const DirectLightDelta way =
                 direct_light_delta(s, l, p, n, pattern, rays, static_cast<uint32_t>(k), whole);
             if (!whole && !way.touched) continue;
-            state[k] = whole ? 2 : 1;
+            state[k] = whole ? PATCH_WHOLE : PATCH_CHANGED;
             direct[k] = whole ? way.total : way.change;
             share[k] = whole ? way.share_all : way.share_change;
         }

@@ -38,7 +38,7 @@ double pane_density(const SkyWindows& sky, const float* p, const float* d) {
 
 void add_sky(const SkyWindows& sky, const float* d, double weight, float* light) {
     double radiance[3];
-    sky_radiance(sky.picture, sky.height, sky.width, d, radiance);
+    picture_radiance(sky.picture, sky.height, sky.width, d, radiance);
     for (int c = 0; c < 3; c++) light[c] = static_cast<float>(light[c] + weight * radiance[c]);
 }
 

@@ -9,8 +9,8 @@ namespace sailenv {
 
 // The radiance from a unit direction, between the nearest four texels of an equirectangular map,
 // (rows, columns, 3).
-static inline void sky_radiance(const float* picture, int64_t rows, int64_t columns, const float* d,
-                                double* radiance) {
+static inline void picture_radiance(const float* picture, int64_t rows, int64_t columns,
+                                    const float* d, double* radiance) {
     constexpr double pi = 3.14159265358979323846;
     const double height = static_cast<double>(rows), width = static_cast<double>(columns);
     const double polar = std::acos(std::min(std::max(static_cast<double>(d[2]), -1.0), 1.0));

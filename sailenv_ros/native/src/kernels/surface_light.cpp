@@ -41,6 +41,22 @@ int32_t texel_met(const MappedTriangles& map, int32_t t, float second, float thi
     return texel >= 0 ? texel : BACK;
 }
 
+// The mean of some channels over the sources of a patch.
+template <int64_t CHANNELS>
+void mean_of_sources(const int32_t* sources, int64_t rays, int64_t patches, const float* radiance,
+                     int64_t step, float* mean) {
+    float sum[CHANNELS] = {};
+    for (int64_t k = 0; k < rays; k++) {
+        if (sources[k] < 0 || sources[k] >= patches) continue;
+        const float* from = radiance + sources[k] * step;
+        for (int64_t c = 0; c < CHANNELS; c++) sum[c] += from[c];
+    }
+    const double all = static_cast<double>(rays);
+    for (int64_t c = 0; c < CHANNELS; c++) {
+        mean[c] = rays == 0 ? 0.0f : static_cast<float>(sum[c] / all);
+    }
+}
+
 }  // namespace
 }  // namespace sailenv
 
@@ -116,7 +132,7 @@ SAILENV_KERNEL(probe_radiance)
                 if (texel == BACK || texel >= size) continue;
                 const float* d = directions + 3 * m;
                 double from_sky[3] = {0.0, 0.0, 0.0};
-                if (texel < 0) sky_radiance(sky->picture, sky->height, sky->width, d, from_sky);
+                if (texel < 0) picture_radiance(sky->picture, sky->height, sky->width, d, from_sky);
                 const int64_t all = texel < 0 ? 3 : channels;
                 for (int64_t c = 0; c < all; c++) {
                     const double value = texel < 0 ? clear[k * rays + m] * from_sky[c]
@@ -171,19 +187,15 @@ SAILENV_KERNEL(hand_on)
     parallel_for(threads, patches, 1024, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t patch = first; patch < last; patch++) {
             const int64_t rays = ends[patch + 1] - ends[patch];
-            for (int64_t begin = 0; begin < channels; begin += BLOCK) {
-                float sum[BLOCK] = {};
-                for (int64_t place = ends[patch]; place < ends[patch + 1]; place++) {
-                    const int32_t source = sources[place];
-                    if (source < 0 || source >= patches) continue;
-                    const float* from = radiance + source * channels + begin;
-                    for (int64_t c = 0; c < BLOCK; c++) sum[c] += from[c];
-                }
-                float* to = arriving + patch * channels + begin;
-                for (int64_t c = 0; c < BLOCK; c++) {
-                    to[c] =
-                        rays == 0 ? 0.0f : static_cast<float>(sum[c] / static_cast<double>(rays));
-                }
+            const int32_t* own = sources + ends[patch];
+            float* to = arriving + patch * channels;
+            // Rows of 16 channels are one cache line.
+            int64_t c = 0;
+            for (; c + 2 * BLOCK <= channels; c += 2 * BLOCK) {
+                mean_of_sources<2 * BLOCK>(own, rays, patches, radiance + c, channels, to + c);
+            }
+            if (c < channels) {
+                mean_of_sources<BLOCK>(own, rays, patches, radiance + c, channels, to + c);
             }
         }
     });

@@ -122,7 +122,7 @@ def test_amodal_columns_are_those_of_the_masks() -> None:
         whole_boxes=np.array([[2, 3, 9, 4], [0, 0, 0, 0]], np.int32),
         crops=(np.ones((2, 4), bool), np.ones((1, 1), bool)),
     )  # fmt: skip
-    frame = replace(frame_of(instance=instance), draw_alone=lambda: masks)
+    frame = replace(frame_of(instance=instance), draw_amodal=lambda: masks)
     table = frame.objects_with_amodal
     assert table.visible_share[0] == 0.5
     assert table.truncated_share[0] == 0.5

@@ -10,17 +10,17 @@ import numpy as np
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
-from sailenv_ros.native.alone_drawing import AloneDrawing
+from sailenv_ros.native.amodal_drawing import AmodalDrawing
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import native_view
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["AloneRenderer"]
+__all__ = ["AmodalRenderer"]
 
 
-class AloneRenderer:
+class AmodalRenderer:
     """Draws objects alone; belongs to one thread at a time.
 
     Parameters
@@ -38,7 +38,7 @@ class AloneRenderer:
 
     def __init__(self, table: PartTable | None = None, *, threads: int | None = None) -> None:
         self._table = PartTable() if table is None else table
-        self._drawing = AloneDrawing(thread_count() if threads is None else threads)
+        self._drawing = AmodalDrawing(thread_count() if threads is None else threads)
 
     def draw(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw every object of a snapshot, each alone, or only the one of that id.

@@ -14,19 +14,19 @@
 namespace sailenv {
 
 // Memory of a thread, and what was drawn of each object.
-struct AloneThread {
+struct AmodalThread {
     TriangleSet set;
     std::vector<float> inverse_depth;
 };
-struct AloneScratch {
+struct AmodalScratch {
     Scratch shared;  // frames alone
-    std::vector<AloneThread> threads;
+    std::vector<AmodalThread> threads;
     std::vector<std::vector<float>> crops;
 };
 
 namespace {
 
-constexpr int64_t NUMBERS = 10;  // of a result: see draw_alone
+constexpr int64_t NUMBERS = 10;  // of a result: see draw_amodal
 constexpr int32_t ONE_BAND = 1 << 20;
 
 struct Rectangle {
@@ -68,7 +68,7 @@ int64_t include_row(const float* row, int32_t origin, int32_t begin, int32_t end
 }
 
 void draw_object(const Projection& canvas, const Scratch& shared, const Instances& instances,
-                 const DrawList& parts, float far_m, float near_m, AloneThread& own,
+                 const DrawList& parts, float far_m, float near_m, AmodalThread& own,
                  std::vector<float>& crop, int64_t* result) {
     crop.clear();
     std::fill(result, result + NUMBERS, 0);
@@ -129,12 +129,12 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
 }  // namespace sailenv
 
 // Makes the memory that objects are drawn in, and frees it. One drawing at a time may use it.
-SAILENV_KERNEL(make_alone_scratch)(sailenv::AloneScratch** made) {
-    *made = new (std::nothrow) sailenv::AloneScratch;
+SAILENV_KERNEL(make_amodal_scratch)(sailenv::AmodalScratch** made) {
+    *made = new (std::nothrow) sailenv::AmodalScratch;
     return *made == nullptr ? sailenv::STATUS_OUT_OF_MEMORY : sailenv::STATUS_OK;
 }
 
-SAILENV_KERNEL(free_alone_scratch)(sailenv::AloneScratch** made) {
+SAILENV_KERNEL(free_amodal_scratch)(sailenv::AmodalScratch** made) {
     delete *made;
     *made = nullptr;
     return sailenv::STATUS_OK;
@@ -145,8 +145,8 @@ SAILENV_KERNEL(free_alone_scratch)(sailenv::AloneScratch** made) {
 // (count, 10) takes of each object: the pixels that it covers on the canvas and in the picture; the
 // boxes around the ones and around the others (left, top, right, bottom, the last ones included; -1
 // where it covers none).
-SAILENV_KERNEL(draw_alone)
-(int64_t threads, sailenv::AloneScratch** handle, const sailenv::View* view,
+SAILENV_KERNEL(draw_amodal)
+(int64_t threads, sailenv::AmodalScratch** handle, const sailenv::View* view,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, const int64_t* starts,
  int64_t count, double near_m, int64_t* results) {
     using namespace sailenv;
@@ -173,7 +173,7 @@ SAILENV_KERNEL(draw_alone)
     canvas.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view->far_m), 0.0f);
     canvas.greatest_inverse_depth = 3e38f;
     try {
-        AloneScratch& scratch = **handle;
+        AmodalScratch& scratch = **handle;
         scratch.shared.band_rows = ONE_BAND;
         set_frames(scratch.shared, *instances, view->camera_from_world, canvas);
         if (scratch.threads.size() < static_cast<size_t>(threads)) {
@@ -200,7 +200,7 @@ SAILENV_KERNEL(draw_alone)
 
 // Copies the depths that were drawn: of each object those in its box in the picture, row by row,
 // one object after the other; infinite where it is not, not a number where it is nearer than near.
-SAILENV_KERNEL(copy_alone)(sailenv::AloneScratch** handle, int64_t size, float* depths) {
+SAILENV_KERNEL(copy_amodal)(sailenv::AmodalScratch** handle, int64_t size, float* depths) {
     int64_t at = 0;
     for (const std::vector<float>& crop : (*handle)->crops) {
         const int64_t count = static_cast<int64_t>(crop.size());

@@ -1,6 +1,6 @@
-"""Objects drawn each alone, by the kernels of src/kernels/alone.cpp.
+"""Objects drawn each alone, by the kernels of src/kernels/amodal.cpp.
 
-Structures of `render_types` come in, arrays go out. One `AloneDrawing` holds the memory that
+Structures of `render_types` come in, arrays go out. One `AmodalDrawing` holds the memory that
 objects are drawn in.
 """
 
@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 from sailenv_ros.native.library import Kernel, checked
 from sailenv_ros.native.render_types import DRAW_LIST, INSTANCES, PART, VIEW, address, record
 
-__all__ = ["AloneDrawing"]
+__all__ = ["AmodalDrawing"]
 
-_MAKE = Kernel("make_alone_scratch", "array")
-_FREE = Kernel("free_alone_scratch", "array")
+_MAKE = Kernel("make_amodal_scratch", "array")
+_FREE = Kernel("free_amodal_scratch", "array")
 _DRAW = Kernel(
-    "draw_alone",
+    "draw_amodal",
     *("integer", "array", "array", "array", "array", "array", "integer", "number", "array"),
 )
-_COPY = Kernel("copy_alone", "array", "integer", "array")
+_COPY = Kernel("copy_amodal", "array", "integer", "array")
 
 _NUMBERS = 10
 
 
-class AloneDrawing:
+class AmodalDrawing:
     """Draws objects alone; belongs to one thread at a time.
 
     Parameters
