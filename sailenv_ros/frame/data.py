@@ -22,10 +22,10 @@ from sailenv_ros.types.views import VIEWS, view_spec
 if TYPE_CHECKING:
     from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 
-__all__ = ["DrawAlone", "FrameData"]
+__all__ = ["DrawAmodal", "FrameData"]
 
 
-class DrawAlone(Protocol):
+class DrawAmodal(Protocol):
     """Draws the objects of a frame, each alone."""
 
     def __call__(self, only: int = 0) -> AmodalMasks:
@@ -65,7 +65,7 @@ class FrameData(Mapping[str, NDArray[Any]]):
         Record of what was drawn at random for it, which `randomise` takes; None if nothing was.
     lesson : LessonState or None
         Which lesson it is of; None if the scene has none.
-    draw_alone : callable or None
+    draw_amodal : callable or None
         Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
     """
 
@@ -84,7 +84,7 @@ class FrameData(Mapping[str, NDArray[Any]]):
     states: InstanceStates | None = None
     randomised: Mapping[str, Any] | None = None
     lesson: LessonState | None = None
-    draw_alone: DrawAlone | None = None
+    draw_amodal: DrawAmodal | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width

@@ -47,12 +47,12 @@ class Frame(FrameData):
         SimulationClosed
             If the simulation has ended.
         """
-        if self.draw_alone is None:
+        if self.draw_amodal is None:
             raise InvalidState(
                 "the frame has no amodal masks: ask a frame of a Simulation or of an Agent for "
                 "them, or record them"
             )
-        return self.draw_alone()
+        return self.draw_amodal()
 
     def amodal_of(self, instance_id: int) -> AmodalMasks:
         """Return what one object covers, perhaps among others; quicker than `amodal`.
@@ -64,9 +64,9 @@ class Frame(FrameData):
         InvalidState, SimulationClosed
             As `amodal`.
         """
-        if self.draw_alone is None or "amodal" in self.__dict__:
+        if self.draw_amodal is None or "amodal" in self.__dict__:
             return self.amodal
-        return self.draw_alone(instance_id)
+        return self.draw_amodal(instance_id)
 
     @property
     def objects_with_amodal(self) -> ObjectTable:

@@ -100,7 +100,7 @@ def _object_pictures(frame: Frame) -> dict[str, NDArray[np.uint8]]:
         "boxes": draw_boxes(below, frame.objects),
         "boxes in space": draw_boxes_in_space(below, frame.objects),
     }
-    if frame.draw_alone is not None:
+    if frame.draw_amodal is not None:
         shown = frame.objects.select(frame.objects.visible)
         pictures["whole objects"] = draw_amodal_outlines(below, frame.amodal, shown.ids.tolist())
     return pictures

@@ -27,7 +27,7 @@ from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.frame.data import DrawAlone
+from sailenv_ros.frame.data import DrawAmodal
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.channels import (
@@ -175,7 +175,7 @@ class RecordedFrames(Sequence[Frame]):
             states=states_of_frame_info(info),
             randomised=randomised_of_frame_info(info),
             lesson=lesson_of_frame_info(info),
-            draw_alone=self._amodal_reader(index),
+            draw_amodal=self._amodal_reader(index),
         )
 
     def __iter__(self) -> Iterator[Frame]:
@@ -205,7 +205,7 @@ class RecordedFrames(Sequence[Frame]):
         info = self._entries[self.position(index)].info
         return self._intrinsics(info, self.scene_info(index))
 
-    def _amodal_reader(self, index: int) -> DrawAlone | None:
+    def _amodal_reader(self, index: int) -> DrawAmodal | None:
         """Return what reads the amodal masks of a frame; None if they were not recorded."""
         info = self._entries[self.position(index)].info
         row = self._amodal_rows.get((ns_from_stamp(info.header.stamp), info.sequence))

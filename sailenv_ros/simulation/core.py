@@ -303,7 +303,7 @@ class SimulationCore:
         """Return the scene as it stands now, for rules of cameras."""
         return PresentScene(self.world.snapshot(), lens, self.frames, self.space)
 
-    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+    def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
 
         Raises
@@ -311,7 +311,7 @@ class SimulationCore:
         NativeLibraryError
             If there is no native library, which draws them.
         """
-        return self.frames.draw_alone(snapshot, camera, only)
+        return self.frames.draw_amodal(snapshot, camera, only)
 
     def open_stream(
         self, agent: str, views: Sequence[str], on_change: Callable[[FrameStream], None]

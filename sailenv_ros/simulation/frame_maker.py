@@ -15,7 +15,7 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.render.cpu.alone_renderer import AloneRenderer
+from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.agent_table import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
@@ -50,7 +50,7 @@ class FrameMaker:
         self._scene = scene
         self._renderer = renderer
         self._lockstep = lockstep
-        self._alone: AloneRenderer | None = None
+        self._amodal: AmodalRenderer | None = None
         self._relighter = Relighter()
         self.watch_light()
 
@@ -121,8 +121,8 @@ class FrameMaker:
             states=world.states(),
             randomised=randomised,
             lesson=lesson,
-            draw_alone=lambda only=0: self.run_later(
-                lambda: self.draw_alone(snapshot, camera, only)
+            draw_amodal=lambda only=0: self.run_later(
+                lambda: self.draw_amodal(snapshot, camera, only)
             ),
         )
 
@@ -130,7 +130,7 @@ class FrameMaker:
         """Render views of the scene as it stands now, through a camera that is no agent's."""
         return self._renderer.render(self._scene.world.snapshot(), None, camera, views).views
 
-    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+    def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
 
         Raises
@@ -138,15 +138,15 @@ class FrameMaker:
         NativeLibraryError
             If there is no native library, which draws them.
         """
-        if self._alone is None:
+        if self._amodal is None:
             renderer = self._renderer
             table = renderer.part_table if isinstance(renderer, NativeRenderer) else None
-            self._alone = AloneRenderer(table)
-        return self._alone.draw(snapshot, camera, only)
+            self._amodal = AmodalRenderer(table)
+        return self._amodal.draw(snapshot, camera, only)
 
     def close(self) -> None:
         """Free the renderer."""
         self._relighter.close()
-        if self._alone is not None:
-            self._alone.close()
+        if self._amodal is not None:
+            self._amodal.close()
         self._renderer.close()

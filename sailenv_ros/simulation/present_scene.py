@@ -50,9 +50,9 @@ class PresentScene(ViewScene):
         """Return these views of the scene."""
         return self._frames.look(camera, *views)
 
-    def draw_alone(self, camera: Camera, only: int) -> AmodalMasks:
+    def draw_amodal(self, camera: Camera, only: int) -> AmodalMasks:
         """Return each object drawn alone, or only the one of that id."""
-        return self._frames.draw_alone(self.snapshot, camera, only)
+        return self._frames.draw_amodal(self.snapshot, camera, only)
 
     def free_space(self, body: BodySize) -> FreeSpace:
         """Return where a body can stand."""

@@ -16,7 +16,7 @@ from sailenv_msgs_py.frame_info import (
 )
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
-from sailenv_ros.frame.data import DrawAlone
+from sailenv_ros.frame.data import DrawAmodal
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.ros.client.frame_sync import Bundle
 from sailenv_ros.system.memory import keep_freed_memory
@@ -43,7 +43,7 @@ def frame_of_info(
     views: Mapping[str, NDArray[Any]],
     intrinsics: CameraIntrinsics,
     scene_info: SceneInfo | None,
-    draw_alone: DrawAlone | None = None,
+    draw_amodal: DrawAmodal | None = None,
 ) -> Frame:
     """Make one frame of its info and its arrays, which nobody else has.
 
@@ -56,7 +56,7 @@ def frame_of_info(
         Of the agent that the frame is of.
     scene_info : SceneInfo or None
         The one of the frame's revision, if it is known.
-    draw_alone : callable or None
+    draw_amodal : callable or None
         As `Frame` has it.
     """
     _keep_freed_memory_once()
@@ -73,7 +73,7 @@ def frame_of_info(
         views={view: views[view] for view in VIEWS if view in views},
         timings_s={"render": info.render_s},
         info=scene_info,
-        draw_alone=draw_alone,
+        draw_amodal=draw_amodal,
         states=states_of_frame_info(info),
         randomised=randomised_of_frame_info(info),
         lesson=lesson_of_frame_info(info),

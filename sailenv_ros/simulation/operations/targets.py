@@ -133,7 +133,7 @@ class DrawsFrames(HasAgents, Protocol):
     def render(self, record: AgentRecord, views: Iterable[str]) -> Frame:
         """Render one frame of an agent now."""
 
-    def draw_alone(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+    def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone."""
 
 
