@@ -1,1 +1,0 @@
-"""Which renderer draws."""
