@@ -1,4 +1,4 @@
-"""Visible part of each instance: an instance view in; pixels, box and mean flow of each id out."""
+"""What is seen of each instance: an instance view in, pixels, box and mean flow of each id out."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FLOW_STEPS = 1048576.0
 """Flow is added up in whole steps of 1 / this [px/s], so that its sum has no order."""
 
 GREATEST_FLOW = 1e7
-"""Flow of this magnitude or more counts as no flow [px/s]."""
+"""What is not less [px/s] counts as no flow."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

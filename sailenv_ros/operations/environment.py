@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["EnvironmentOperations"]
 
 MAX_GRAVITY = 1000.0
-"""As in a scene file [m/s²]."""
+"""Greatest gravity, as in a scene file [m/s²]."""
 
 _BACKGROUNDS = ("sky", "colour")
 

@@ -24,7 +24,7 @@ def _seconds(what: str, value: Any) -> float:
 
 
 class JointOperations(Caller):
-    """What moves on hinges and slides. A joint is named by the object that moves on it."""
+    """Hinges and slides. A joint is named by the object that moves on it."""
 
     @operation(obj=check.object_reference, position=_position, seconds=_seconds)
     @staticmethod

@@ -1,4 +1,4 @@
-"""Lamps that are drawn in real time, and their power; the same for every back end."""
+"""Which lamps are drawn in real time, and with what power: the same for every back end."""
 
 from __future__ import annotations
 

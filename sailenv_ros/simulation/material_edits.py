@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["merged_look", "set_material", "set_surface", "surface_keys"]
 
 _EXCLUSIVE = ("material", "picture")
-"""One of them takes the other's place."""
+"""Keys that replace one another."""
 
 _WALL = " wall"
 

@@ -161,7 +161,7 @@ class World:
 
     @property
     def contents(self) -> SceneContents:
-        """Contents of the world at present, apart from poses."""
+        """What exists now, apart from poses."""
         return self._contents
 
     @property

@@ -26,12 +26,12 @@ from sailenv_ros.recording.export.splits import Splits
 __all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "DatasetSummary"]
 
 SUMMARY_FILE = "export.json"
-"""What was written and what was left out, in the folder of a finished data set."""
+"""Counts of everything written and left out, in the folder of a finished data set."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FormatSummary:
-    """What a format wrote, and what it left out and why: how many of each."""
+    """Counts of everything that a format wrote, and that it left out, by the reason."""
 
     written: Mapping[str, int]
     left_out: Mapping[str, int]
@@ -39,7 +39,7 @@ class FormatSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DatasetSummary:
-    """What a data set holds.
+    """Summary of a data set.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ class DatasetWriter:
 
     @property
     def done(self) -> int:
-        """How many frames need not be added again: the next one has this number, from 0."""
+        """Number of frames that need not be added again: the next one has this number, from 0."""
         return self._next
 
     def add(self, frame: Frame) -> None:
