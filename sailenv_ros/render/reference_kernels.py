@@ -1,4 +1,4 @@
-"""Reference implementation of the native kernels in plain NumPy, which defines their results.
+"""What the kernels of the native library compute, in plain NumPy: their definition.
 
 Each function takes and returns what the function of the same name in `sailenv_ros.native` does, and
 the same bytes: tests compare them. Where the native library is missing these run in its stead, ten
@@ -33,7 +33,7 @@ TILE = 16
 """Share of 1 / depth by which something narrower than a pixel lies off what is beside it."""
 
 ROUNDING_PX = 1e-3
-"""Greatest distance from a pixel's centre at which that pixel alone decides on occlusion [px]."""
+"""How far from a pixel's centre that pixel alone decides whether a point was hidden."""
 
 BLOOM_LEVELS = 5
 """Halvings of the picture: each doubles how far light is spread."""

@@ -1,4 +1,4 @@
-"""Reference implementation of the motion kernels in plain NumPy; see `reference_kernels`.
+"""What the kernels of motion compute, in plain NumPy: their definition; see `reference_kernels`.
 
 A surface point at X = Z (x, y, 1) of one camera's optical frame is at X + D X (D = T - 1,
 homogeneous) in another one's, so it has moved in the picture by
@@ -19,7 +19,7 @@ from sailenv_ros.native.motion_kernels import MovedPoints
 __all__ = ["move_points", "transform_points"]
 
 ROUNDING_PX = 1e-3
-"""Greatest distance from a pixel's centre at which that pixel alone decides on occlusion [px]."""
+"""How far from a pixel's centre that pixel alone decides whether a point is hidden."""
 
 Doubles = NDArray[np.float64]
 
