@@ -32,7 +32,7 @@ __all__ = [
 ]
 
 _NUMBERS = 16
-"""Of each instance in `FrameInfo.instance_states`."""
+"""Number of values of each instance in `FrameInfo.instance_states`."""
 
 WORLD_FRAME_ID = "world"
 """Name of the coordinate frame that everything is placed in."""

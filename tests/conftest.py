@@ -37,7 +37,14 @@ NOT_QUICK = (
     "render",
     "ros",
     "viewer",
-    "unit/light/bake",
+    "unit/assets/test_damage.py",
+    "unit/assets/test_standard_pack.py",
+    "unit/simulation/models",
+    "unit/dataset/test_engines.py",
+    "unit/dataset/test_making.py",
+    "unit/dataset/test_remote.py",
+    "unit/dataset/test_showing.py",
+    "unit/authoring/generation/test_generated_rooms.py",
     "unit/reliability",
 )
 """Folders and files whose tests are left out of the quick tier, which `scripts/check` runs.
@@ -62,6 +69,17 @@ settings.register_profile(
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
 
 
+def _is_left_out(path: Path) -> bool:
+    """Return whether a file or folder is left out of the quick tier."""
+    return any(path.is_relative_to(ROOT / "tests" / name) for name in NOT_QUICK)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not even import the other tests for ``-m quick``."""
+    quick_alone = config.option.markexpr == "quick"
+    return True if quick_alone and _is_left_out(collection_path) else None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark by folder what needs OpenGL or ROS and what is quick; longest files first.
 
@@ -80,9 +98,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.ros)
         elif path.parts[0] in ("render", "viewer"):
             item.add_marker(pytest.mark.gl)
-        if not item.get_closest_marker("slow") and not any(
-            path.is_relative_to(name) for name in NOT_QUICK
-        ):
+        if not item.get_closest_marker("slow") and not _is_left_out(item.path):
             item.add_marker(pytest.mark.quick)
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)

@@ -290,4 +290,4 @@ BASELINES: Mapping[str, tuple[str, Callable[[], Picture]]] = MappingProxyType(
         ),
     }
 )
-"""By name: what it draws, and what makes it."""
+"""Description and constructor of each baseline, by name."""

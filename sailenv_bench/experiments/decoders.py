@@ -281,4 +281,5 @@ def _softmax(values: Array) -> Array:
 DECODERS: Mapping[str, Callable[[Outputs, Size], Detections]] = MappingProxyType(
     {"nanodet": _nanodet, "centernet": _centernet, "yolo": _yolo, "maskrcnn": _maskrcnn}
 )
-"""By kind: ``decode(outputs, (width, height) of the input)``; Mask R-CNN's classes are labels."""
+"""Decoders by kind: ``decode(outputs, (width, height) of the input)``; Mask R-CNN's classes are
+labels."""

@@ -58,7 +58,7 @@ INPUTS: Mapping[str, InputStyle] = MappingProxyType(
         "maskrcnn-zoo": InputStyle(order="bgr", mean=(102.9801, 115.9465, 122.7717), pad=0),
     }
 )
-"""By format: what the published networks of that kind were trained with."""
+"""Input formats of the published networks, by the format of their outputs."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

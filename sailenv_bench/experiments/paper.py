@@ -46,7 +46,7 @@ DETECTION: Mapping[str, tuple[float, float, float, float]] = MappingProxyType(
         "tv": (0.9641, 0.0171, 0.9673, 0.0135),
     }
 )
-"""By class: pixel IoU mean and deviation, box IoU mean and deviation, in the table's order."""
+"""Mean and deviation of pixel IoU, then of box IoU, by class, in the table's order."""
 
 DETECTION_SOURCE = (
     "The paper's figures are those of its table (arXiv:2007.08224, section V-A): Mask R-CNN with "

@@ -25,7 +25,7 @@ cv2: Any = typed_cv2  # OpenCV's annotations lack functions of its own
 VIEWS = ("rgb", "instance", "flow")
 
 MINUTE_FRAMES = 1500
-"""Of a stream without laps the first minute is looked at."""
+"""Number of frames that are measured of a stream without laps: its first minute."""
 
 DRAWS = 10
 """Drawings of labels; the figures are their mean and standard deviation."""
@@ -43,8 +43,8 @@ PUBLISHED: Mapping[str, Mapping[str, float]] = MappingProxyType(
         },
     }
 )  # fmt: skip
-"""Of the published streams: F1 of the raw image by arXiv:2204.12193; the rest was measured on the
-files that are published with it, `left` being what the warp leaves of the difference."""
+"""Figures of the published streams: F1 of the raw image by arXiv:2204.12193; the rest was measured
+on the files that are published with it, `left` being what the warp leaves of the difference."""
 
 
 def bench_stream(

@@ -17,7 +17,7 @@ __all__ = ["Table", "accuracy_tables", "number", "speed_tables"]
 Data = Mapping[str, Any]
 
 PARTS = {"ours": "  of it beyond the picture alone", "estimate": "  of it estimating"}
-"""By kind of a method: what the part of a frame's time is called that its flow takes."""
+"""Label of the share of a frame's time that flow takes, by the kind of the method."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -237,7 +237,7 @@ TRANSPORTS: Mapping[str, Callable[[Setting], Workload]] = MappingProxyType(
         "gateway, gzip": lambda setting: _Gateway(setting, use_gzip=True),
     }
 )
-"""By name: ways from the simulator to its user."""
+"""Transports from the simulator to its user, by name."""
 
 
 def environment_of(kind: str) -> dict[str, str]:

@@ -56,7 +56,7 @@ _CONVERTERS: Mapping[str, tuple[Convert, Convert]] = {
     "sequence<uint8>": (_bytes_to_msg, bytes),
     "sequence<rcl_interfaces/Parameter>": (changes_to_msg, changes_from_msg),
 }
-"""To the message and from it, by ROS type; other types are passed as they are."""
+"""Converters to and from messages, by ROS type; other types are passed unchanged."""
 
 
 def field_types(message_type: Any) -> dict[str, str]:

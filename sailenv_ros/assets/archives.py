@@ -13,7 +13,7 @@ from sailenv_ros.errors import AssetError
 __all__ = ["MAX_ARCHIVE_BYTES", "unpack_zip"]
 
 MAX_ARCHIVE_BYTES = 200 * 2**20
-"""Of an archive, and of what it unpacks to altogether."""
+"""Greatest size of an archive, and of its unpacked contents [B]."""
 
 MAX_MEMBERS = 2000
 MAX_RATIO = 200

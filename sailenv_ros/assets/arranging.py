@@ -27,7 +27,7 @@ from sailenv_ros.types.model import (
 __all__ = ["RESTING_GAP_M", "WALL_GAP_M", "arranged", "shape_points"]
 
 RESTING_GAP_M = 0.001
-"""Between an object and what carries it: shapes that touch would be pushed apart."""
+"""Gap between an object and its carrier [m]: shapes in contact would be pushed apart."""
 
 WALL_GAP_M = 0.004
 

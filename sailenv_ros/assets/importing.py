@@ -25,7 +25,7 @@ from sailenv_ros.types.validation import IDENTIFIER
 __all__ = ["import_asset"]
 
 DENSITY_KG_M3 = 150.0
-"""Of household objects on the whole, which are mostly air."""
+"""Mean density of household objects, which are mostly air."""
 
 LARGEST_M = 50.0
 SMALLEST_M = 1e-3

@@ -26,7 +26,7 @@ from sailenv_ros.scene.fields import JointLimits
 __all__ = ["JointMotion", "OpenAndClose", "joint_motion", "open_and_close", "running_motion"]
 
 ARRIVED = 1e-3
-"""Of a motion that ends nearer to its aim, [rad] or [m], the joint ends exactly there."""
+"""Distance from its goal at which a motion ends; the joint is then set to the goal [rad] or [m]."""
 
 CATCHES_UP = 2.0
 """Greatest speed of a joint that was held up, as a multiple of the motion's greatest speed."""

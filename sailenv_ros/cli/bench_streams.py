@@ -15,7 +15,7 @@ from sailenv_ros.extras import need
 __all__ = ["streams"]
 
 EXACT = 0.01
-"""By so much may the factor of flow differ from 1."""
+"""Greatest difference of the factor of flow from 1."""
 
 QUICK_PAIRS = 8
 

@@ -19,7 +19,7 @@ SIZES = [(320, 240), (640, 480), (1280, 960)]
 SCENES = ["room_01", "room_02", "room_03", "optical"]
 AGENTS = [1, 4]
 BASELINE_FRAMES = 20
-"""At most so many of each renderer: some take a second for one."""
+"""Greatest number of frames of each renderer: some take a second for one."""
 
 
 def throughput(args: argparse.Namespace) -> int:

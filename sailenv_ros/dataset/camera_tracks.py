@@ -1,4 +1,4 @@
-"""Where a camera is in each frame of a clip: camera of a recipe + scene as it stands → poses.
+"""Camera poses in each frame of a clip, from a recipe's camera and the scene as it stands.
 
 Every kind of camera is one function, in `TRACKS`. A pose is that of the camera's body (x forward,
 y left, z up) in the world.

@@ -1,4 +1,4 @@
-"""What is in a data set, for people: ``README.md`` with pictures, counts and histograms."""
+"""Card of a data set, for people: ``README.md`` with pictures, counts and histograms."""
 
 from __future__ import annotations
 

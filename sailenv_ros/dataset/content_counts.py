@@ -14,7 +14,7 @@ from sailenv_ros.dataset.histograms import histogram_svg
 __all__ = ["ContentCounts", "content_counts"]
 
 SIZE_EDGES = (1, 16, 64, 256, 1024, 4096, 16384, 65536, 262144)
-"""Of the histogram of visible pixels."""
+"""Bin edges of the histogram of visible pixels."""
 
 SHARE_EDGES = tuple(0.1 * step for step in range(11))
 DISTANCE_EDGES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 20.0)
@@ -22,7 +22,7 @@ DISTANCE_EDGES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 20.0)
 
 @dataclass(eq=False, slots=True)
 class ContentCounts:
-    """How many of what a data set has.
+    """Counts of the contents of a data set.
 
     Attributes
     ----------

@@ -19,7 +19,7 @@ SAMPLE_FRAMES = 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Estimate:
-    """What making a data set will cost.
+    """Estimated cost of making a data set.
 
     Attributes
     ----------

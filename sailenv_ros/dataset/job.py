@@ -1,4 +1,4 @@
-"""What every worker must know, and may get over a network: `Job`, made of a recipe's file."""
+"""Job of a worker, which it may get over a network: `Job`, made from a recipe's file."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Job:
 
     @property
     def head(self) -> dict[str, Any]:
-        """What decides on every byte of the data set, as JSON holds it."""
+        """Everything that decides on the bytes of the data set, as JSON holds it."""
         return {
             "recipe": self.recipe.model_dump(mode="json", exclude_defaults=True),
             "sailenv_ros": __version__,

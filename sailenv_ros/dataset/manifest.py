@@ -1,4 +1,4 @@
-"""What a data set holds, by number of bytes and SHA-256: summaries of shards, and of the whole."""
+"""Contents of a data set by number of bytes and SHA-256: summaries of shards, and of the whole."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class FileHash:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShardSummary:
-    """What one shard became.
+    """Summary of one shard.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class ShardSummary:
 
     @property
     def path(self) -> str:
-        """Where it is kept in the data set."""
+        """Path of the summary in the data set."""
         return f"{SHARDS_FOLDER}/{self.shard:05d}.json"
 
     def to_json(self) -> bytes:

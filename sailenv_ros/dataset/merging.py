@@ -48,7 +48,7 @@ def frame_records(storage: Storage, shards: Iterable[int]) -> Iterator[dict[str,
 
 
 class ShardRecords(Sequence[Record]):
-    """What one format keeps of each frame: read shard by shard, never in memory as a whole.
+    """Records of one format, one for each frame: read shard by shard, never in memory as a whole.
 
     Parameters
     ----------

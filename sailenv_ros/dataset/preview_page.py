@@ -43,7 +43,7 @@ OTHER_WIDTH = 480
 """Largest widths of the picture, and of the other views [px]."""
 
 OUTLINE_ERROR_PX = 0.7
-"""How far an outline may be simplified."""
+"""Greatest error of a simplified outline [px]."""
 
 HUES = 997
 

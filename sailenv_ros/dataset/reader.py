@@ -160,7 +160,7 @@ class Dataset(Sequence[DatasetFrame]):
 
 
 class _Source(ABC):
-    """Where frames are read from."""
+    """Base of the sources from which frames are read."""
 
     def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
         self._folder = folder

@@ -1,4 +1,4 @@
-"""What a recipe of a data set may hold: `DatasetRecipe`, validated and immutable.
+"""Contents of a data-set recipe: `DatasetRecipe`, validated and immutable.
 
 A recipe says which scenes are seen by which cameras how often, and what is written of it. Units in
 a file are metres, seconds and degrees.
@@ -69,7 +69,7 @@ class SceneRecipe(SceneModel):
 
 
 class SplitSizes(SceneModel):
-    """How many clips each split has."""
+    """Number of clips of each split."""
 
     train: _Clips = Field(default=0, description="clips for training")
     val: _Clips = Field(default=0, description="clips for validation")
@@ -82,7 +82,7 @@ class SplitSizes(SceneModel):
 
 
 class ClipRecipe(SceneModel):
-    """What is seen without a cut: frames of all cameras at a rate, from one moment on."""
+    """Continuous shot: frames of all cameras at a rate, from one moment on."""
 
     frames: Annotated[int, Number(least=1, most=MAX_CLIP_FRAMES, whole=True)] = Field(
         default=1, description="frames of each camera; 1: single pictures"
@@ -104,7 +104,7 @@ class ClipRecipe(SceneModel):
 
 
 class ShardRecipe(SceneModel):
-    """How the work is cut."""
+    """Division of the work into shards."""
 
     clips: Annotated[int, Number(least=1, most=100_000, whole=True)] = Field(
         default=50, description="clips of a shard, which one worker makes in one go"

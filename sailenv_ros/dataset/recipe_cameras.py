@@ -55,7 +55,7 @@ def ordered(*keys: str) -> Rule:
 
 
 class CameraModel(SceneModel):
-    """What all cameras of a data set have; they see each clip at once."""
+    """Base of all cameras of a data set, which see each clip at the same time."""
 
     rules: ClassVar[tuple[Rule, ...]] = (
         few_samples(MAX_SIZE_PX, {"width": _LENS.width, "height": _LENS.height}),

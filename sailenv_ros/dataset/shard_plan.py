@@ -19,7 +19,7 @@ __all__ = ["Clip", "ShardPlan", "SceneSource", "Shard", "clip_groups"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneSource:
-    """Where one scene comes from.
+    """Origin of one scene.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class SceneSource:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Clip:
-    """What is seen without a cut.
+    """Continuous shot of a data set.
 
     Attributes
     ----------
@@ -93,12 +93,12 @@ class ShardPlan:
 
     @property
     def shards(self) -> int:
-        """How many there are."""
+        """Number of clips."""
         return sum(self._shards.values())
 
     @property
     def clips(self) -> int:
-        """How many there are."""
+        """Number of clips."""
         return sum(self._sizes.values())
 
     @property

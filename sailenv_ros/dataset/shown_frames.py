@@ -1,4 +1,4 @@
-"""Which frames and views of a data set are shown, on a sheet and on the page alike."""
+"""Selection of the frames and views of a data set that a sheet and the page show."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ class MessageReader:
 
     @property
     def held_bytes(self) -> int:
-        """How many bytes wait here for more or for being taken."""
+        """Number of bytes that wait here for more, or to be taken."""
         return len(self._buffer)
 
     @property

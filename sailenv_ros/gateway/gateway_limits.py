@@ -1,4 +1,4 @@
-"""How much a gateway's peers may ask for, and how long they may take; numbers alone."""
+"""Limits for the requests and the delays of a gateway's peers; numbers alone."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class GatewayServer:
 
     @property
     def clients(self) -> int:
-        """How many peers are connected now."""
+        """Number of peers that are connected now."""
         return len(self._connections)
 
     def close(self) -> None:

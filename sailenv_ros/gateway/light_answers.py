@@ -20,7 +20,7 @@ from sailenv_ros.types.scene_info import SceneInfo
 __all__ = ["LightAnswers"]
 
 LIGHT_NOT_FOUND = "light_not_found"
-"""What clients look for where a type should be."""
+"""Answer by which clients recognise an unknown light, in place of its type."""
 
 Vector3 = tuple[float, float, float]
 

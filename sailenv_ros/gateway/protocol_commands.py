@@ -1,4 +1,4 @@
-"""What a client may send: each command's byte, its name and the fields that follow it.
+"""Commands of clients: the byte, the name and the fields of each.
 
 Tables alone; `codec` reads by them and `session` answers. Integers and floats are little-endian.
 """
@@ -20,7 +20,7 @@ Protocol = Literal["0.5", "0.6"]
 
 
 class Field(Enum):
-    """How a field is written."""
+    """Encoding of a field."""
 
     BYTE = "1 byte"
     BOOL = "1 byte, 0 or 1"
@@ -54,7 +54,7 @@ class CommandKind:
 HELLO = CommandKind(
     name="register", fields=(("width", Field.INT), ("height", Field.INT), ("use_gzip", Field.BOOL))
 )
-"""What a connection begins with; it has no byte of its own."""
+"""First message of a connection; it has no byte of its own."""
 
 _LIGHT = ("light", Field.NAME)
 _RGB = (("red", Field.INT), ("green", Field.INT), ("blue", Field.INT))

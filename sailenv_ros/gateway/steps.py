@@ -1,4 +1,4 @@
-"""What an answer is made of: steps that somebody else carries out, and words for refusals.
+"""Parts of an answer: steps that the caller carries out, and texts of refusals.
 
 Types alone; knows no socket, no thread, no simulation.
 """

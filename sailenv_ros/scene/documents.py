@@ -26,7 +26,8 @@ MAX_DIAGNOSTICS = 100
 """Greatest number of diagnostics reported."""
 
 MAX_COLLECTED = 1000
-"""So many are looked at before they are sorted: a hostile file must not cost minutes."""
+"""Greatest number of diagnostics that are collected and sorted: a hostile file must not cost
+minutes."""
 
 
 M = TypeVar("M", bound=SceneModel)

@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 MAX_DIAGNOSTICS = 20
-"""So many are told at most; a hostile description must not cost minutes."""
+"""Greatest number of diagnostics reported: a hostile description must not cost minutes."""
 
 MAX_OBJECTS = 10000
 

@@ -60,7 +60,7 @@ class AgentRecord:
 
     @property
     def look_at(self) -> LookAt | None:
-        """What it faces, as it is told; None if nothing."""
+        """Its look-at target as data; None if there is none."""
         return None if self.gaze is None else self.gaze.described()
 
     def past(self, sim_time_ns: int) -> Observation | None:
@@ -127,7 +127,7 @@ class AgentTable:
 
     @property
     def specs(self) -> tuple[AgentSpec, ...]:
-        """What the agents are now, and face."""
+        """Present descriptions of the agents, with their look-at targets."""
         return tuple(replace(record.spec, look_at=record.look_at) for record in self)
 
     def add(self, spec: AgentSpec, world: World) -> AgentSpec:

@@ -1,4 +1,4 @@
-"""What is built beside a running simulation, which shows it once it is there.
+"""Background builds beside a running simulation, which shows the results once they exist.
 
 Runs commands one after the other as child processes of lower priority, `sailenv setup` among them;
 ends them with the simulator.
@@ -29,7 +29,7 @@ READY = "ready: "
 """Begins a line of `sailenv setup` that says what has been built."""
 
 _NICENESS = 10
-"""How far a build stands back behind the simulation."""
+"""Niceness of a build, so that the simulation goes first."""
 
 _CLOSE_TIMEOUT_S = 5.0
 

@@ -1,4 +1,4 @@
-"""How simulated time relates to the wall clock: mode, speed, pause. Knows no thread."""
+"""Relation of simulated time to the wall clock: mode, speed, pause. Knows no thread."""
 
 from __future__ import annotations
 

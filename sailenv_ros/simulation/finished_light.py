@@ -11,7 +11,7 @@ from sailenv_ros.world.world import World
 __all__ = ["bake_missing"]
 
 BAKE_TIMEOUT_S = 3600.0
-"""How long to wait for another process that bakes the same room [s]."""
+"""Time limit of waiting for another process that bakes the same room [s]."""
 
 
 def bake_missing(world: World) -> None:

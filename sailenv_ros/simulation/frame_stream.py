@@ -61,12 +61,12 @@ class FrameStream:
 
     @property
     def delivered(self) -> int:
-        """How many frames were taken out."""
+        """Number of frames that were taken out."""
         return self._delivered
 
     @property
     def dropped(self) -> int:
-        """How many frames were replaced by newer ones before they were taken."""
+        """Number of frames replaced by newer ones before they were taken."""
         return self._dropped
 
     @property

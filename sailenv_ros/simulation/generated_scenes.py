@@ -24,7 +24,7 @@ __all__ = ["GeneratedScenes", "generation_state"]
 
 FOLDER = "generated"
 MAX_FILES = 1000
-"""So many are kept."""
+"""Greatest number of files that are kept."""
 
 
 class GeneratedScenes:

@@ -1,4 +1,4 @@
-"""How simulated time follows the wall clock; the only place that reads it for that."""
+"""Pacing of simulated time by the wall clock; the only place that reads it for that."""
 
 from __future__ import annotations
 

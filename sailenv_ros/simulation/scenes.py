@@ -1,4 +1,4 @@
-"""Where worlds come from: scene files, the asset library and the category table, joined."""
+"""Builds worlds from scene files, the asset library and the category table."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class SceneLibrary:
 
     @property
     def knowledge(self) -> SceneKnowledge:
-        """What a scene file's names may refer to; nothing of a file is run."""
+        """Names that a scene file may refer to; no code of a file is run."""
         return SceneKnowledge(
             assets=self._assets.all_names,
             categories=tuple(category.name for category in self.categories.values()),
@@ -140,12 +140,12 @@ class SceneLibrary:
 
     @property
     def _knowledge_of_strangers(self) -> SceneKnowledge:
-        """What requests may refer to: they cannot have code imported, as files can."""
+        """Names that requests may refer to: unlike files, they cannot have code imported."""
         return replace(self.knowledge, behaviour_errors=known_behaviour_errors)
 
     @property
     def _knowledge_to_build(self) -> SceneKnowledge:
-        """What a scene that is built may refer to: code of modules where that is allowed."""
+        """Names that a scene to be built may refer to: code of modules where that is allowed."""
         errors = behaviour_errors if self._allow_modules else refusing_behaviour_errors
         return replace(self.knowledge, behaviour_errors=errors)
 

@@ -1,4 +1,4 @@
-"""Where an object has come to rest upon its carrier → the keys of a scene file that say so.
+"""Place keys for a scene file, from where an object has come to rest on its carrier.
 
 The file goes on naming the carrier, so that the object goes along when that is moved by hand.
 """

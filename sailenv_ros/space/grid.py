@@ -27,7 +27,7 @@ MARGIN_M = 2.0
 """Around all obstacles that the map shows of a large floor [m]."""
 
 EMPTY_SIDE_M = 10.0
-"""Of the map of a large floor upon which nothing stands, around the origin [m]."""
+"""Side of the map of a large empty floor, around the origin [m]."""
 
 MOST_CELLS = 4_000_000
 

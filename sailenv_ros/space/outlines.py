@@ -27,7 +27,7 @@ __all__ = ["Solid", "outlines_between", "solids_of"]
 Doubles = NDArray[np.float64]
 
 SIDES = 64
-"""Of the polygon around a circle: it reaches beyond it by 0.12 % of its radius at most."""
+"""Sides of the polygon around a circle, which exceeds its radius by 0.12 % at most."""
 
 _TURNS = 2.0 * np.pi * np.arange(SIDES) / SIDES
 _CIRCLE = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=-1) / np.cos(np.pi / SIDES)

@@ -47,7 +47,7 @@ _MADE_ONCE = (
 _MUTEX = f"_Z{_SCOPE}17SharedSegmentBase4mtx_EvE4mtx_"
 
 _MUTEX_BYTES = 40
-"""Of a ``pthread_mutex_t`` on x86-64, all of them 0 in a free one; larger ones end in padding."""
+"""Size of a ``pthread_mutex_t`` on x86-64, all zeros when free; larger ones end in padding [B]."""
 
 
 def renew_inherited_dds(library: str = LIBRARY) -> bool:

@@ -1,4 +1,4 @@
-"""Who may see the page and who may open its socket: addresses, origins and the token.
+"""Access control of the page and its socket: addresses, origins and the token.
 
 Headers of a request in, a reason to refuse out. Knows no socket. Pages of other sites can make a
 browser send requests here; what gives them away is the Origin, and the Host after DNS rebinding.

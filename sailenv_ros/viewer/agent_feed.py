@@ -26,7 +26,7 @@ _log = logging.getLogger(__name__)
 _CLOSE_TIMEOUT_S = 5.0
 
 WAIT_S = 0.1
-"""Between two looks at whether anything has changed while time stands still [s of wall time]."""
+"""Interval at which changes are looked for while time stands still [s of wall time]."""
 
 
 class AgentFeeds:

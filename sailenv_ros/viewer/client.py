@@ -122,7 +122,7 @@ class Client:
         return self._subscription.frame(number)
 
     def select(self, instance_id: int) -> None:
-        """Have an instance's outline told; 0 for none."""
+        """Subscribe to the outline of an instance; 0 to stop."""
         self._selected = instance_id
         if self._subscription is not None:
             self._subscription.selected = instance_id
@@ -351,7 +351,7 @@ def _why(problem: BaseException) -> str:
 
 
 class _File:
-    """What is answered as a file."""
+    """Answer that is a file."""
 
     def __init__(self, name: str, data: bytes) -> None:
         self.name, self.data, self.mime = name, data, "image/png"

@@ -23,7 +23,7 @@ RATE_HZ = 30.0
 
 
 class _Watchers:
-    """How many watch the debug agent of a simulation, in all its viewers."""
+    """Number of clients that watch the debug agent of a simulation, in all its viewers."""
 
     def __init__(self) -> None:
         self.guard = threading.Lock()
@@ -49,7 +49,7 @@ class DebugAgent:
 
     @property
     def intrinsics(self) -> CameraIntrinsics:
-        """What its camera sees."""
+        """Intrinsics of its camera."""
         return self._intrinsics
 
     def begin(self) -> None:

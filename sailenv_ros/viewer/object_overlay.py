@@ -1,4 +1,4 @@
-"""What the page draws over a frame of its objects: boxes, boxes in space, a whole object's outline.
+"""Overlay of a frame's objects on the page: boxes, boxes in space, a whole object's outline.
 
 `Frame` in, JSON out.
 """

@@ -1,4 +1,4 @@
-"""What goes to one client: one message after the other, from the event loop or another thread.
+"""Outgoing messages of one client, sent in turn, from the event loop or another thread.
 
 Messages in, bytes on a socket out. Who does not read is disconnected after a deadline, so that
 nothing heaps up.
@@ -45,7 +45,7 @@ class Outbox:
 
     @property
     def tasks(self) -> tuple[asyncio.Task[None], ...]:
-        """What was begun by other threads and has not ended."""
+        """Tasks that other threads began and that have not ended."""
         return tuple(self._tasks)
 
     async def send_json(self, message: Mapping[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""What a client may ask for about the room: its floor plan, another size, a new one from a seed.
+"""Commands about the room: its floor plan, another size, a new one from a seed.
 
 Arguments as JSON has them in, requests to a `Simulation` out. Part of `commands`.
 """

@@ -1,4 +1,4 @@
-"""What the page gets of the scene, in plain values for JSON.
+"""Scene as the page gets it, in plain values for JSON.
 
 `SceneInfo` and `ObjectState` in, dictionaries out. Knows no socket and no simulation.
 """

@@ -29,7 +29,7 @@ KEPT = 6
 """Frames whose values may still be asked for."""
 
 STALLED_S = 0.5
-"""Who has shown nothing for so long gets nothing rendered until it has [s of wall time]."""
+"""A client that has shown nothing for this long gets no frames until it has [s of wall time]."""
 
 
 class ViewSubscription:
@@ -83,7 +83,7 @@ class ViewSubscription:
 
     @property
     def views(self) -> tuple[str, ...]:
-        """What is shown."""
+        """Views that are shown."""
         return self._views
 
     def show(self, views: tuple[str, ...]) -> None:

@@ -1,4 +1,4 @@
-"""How much the web viewer's visitors may ask for, and how long they may take; numbers alone."""
+"""Limits for the requests and the delays of the web viewer's clients; numbers alone."""
 
 from __future__ import annotations
 

@@ -127,7 +127,7 @@ class ViewerServer:
 
     @property
     def clients(self) -> int:
-        """How many sockets are open now."""
+        """Number of sockets that are open now."""
         return len(self._clients)
 
     @property

@@ -44,7 +44,7 @@ MAX_SHAPES = 16
 
 _HULL_LOCK = threading.Lock()
 _HULL_FOLDERS: dict[tuple[int, str], Path] = {}
-"""By process, so that a forked one takes its own."""
+"""Folders of hulls by process, so that a forked process takes its own."""
 
 
 def build_collision(

@@ -25,7 +25,7 @@ from sailenv_ros.types.model import BoxShape, ModelPart
 __all__ = ["DoorLeaf", "door_leaf"]
 
 DENSITY_KG_M3 = 350.0
-"""Of a leaf of wood that is partly hollow: a door of 0.9 × 2.05 m weighs 23 kg."""
+"""Density of a partly hollow wooden leaf: a door of 0.9 × 2.05 m weighs 23 kg."""
 
 WIDEST_DEG = 115.0
 """Greatest opening angle of a leaf, unless its description opens it further [deg]."""

@@ -29,7 +29,7 @@ __all__ = [
 ]
 
 ARCHITRAVE_M = 0.045
-"""By which the frame covers the wall beside the opening [m]."""
+"""Width by which the frame covers the wall beside the opening [m]."""
 
 _LINING_M = 0.03
 _ARCHITRAVE_DEPTH_M = 0.015

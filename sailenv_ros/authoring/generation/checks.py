@@ -22,7 +22,7 @@ __all__ = ["Fault", "faults", "look_backend", "unseen"]
 
 STILL_M = 0.004
 STILL_DEG = 2.0
-"""By how much what stands may move and turn in two seconds."""
+"""Greatest motion of an object in two seconds at which it still counts as standing [m], [deg]."""
 
 NEAR_M = 0.08
 """Greatest distance of a resting object from its planned place [m]."""

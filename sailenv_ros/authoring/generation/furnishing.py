@@ -24,7 +24,7 @@ TRIES = 60
 COMPANION_TRIES = 8
 FROM_WALL_M = 0.07
 LEAST_GAP_M = 0.001
-"""Between pieces that belong together."""
+"""Least gap between pieces that belong together [m]."""
 
 _RUG_GAP_M = 0.03
 

@@ -17,7 +17,8 @@ MAX_LAMPS = 6
 """Lamps that shine, so that baking their light takes no longer than that of the rest."""
 
 FLOOR_M2 = 14.0
-"""Of the room that the rules' ceiling lamps are for; in others they shine in proportion."""
+"""Floor area for which the rules' ceiling lamps are meant [m²]; their power is scaled for
+others."""
 
 _LEAST_SHARE, _MOST_SHARE = 0.4, 1.3
 

@@ -17,7 +17,7 @@ PARTITION_M = 0.12
 DOOR_M = (0.9, 2.05)
 DOOR_CLEAR_M = 0.95
 _CORNER_M = 0.3
-"""Between an opening and a corner [m]."""
+"""Least distance between an opening and a corner [m]."""
 
 _APART_M = 0.25
 _TRIES = 40

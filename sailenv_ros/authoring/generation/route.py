@@ -26,7 +26,7 @@ CAMERA_RADIUS_M = 0.32
 EYE_M = (1.45, 1.65)
 STOPS_IN_A_ROOM = 8
 MORE_STOPS = 3
-"""In every further room."""
+"""Number of stops in every further room."""
 _STOP_M = 0.9
 _STEP_CELLS = 12.0
 _LOOK_LEAST_M = 0.9

@@ -21,7 +21,7 @@ __all__ = ["lay_things"]
 
 TRIES = 12
 EDGE_M = 0.012
-"""Between a thing and the edge of what carries it [m]."""
+"""Least distance of an object from the edge of its carrier [m]."""
 
 APART_M = 0.012
 

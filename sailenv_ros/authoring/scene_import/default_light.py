@@ -13,10 +13,10 @@ SUN: Entry = {
     "colour": "#ffedd2",
     "intensity": 8.0,
 }
-"""From the south-east, as in the rooms."""
+"""Sunlight from the south-east, as in the rooms."""
 
 ENVIRONMENT: Entry = {"ambient": [0.1, 0.1, 0.105], "sky_share": 0.15}
-"""Of rooms, whose windows let in a part of the sky's light."""
+"""Surroundings of rooms, whose windows let in a part of the sky's light."""
 
 
 def add_daylight(scene: ImportedScene) -> None:

@@ -27,10 +27,10 @@ FREE, _BALL, _SLIDE, _HINGE = 0, 1, 2, 3
 """MuJoCo's numbers of kinds of joints, which its files fix."""
 
 LEAST_FRICTION = {"hinge": 0.5, "slide": 1.0}
-"""Of joints whose file says nothing of friction [N m], [N]."""
+"""Friction of joints whose file does not specify it [N m], [N]."""
 
 HOLDS = 1.2
-"""Such joints hold so many times their weight."""
+"""Friction of such joints, as a multiple of what holds their weight."""
 
 LEAST_EFFORT = 100.0
 GRAVITY_M_S2 = 9.81

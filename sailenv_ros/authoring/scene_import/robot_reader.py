@@ -29,7 +29,7 @@ URDF_SETTINGS = (
     '<mujoco><compiler discardvisual="false" fusestatic="false" strippath="false"/></mujoco>'
 )
 DRAWN_GROUPS = (0, 1, 2)
-"""Of geometries, as MuJoCo's own viewer draws them; the others are for collisions alone."""
+"""Groups of geometries that MuJoCo's own viewer draws; the others are for collisions only."""
 
 
 def main(arguments: list[str]) -> int:

@@ -23,13 +23,13 @@ LARGEST_M = 100.0
 SMALLEST_M = 1e-4
 
 TRIANGLES_AT_ONE_METRE = 12_000
-"""Of a model of that size; what has more is simplified."""
+"""Greatest number of triangles of a model of one metre; a larger number is simplified."""
 
 HOLLOW = 0.25
 """A piece that fills less of its hull is hollow, like a room in one mesh."""
 
 LARGE_M = 1.5
-"""Of hollow pieces of that size the surfaces collide, and not the hull."""
+"""Size from which hollow pieces collide by their surfaces, not by their hull [m]."""
 
 MOST_PLATES = 400
 PLATE_M = 0.01

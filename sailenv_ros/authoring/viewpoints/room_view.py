@@ -18,7 +18,8 @@ from sailenv_ros.types.geometry import Pose
 __all__ = ["Outlook", "RoomView", "outlook", "room_view"]
 
 FULL_SHARE = 1 / 15
-"""Of the picture: what is larger counts no more, so that one couch does not outweigh a room."""
+"""Share of the picture above which an object counts no more, so that one couch does not outweigh a
+room."""
 
 CLOSE_M = 1.1
 MOST_CLOSE = 0.05

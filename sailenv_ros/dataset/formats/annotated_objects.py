@@ -1,4 +1,4 @@
-"""Which objects of a frame a data set tells of: those with a category and at least one pixel."""
+"""Annotated objects of a frame: those with a category and at least one visible pixel."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ from sailenv_ros.types.labels import PART_MARK
 __all__ = ["DEPTH_STEP_MM", "BopExport"]
 
 DEPTH_STEP_MM = 0.2
-"""So 16 bits reach 13 m; what is farther is 0, as what is not known."""
+"""Step of depth: 16 bits reach 13 m; greater and unknown depths are 0 [mm]."""
 
 UNSPLIT = "train"
 

@@ -29,7 +29,8 @@ SAME_SHARE = 0.02
 
 _QUARTERS = (0.25, 0.5, 0.75)
 _ODD_ANGLES_DEG = (11.0, 37.0, 101.0)
-"""Turns that no discrete symmetry has: what they leave as it is has a continuous one."""
+"""Angles outside every discrete symmetry group; a surface they leave unchanged has a continuous
+symmetry."""
 
 
 class ObjectModel:

@@ -33,12 +33,12 @@ OLD_JOURNAL = "unfinished.jsonl"
 """Versions before 0.3 kept what was done in it."""
 
 SUMMARY_FILE = "export.json"
-"""What was written and what was left out, in the folder of a finished data set."""
+"""Counts of everything written and left out, in the folder of a finished data set."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FormatSummary:
-    """What a format wrote, and what it left out and why: how many of each."""
+    """Counts of everything that a format wrote, and that it left out, by the reason."""
 
     written: Mapping[str, int]
     left_out: Mapping[str, int]
@@ -46,7 +46,7 @@ class FormatSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DatasetSummary:
-    """What a data set holds.
+    """Summary of a data set.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ class DatasetWriter:
 
     @property
     def done(self) -> int:
-        """How many frames need not be added again: the next one has this number, from 0."""
+        """Number of frames that need not be added again: the next one has this number, from 0."""
         return self._next
 
     def add(self, frame: Frame) -> None:

@@ -32,7 +32,7 @@ _NAMES = {
     "object_coords": "object_coordinates",
     "category": "category",
 }
-"""What MOVi calls a view."""
+"""MOVi's names of the views."""
 
 _LENS = ("width", "height", "vertical_fov_deg", "near_m", "far_m")
 

@@ -14,7 +14,7 @@ from sailenv_ros.system.files import write_errors
 __all__ = ["ROWS_PER_GROUP", "RowTable"]
 
 ROWS_PER_GROUP = 32
-"""So many rows are kept in memory, and read at once by those who look at one of them."""
+"""Number of rows that are kept in memory, and read at once for any one of them."""
 
 
 class RowTable:

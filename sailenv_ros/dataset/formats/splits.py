@@ -19,7 +19,7 @@ _TOLERANCE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Splits:
-    """How frames are dealt out at random.
+    """Random assignment of frames to splits.
 
     The split of a frame follows from the seed and its number alone, so it is the same in each
     format, for each writer and after a break; shares are met on average.

@@ -19,7 +19,7 @@ from sailenv_ros.system.files import begin_write_back, write_errors
 __all__ = ["Content", "TarWriter"]
 
 WRITE_BACK_BYTES = 1 << 25
-"""After so many bytes the disk begins to write, so that it has little left to do at the end."""
+"""Number of bytes after which writing to the disk begins, so that little is left at the end."""
 
 Content: TypeAlias = bytes | NDArray[Any]
 """An array stands for its bytes; it must be in C order."""

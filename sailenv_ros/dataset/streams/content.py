@@ -1,4 +1,4 @@
-"""What a stream's pictures depend on beside its scene file: light and models, by fingerprints."""
+"""Fingerprints of the light and the models of a stream's scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pushes the objects and the camera of the streams of continual optical flow (CoLLAs 2022).
+"""Pushers of the objects and the camera of the streams of continual optical flow (CoLLAs 2022).
 
 The published programs step 1 ms a picture and call 25 pictures a second. Here a second is one: all
 velocities are such that objects and camera move as far from picture to picture as there.
@@ -22,7 +22,7 @@ FRAME_S = 1.0 / 25.0
 PUBLISHED_STEP_S = 0.001
 
 SLOWER = PUBLISHED_STEP_S / FRAME_S
-"""By which velocities of the published programs are multiplied."""
+"""Factor on the velocities of the published programs."""
 
 
 class LaptopForces:
@@ -36,15 +36,15 @@ class LaptopForces:
     NAME = "laptop"
     EYE_M = (0.0, 0.0, 0.995)
     LEAST_M, MOST_M = np.array([-0.421, 0.615]), np.array([0.433, 1.39])
-    """Of its place: to the left and up, seen from the camera [m]."""
+    """Range of its position: to the left and up, seen from the camera [m]."""
 
     NEAR_M = 0.2
     """Nearer than this to a side of the rectangle it is sent back."""
 
     CHANCE = 0.01
     IMPULSE_N_S, MASS_KG = 0.9, 0.3
-    """Of the published program; its laptop's mass is not told, this one moves the picture by about
-    a pixel, beyond the 0.5 px from which the metrics call a pixel moving."""
+    """Impulse of the published program, and the mass: theirs is not published; this one moves the
+    picture by about a pixel, beyond the 0.5 px from which the metrics count a pixel as moving."""
 
     SPEED_M_S = IMPULSE_N_S / MASS_KG * SLOWER
 
@@ -116,7 +116,7 @@ class RoamingForces:
 
     SLOW_M_S, FAST_M_S = 3.0 * SLOWER, 8.5 * SLOWER
     SLOW_FRAMES = 20
-    """After so many slow frames it is pushed, too."""
+    """Number of slow frames after which it is pushed, too."""
 
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng([seed, 3])

@@ -46,7 +46,7 @@ MOST_FRAMES = 10_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamJob:
-    """What is to be made.
+    """Settings of a stream to be made.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class StreamJob:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """What a stream that was broken off must agree in to be gone on with.
+        """Identity that an interrupted stream must have to be resumed.
 
         Besides light and models, see `scene_content`.
         """

@@ -1,4 +1,4 @@
-"""What arrives from an area light if nothing is in the way, by closed formulas.
+"""Unoccluded irradiance from an area light, by closed formulas.
 
 A few samples of a rectangle tell how much of it is hidden, but not how much arrives: where a sample
 is near, a curtain before a window's light, it would count for far more than all of the rectangle.

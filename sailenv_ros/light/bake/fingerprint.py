@@ -20,7 +20,7 @@ from sailenv_ros.types.snapshot import WorldSnapshot
 __all__ = ["fingerprint"]
 
 _NOT_BAKED = ("colour", "intensity", "indirect_multiplier")
-"""Of lights: each has a layer of its own, which they scale."""
+"""Properties of lights that are not baked: each light has a layer of its own, which they scale."""
 
 
 def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -> str:

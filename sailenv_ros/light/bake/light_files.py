@@ -60,13 +60,13 @@ DIGEST_BYTES = 32
 SUFFIX = ".light"
 
 DRAFT_SUFFIX = ".draft"
-"""Of light that is right, but rough: what stands in until the light itself is baked."""
+"""Suffix of draft light: right but rough, used until the light itself is baked."""
 
 MOST_BYTES = 4 << 30
-"""Of light, some 100 rooms; what was not used for longest is thrown away beyond it."""
+"""Cache limit [bytes], about 100 rooms; least recently used entries are removed first."""
 
 MOST_NOTES = 1024
-"""Of which light belongs to which scene file."""
+"""Greatest number of notes that tell which light belongs to which scene file."""
 
 _LAYER_ARRAYS = ("direct", "bounced", "probe_direct", "probe_bounced", "visibility")
 _EDGE_ARRAYS = ("index", "blocks")

@@ -1,4 +1,4 @@
-"""How much of the light from everywhere a surface gives back, by its material."""
+"""Share of uniform ambient light that a surface reflects, by its material."""
 
 from __future__ import annotations
 

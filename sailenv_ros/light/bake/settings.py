@@ -1,4 +1,4 @@
-"""How finely light is baked: nothing in, `BakeSettings` out. Knows no scene."""
+"""Resolution and sample counts of baking: nothing in, `BakeSettings` out. Knows no scene."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ INSIDE_SHARE = 0.25
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BakeSettings:
-    """How finely light is baked.
+    """Resolution and sample counts of baking.
 
     Attributes
     ----------

@@ -11,7 +11,7 @@ from sailenv_ros.types.lights import Environment
 __all__ = ["sky_picture"]
 
 ROWS = 64
-"""Of the picture that stands for the sky: its details light nothing by themselves."""
+"""Rows of the low-resolution sky picture; finer details light nothing noticeably."""
 
 
 def sky_picture(environment: Environment) -> NDArray[np.float32]:

@@ -1,4 +1,4 @@
-"""How many rays are followed when light is brought up to date. Knows no scene."""
+"""Sample counts of relighting. Knows no scene."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["FINE", "QUICK", "Quality"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quality:
-    """How many rays are followed.
+    """Sample counts of relighting.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ QUICK = Quality(
     by_texels=False,
     least_far=0.012,
 )
-"""For the frame in which something moves."""
+"""Quality of a frame in which something moves."""
 
 FINE = Quality(
     first_rays=16,
@@ -77,4 +77,4 @@ FINE = Quality(
     by_texels=True,
     least_far=0.004,
 )
-"""For what follows."""
+"""Quality of the frames after a motion."""

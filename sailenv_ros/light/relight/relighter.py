@@ -31,11 +31,12 @@ REST_NS = 500_000_000
 """Simulated time for which everything must stand still before light is refined within a frame."""
 
 STILL_NS, STILL_FRAMES = 250_000_000, 5
-"""In real time, what moved a second time rests again after this time or so many frames."""
+"""Time, or number of frames, after which an object that moved twice is at rest again, in real
+time."""
 
 READY_FRAMES = 3
-"""In lockstep a scene is made ready for moves once so many frames were rendered: what renders
-fewer does not pay for it."""
+"""Number of rendered frames after which a lockstep scene is prepared for moves; a program that
+renders fewer does not pay for it."""
 
 SMALLEST_M = 0.15
 """Objects that came and are smaller in two directions change no light but their own."""
@@ -55,7 +56,7 @@ class _Relit:
 
 @dataclass(eq=False, slots=True)
 class _Place:
-    """Where something was seen last."""
+    """Last known place of an object."""
 
     pose: bytes
     moved_ns: int

@@ -1,4 +1,4 @@
-"""What lights a scene at one instant: shadow maps, baked light, reflections, brought up to date.
+"""Light of a scene at one instant: updates shadow maps, baked light and reflections.
 
 A snapshot comes in, a LIGHT for the shading kernel goes out. Without baked light there is one
 shadow map of everything. With it there are two: what stands still is drawn into one of them once,

@@ -1,4 +1,4 @@
-"""What is drawn of a scene, as tables that the native kernels read.
+"""Parts of a scene, as tables that the native kernels read.
 
 Scene contents come in, tables of parts go out. Meshes, textures and the parts of models that are
 there already are used again: a scene that changes costs what has changed.

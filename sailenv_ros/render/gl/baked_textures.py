@@ -18,7 +18,7 @@ LIGHT_MAP_UNIT, INSTANCE_UNIT = 4, 5
 EDGE_INDEX_UNIT, EDGE_BLOCKS_UNIT = 13, 14
 
 BLOCKS_IN_A_ROW = 128
-"""As in `lighting.frag`."""
+"""Blocks in a row of the texture, as in `lighting.frag`."""
 
 
 class BakedTextures:

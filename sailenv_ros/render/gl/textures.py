@@ -18,8 +18,8 @@ from sailenv_ros.types.model import Texture
 __all__ = ["TextureArrays"]
 
 _SOFTWARE_FILTERS = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR_MIPMAP_NEAREST)
-"""Of colour and packed maps on the CPU: from level to level, roughness and relief may change at
-once."""
+"""Filters of colour and packed maps on the CPU: roughness and relief may change abruptly between
+levels."""
 
 SPARE = 0.25
 """Share of layers that a new array has in reserve, for what is spawned later."""

@@ -37,12 +37,13 @@ EDGE = 96
 """Texels along an edge of the octahedron's square, without its border."""
 
 ROUGHNESSES = (0.0, 0.15, 0.3, 0.45, 0.6)
-"""Of the layers; what is rougher mirrors the light around it, which the light map knows better."""
+"""Roughness of each layer; rougher surfaces use the light map, which knows their surroundings
+better."""
 
 SAMPLES = 96
 
 EYE_HEIGHT_M = 1.4
-"""From where reflections are seen, above the floor of the probes' box."""
+"""Height of the view point of reflections above the floor of the probes' box [m]."""
 
 _FACE_PX = 96
 _FACE_FOV_DEG = 92.0

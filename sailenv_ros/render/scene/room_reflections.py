@@ -31,7 +31,7 @@ alone; None: under the sky, with what glows."""
 Sum: TypeAlias = Callable[
     [Sequence[Term], NDArray[np.float32], NDArray[np.uint8]], NDArray[np.float16]
 ]
-"""As `lightmap_compositing.sum_texels`."""
+"""Signature of `lightmap_compositing.sum_texels`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -31,7 +31,7 @@ __all__ = ["AgentLeases"]
 _log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.5
-"""Between two looks whether clients live [s of wall time]."""
+"""Interval at which it is checked whether clients live [s of wall time]."""
 
 FIND_S = 2.0
 """Time that discovery may take to find the owner of a new agent [s of wall time]."""

@@ -26,7 +26,7 @@ __all__ = ["AgentCounts", "Diagnostics", "FrameCounter"]
 INTERVAL_S = 1.0
 
 SLOW = 0.9
-"""Less than this share of the real-time factor that is aimed at is worth a warning."""
+"""Share of the requested real-time factor below which a warning is given."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""What an editor takes down of a world so that a change can be undone, and how it is put back.
+"""Records of objects and surroundings by which an editor undoes a change.
 
 Objects and lights are known by their names, which last; an object that comes back has another id.
 Knows no operation; those of a history of changes are in `edit_operations`.

@@ -22,7 +22,7 @@ from sailenv_ros.world.world import World
 __all__ = ["changed_materials", "changed_surface", "merged_look", "set_surface", "surface_keys"]
 
 _EXCLUSIVE = ("material", "picture")
-"""One of them takes the other's place."""
+"""Keys that replace one another."""
 
 _WALL = " wall"
 

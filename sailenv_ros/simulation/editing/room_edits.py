@@ -72,7 +72,7 @@ class PlanObject:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorPlan:
-    """What a floor plan shows.
+    """Contents of a floor plan.
 
     Attributes
     ----------

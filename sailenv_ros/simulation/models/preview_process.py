@@ -31,7 +31,7 @@ __all__ = ["HEIGHT_PX", "WIDTH_PX", "PreviewProcess"]
 WIDTH_PX, HEIGHT_PX = 160, 120
 
 DETAIL = 2
-"""It is drawn so many times as large, and made smaller: fine parts are seen better."""
+"""Supersampling factor along each axis, so that fine parts are visible."""
 
 ANSWER_S = 60.0
 """Time limit for a thumbnail, the start of the process included [s]."""

@@ -1,4 +1,4 @@
-"""What a simulator can be asked to do, each operation declared once.
+"""Operations of a simulator, each declared once.
 
 A declaration is a name, a typed signature, a docstring, a deadline, the checks of its arguments,
 and what it does to a simulation, of which it knows the parts in `targets` alone. `Simulation` runs

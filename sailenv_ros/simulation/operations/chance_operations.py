@@ -23,7 +23,7 @@ def _things(what: str, value: object) -> Any:
 
 
 class ChanceOperations(Caller):
-    """What is drawn at random; see `randomise` in scene files."""
+    """Randomisation of the scene; see `randomise` in scene files."""
 
     @operation(
         deadline_s=120.0,

@@ -18,7 +18,7 @@ from sailenv_ros.types.validation import vector
 __all__ = ["EnvironmentOperations"]
 
 MAX_GRAVITY = 1000.0
-"""As in a scene file [m/s²]."""
+"""Greatest gravity, as in a scene file [m/s²]."""
 
 _BACKGROUNDS = ("sky", "colour")
 

@@ -1,4 +1,4 @@
-"""What becomes of a frame's dict: pictures of its views for people, boxes for detectors."""
+"""Pictures of a frame's views for people, and boxes for detectors, from a frame's dict."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ __all__ = ["JointOperations"]
 
 
 class JointOperations(Caller):
-    """What moves on hinges and slides. A joint is named by the object that moves on it."""
+    """Hinges and slides. A joint is named by the object that moves on it."""
 
     @operation(
         obj=check.object_reference,

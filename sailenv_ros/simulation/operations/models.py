@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["ModelOperations"]
 
 UPLOAD_S = 120.0
-"""How long an upload may take unless told otherwise [s]."""
+"""Time limit of an upload unless another is given [s]."""
 
 
 class ModelOperations(Caller):

@@ -9,7 +9,7 @@ __all__ = ["SceneTables"]
 
 
 class SceneTables(Caller):
-    """What is in the scene now; nothing here blocks."""
+    """Tables of the present contents of the scene; nothing here blocks."""
 
     @property
     def scene(self) -> str:

@@ -19,7 +19,7 @@ from sailenv_ros.world.bullet import STEPS_PER_SECOND
 __all__ = ["Lesson", "LessonPlan", "Presence", "Turn", "steps_of"]
 
 _ORDERS, _BEHAVIOURS = 1, 2
-"""What a lap's generator is for."""
+"""Purposes of a lap's generators: the order of the lessons, the behaviours of their objects."""
 
 
 def steps_of(time_s: float) -> int:

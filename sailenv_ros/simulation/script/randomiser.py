@@ -33,7 +33,7 @@ _RECORD = ("seed", "index", "step", "epoch", "frame")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chance:
-    """What decides what is drawn, besides the scene and the seed.
+    """Inputs of randomisation, besides the scene and the seed.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Chance:
 
 
 class Randomiser:
-    """What is drawn at random in one simulation.
+    """Randomisation of one simulation: draws values and applies them to the world.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class Randomiser:
 
     @property
     def record(self) -> Mapping[str, Any] | None:
-        """What was drawn for the frame that is rendered now; None if nothing was."""
+        """Record of the values drawn for the present frame; None if nothing was drawn."""
         if not self._epoch and not self._frame:
             return None
         return {

@@ -38,7 +38,7 @@ Entry = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Additions:
-    """What there is besides what a scene has by itself.
+    """Additions to a scene: more objects, and other lessons.
 
     Attributes
     ----------

@@ -44,15 +44,14 @@ def test_ids_run_from_1_without_gaps_below_those_of_scenes() -> None:
     assert LAST_FIXED_ID == FIRST_SCENE_CATEGORY_ID - 1
 
 
-@pytest.mark.parametrize(
-    "name",
-    """bed,book,chair,couch,dining table,fork,laptop,airplane,potted plant,remote,spoon,
-    tennis racket,toilet,tv,wall,floor,ceiling,window,door,desk,cabinet,lamp,painting,rug,pillow,
-    towel,bottle,bathtub,sink,shelf,curtain,mirror,bowl,cup,knife,vase,clock,keyboard,mouse,pen,
-    notebook""".replace("\n    ", "").split(","),
-)
-def test_what_rooms_need_has_a_category(name: str) -> None:
-    assert load_categories().named(name).name == name
+NEEDED = """bed,book,chair,couch,dining table,fork,laptop,airplane,potted plant,remote,spoon,
+tennis racket,toilet,tv,wall,floor,ceiling,window,door,desk,cabinet,lamp,painting,rug,pillow,towel,
+bottle,bathtub,sink,shelf,curtain,mirror,bowl,cup,knife,vase,clock,keyboard,mouse,pen,notebook"""
+
+
+def test_what_rooms_need_has_a_category() -> None:
+    known = {category.name for category in load_categories().values()}
+    assert set(NEEDED.replace("\n", "").split(",")) - known == set()
 
 
 def _lab(srgb: NDArray[np.float64]) -> NDArray[np.float64]:

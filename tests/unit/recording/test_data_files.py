@@ -97,13 +97,13 @@ def _coco(index: int) -> Any:
 
 
 def _bop(index: int) -> Any:
-    truth = {"cam_R_m2c": [index] * 900, "cam_t_m2c": [0], "instance_id": 1, "parent_id": 0}
+    truth = {"cam_R_m2c": [index] * 9, "cam_t_m2c": [0], "instance_id": 1, "parent_id": 0}
     return {
         "scene": index // 4,
         "camera": {"cam_K": [float(index)] * 9},
         "size": [4, 4],
         "truths": [{**truth, "asset": "cube", "scale": [1.0, 1.0, 1.0]}] * 3,
-        "infos": [{"px_count_all": index}],
+        "infos": [{"px_count_all": index, "note": "x" * 9000}],
     }
 
 
