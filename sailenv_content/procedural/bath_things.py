@@ -1,4 +1,4 @@
-"""What stands by a washbasin: toothpaste, soap, a hair drier, a sponge."""
+"""Objects of a washbasin: toothpaste, soap, a hair drier, a sponge."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 SCREEN_BLACK = (0.02, 0.02, 0.022)
-"""What the white of its picture gives back of other light."""
+"""Reflectance of the white of its picture."""
 
 SCREEN_WHITE = (0.45, 0.47, 0.5)
 """Radiance of the white of a screen that is on: about that of a white wall in daylight."""

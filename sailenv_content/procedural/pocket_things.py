@@ -1,4 +1,4 @@
-"""What people carry and put down: glasses, keys, a wallet, a watch."""
+"""Objects that people carry and put down: glasses, keys, a wallet, a watch."""
 
 from __future__ import annotations
 

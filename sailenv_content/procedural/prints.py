@@ -1,4 +1,4 @@
-"""What is printed on things: labels of jars and cartons, covers, dials, photographs."""
+"""Printed surfaces: labels of jars and cartons, covers, dials, photographs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sailenv_ros.types.model import Texture
 __all__ = ["Sheet"]
 
 _FINE = 4
-"""What is drawn is averaged over so many samples along each axis."""
+"""Number of samples along each axis over which a drawing is averaged."""
 
 
 class Sheet:

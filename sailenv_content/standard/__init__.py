@@ -1,1 +1,1 @@
-"""How the standard pack is made: recipe and furniture catalogues in, a pack of glTF files out."""
+"""Build of the standard pack: recipe and furniture catalogues in, a pack of glTF files out."""

@@ -27,7 +27,7 @@ LICENCES = {
     "KatorLegaz": "CC-BY-3.0-US",
     "Scopia": "CC-BY-3.0",
 }
-"""What each library states for all its models (SPDX names)."""
+"""Licence of all models of each library (SPDX names)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

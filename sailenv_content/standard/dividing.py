@@ -1,4 +1,4 @@
-"""Which meshes of a catalogue's model are labelled apart: pillows, fruits, books on a shelf.
+"""Divides a catalogue's model into labelled parts: pillows, fruits, books on a shelf.
 
 Finished `RawPart`s and a recipe's `parts` in; the same surface out, each mesh with the name of its
 part. Some models have a material for each pillow; of others the connected pieces are taken, or a
@@ -27,7 +27,7 @@ TOUCHING_M = 0.002
 """Pieces whose boxes are no farther from each other are of one part [m]."""
 
 THINNEST_BOOK_M = 0.006
-"""What is thinner in a row of books is the gap between two [m]."""
+"""Least thickness of a book; in a row of books, less is the gap between two [m]."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False, slots=True, kw_only=True)

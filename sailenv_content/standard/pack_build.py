@@ -74,7 +74,7 @@ _LIBRARIES = ("trimesh", "coacd", "mapbox_earcut", "numpy")
 
 
 BUILD_S = 3600.0
-"""How long another process may take to build the pack [s]."""
+"""Time that another process may take to build the pack [s]."""
 
 
 def is_current(folder: Path | None = None, *, names: Collection[str] | None = None) -> bool:

@@ -1,4 +1,4 @@
-"""What surfaces are made of: a table from materials' names to physically based ones.
+"""Finishes of surfaces: a table from materials' names to physically based ones.
 
 The catalogues' materials know a colour and a highlight. Their names tell what they are: metal,
 wood, fabric. `Material` in, `Material` out.

@@ -133,7 +133,7 @@ def _picture(texture: Texture | None, *, lossless: bool = False) -> Image.Image 
 
 
 def triangle_count(parts: Sequence[ModelPart]) -> int:
-    """How many triangles all parts have."""
+    """Return the number of triangles of all parts."""
     return sum(len(part.mesh.triangles) for part in parts)
 
 

@@ -1,4 +1,4 @@
-"""What glTF files say of light that surfaces emit, as far as trimesh does not read or write it.
+"""Emission in glTF files, as far as trimesh does not read or write it.
 
 `KHR_materials_emissive_strength` in a file's description, and pictures of emission: our materials
 have one picture, so triangles that glow become a mesh of their own.

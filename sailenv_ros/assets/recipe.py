@@ -37,7 +37,7 @@ RECIPE_FILES = ("standard_pack.yaml", "standard_pack_rooms.yaml")
 
 
 class MaterialRule(_RecipeModel):
-    """What the recipe says of materials whose name fits a pattern.
+    """Rule of the recipe for the materials whose name matches a pattern.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class MaterialRule(_RecipeModel):
 
 
 class RecipePart(_RecipeModel):
-    """What of an object is labelled apart.
+    """Labelled part of an object.
 
     Attributes
     ----------

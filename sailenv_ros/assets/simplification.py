@@ -19,23 +19,23 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 BORDER_WEIGHT = 10.0
-"""How much more a border or a seam resists than a surface as wide as it is long."""
+"""Weight of a border or a seam, relative to a surface as wide as it is long."""
 
 LEAST_COSINE = 0.5
-"""Of the angle by which a triangle may turn when an edge is contracted."""
+"""Cosine of the greatest angle by which a triangle may turn when an edge is contracted."""
 
 LENGTH_WEIGHT = 1e-7
 """Share of an edge's squared length in its cost: of edges that cost nothing, the shortest."""
 
 ROUNDING = 1e-15
-"""What a mean squared distance of 0 is computed as, at most, of a mesh of extent 1."""
+"""Greatest rounding error of a mean squared distance of 0, for a mesh of extent 1."""
 
 PASS_SHARE = 0.5
 """Share of the edges that a pass looks at, the cheapest: dearer ones wait for a later pass."""
 
 LEAST_GAIN = 0.002
 PATIENCE = 4
-"""So many passes may spare less than that share of the triangles before no other one follows."""
+"""Number of passes in a row that may spare less than that share before simplification ends."""
 
 FEWEST_EDGES = 256
 """A pass looks at no fewer edges, if there are so many."""

@@ -28,7 +28,7 @@ SKIES = "skies"
 """Name of the folder in a pack."""
 
 MEAN_RADIANCE = 0.65
-"""Of the upper half, without the sun, after baking."""
+"""Mean radiance of the upper half, without the sun, after baking."""
 
 SUN_RADIANCE = 6.0
 """Brighter than this times the median is the sun: lights stand for it, the map does not."""

@@ -15,7 +15,7 @@ from sailenv_ros.dataset.manifest import ShardSummary
 __all__ = ["ATTEMPTS", "Engine", "OnFrames", "interleave_shards"]
 
 ATTEMPTS = 3
-"""How often a shard is tried whose worker dies."""
+"""Number of attempts at a shard whose worker dies."""
 
 OnFrames = Callable[[int], None]
 """Told how many frames have been made since the start."""

@@ -35,7 +35,7 @@ RECIPE_FILE = "recipe.yaml"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
-    """How far a data set is.
+    """Progress of making a data set.
 
     Attributes
     ----------

@@ -39,7 +39,7 @@ ABI_VERSION = 5
 """`SAILENV_ABI_VERSION` of src/abi.h."""
 
 INSTRUCTION_SETS = ("portable", "avx2", "avx512")
-"""From the one that every processor has to the best."""
+"""Instruction sets, from the one that every processor has to the best."""
 
 LIBRARY_VARIABLE = "SAILENV_NATIVE_LIBRARY"
 """Path of another build of the same sources, e.g. one with sanitizers."""
@@ -97,7 +97,7 @@ class NativeLibrary:
             for name in INSTRUCTION_SETS[: level + 1]
             if hasattr(self._library, f"sailenv_self_test_{name}")
         )
-        """Those that both the processor and the library have, the best one last."""
+        """Instruction sets that both the processor and the library have, the best one last."""
         asked = instruction_set or os.environ.get(INSTRUCTION_SET_VARIABLE)
         if asked and asked not in self.instruction_sets:
             raise UnknownName("instruction set of this machine", asked, self.instruction_sets)

@@ -67,7 +67,7 @@ class RayModels:
 
 
 class RayHits(NamedTuple):
-    """What each ray meets first.
+    """First hit of each ray.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the kernels of rays compute, in plain NumPy: their definition; see `reference_kernels`.
+"""Reference implementation of the ray kernels in plain NumPy; see `reference_kernels`.
 
 Every ray is held against every triangle, without a tree: right, and slow.
 """
@@ -13,7 +13,7 @@ from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree
 __all__ = ["build_tree", "cast_rays"]
 
 EDGE = 1e-9
-"""How far beside a triangle, in its own coordinates, its edge still counts as met."""
+"""Tolerance beside a triangle, in its own coordinates, within which a ray still hits its edge."""
 
 Doubles = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ __all__ = ["graphics_hardware", "make_backend"]
 _log = logging.getLogger(__name__)
 
 _DEVICE_FILES = ("dri/renderD*", "nvidia*", "dxg", "mali*", "kgsl*")
-"""What drivers of graphics hardware put into /dev; without any there is none to be found."""
+"""Device files of drivers of graphics hardware in /dev; without any there is no such hardware."""
 
 
 def make_backend(backend: BackendName, device: int | None) -> RenderBackend:

@@ -28,12 +28,12 @@ Entry = dict[str, Any]
 
 SETTLED_M = 0.002
 SETTLED_DEG = 0.5
-"""What physics has moved by no more, and is at rest, has only settled: it still stands upon its
-carrier, or at its wall."""
+"""Greatest displacement by settling: an object at rest that physics moved by no more still stands
+on its carrier, or at its wall."""
 
 SAME_M = 1e-6
 SAME_DEG = 1e-4
-"""What has moved by no more keeps the words of its file."""
+"""Greatest displacement up to which an object keeps the text of its file."""
 
 AT_REST = 0.01
 """Slower is at rest [m/s], [rad/s]."""

@@ -178,7 +178,7 @@ class Simulation(Operations):
 
     @property
     def contents(self) -> SceneContents:
-        """What the scene holds now apart from poses, the models too; never blocks.
+        """Contents of the scene apart from poses, the models included; never blocks.
 
         Raises
         ------
@@ -189,12 +189,12 @@ class Simulation(Operations):
 
     @property
     def lesson(self) -> LessonState | None:
-        """Which lesson of which lap it is now, None if the scene has none; never blocks."""
+        """The current lesson and lap, None if the scene has no lessons; never blocks."""
         return None if self._loop.core is None else self._loop.core.orchestrator.state
 
     @property
     def skipped_frames(self) -> int:
-        """How many frames were never rendered because the wall clock was ahead; never blocks."""
+        """Number of frames that were skipped because the wall clock was ahead; never blocks."""
         return 0 if self._loop.core is None else self._loop.core.streams.skipped_frames
 
     @property

@@ -25,7 +25,7 @@ class CommandContext(Conversation, Protocol):
         """Return a frame that this client was sent lately; None means the last one."""
 
     def select(self, instance_id: int) -> None:
-        """Have an instance's outline told; 0 for none."""
+        """Subscribe to the outline of an instance; 0 to stop."""
 
 
 Run = Callable[[CommandContext, Arguments], Awaitable[Any]]
@@ -56,6 +56,6 @@ class CommandTable(dict[str, Command]):
         return run
 
     def changes(self, run: Run) -> Run:
-        """Take a command up that those who only watch may not give."""
+        """Register a command that needs write access."""
         self[run.__name__] = Command(run=run, changes=True)
         return run

@@ -37,7 +37,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""
 
 ENDLESS = {"hinge": math.pi, "slide": 1.0}
-"""How far a slider goes to both sides for a joint without limits [rad], [m]."""
+"""Range of a slider to both sides for a joint without limits [rad], [m]."""
 
 
 # -- looking ---------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from sailenv_ros.types.scene_info import SceneInfo
 __all__ = ["Conversation", "EditHistory", "EditStep", "Record"]
 
 Record: TypeAlias = ObjectRecord | SurroundingsRecord | RoomRecord | None
-"""What was changed, as it was before or after; None for an object that was not there."""
+"""State of the edited part before or after a change; None for an object that was not there."""
 
 MOST_STEPS = 200
 
@@ -71,7 +71,7 @@ class EditStep:
 
 
 class EditHistory:
-    """What was done and can be undone, and what was undone and can be done again.
+    """Edits that can be undone, and undone edits that can be redone.
 
     Attributes
     ----------
@@ -87,12 +87,12 @@ class EditHistory:
 
     @property
     def undo_what(self) -> str:
-        """What would be undone next, in words; empty for nothing."""
+        """Description of the edit that would be undone next; empty for none."""
         return self._done[-1].what if self._done else ""
 
     @property
     def redo_what(self) -> str:
-        """What would be done again next, in words; empty for nothing."""
+        """Description of the edit that would be redone next; empty for none."""
         return self._undone[-1].what if self._undone else ""
 
     def forget_other_scenes(self, epoch: int) -> None:

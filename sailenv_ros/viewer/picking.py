@@ -1,4 +1,4 @@
-"""What lies behind a pixel: exactly the values of a frame's arrays, and the point that is seen.
+"""Values at a pixel of a frame, exactly as its arrays hold them, and the visible surface point.
 
 A `Frame` and a pixel in; plain values for JSON, or world coordinates, out.
 """
@@ -19,7 +19,8 @@ from sailenv_ros.types.views import VIEWS
 __all__ = ["pixel_of", "standing_point", "values_at"]
 
 FAR_M = 6.0
-"""What is farther away than this, or nowhere, is placed at this distance ahead instead [m]."""
+"""Greatest distance at which an object is placed [m]; farther, or nowhere, becomes this
+distance."""
 
 OFF_WALL_M = 0.3
 """Room that is left before a wall [m]."""

@@ -154,7 +154,7 @@ class WorldState:
 
     @property
     def contents(self) -> SceneContents:
-        """What exists now, apart from poses."""
+        """Contents of the world at present, apart from poses."""
         return self._shown.current
 
     @property

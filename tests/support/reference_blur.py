@@ -1,4 +1,4 @@
-"""What blurs reflection maps, in plain NumPy: the definition of `native.light_maps`' kernel."""
+"""Blurring of reflection maps, in plain NumPy: the definition of `native.light_maps`' kernel."""
 
 from __future__ import annotations
 

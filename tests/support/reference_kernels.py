@@ -1,4 +1,4 @@
-"""What the kernels of the native library compute, in plain NumPy: their definition.
+"""Reference implementation of the native kernels in plain NumPy, which defines their results.
 
 Each function takes and returns what the function of the same name in `sailenv_ros.native` does, and
 the same bytes: tests compare them. Arrays of float32 meet numbers of float32 alone, so that the

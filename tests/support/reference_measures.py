@@ -1,4 +1,4 @@
-"""What measures the instances of a picture, in plain NumPy: the definition of the kernel."""
+"""Measuring of the instances of a picture, in plain NumPy: the definition of the kernel."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sailenv_ros.frame.truth.visible_parts import FLOW_STEPS
 __all__ = ["measure_with_numpy"]
 
 GREATEST_FLOW = 1e7
-"""What is not less [px/s] counts as no flow."""
+"""Flow of this magnitude or more counts as no flow [px/s]."""
 
 
 def measure_with_numpy(

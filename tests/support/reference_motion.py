@@ -1,4 +1,4 @@
-"""What the kernels of motion compute, in plain NumPy: the definition; see `reference_kernels`."""
+"""Results of the motion kernels, in plain NumPy: the definition; see `reference_kernels`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 __all__ = ["move_points", "transform_points"]
 
 ROUNDING_PX = 1e-3
-"""How far from a pixel's centre that pixel alone decides whether a point is hidden."""
+"""Greatest distance from a pixel's centre at which that pixel alone decides on occlusion [px]."""
 
 Doubles = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""What a format of data sets is: frames go in one by one, files and records come out.
+"""Contract of a data-set format: frames go in one by one, files and records come out.
 
 A new format is one module with a subclass of `DatasetFormat`, and a line in `formats.FORMATS`.
 """
@@ -67,7 +67,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WriteResult:
-    """What a format made of one frame.
+    """Result of writing one frame in one format.
 
     Attributes
     ----------

@@ -18,7 +18,7 @@ NOTES_FOLDER = "unfinished/frames"
 FRAMES_PER_NOTE = 32
 
 Entry = Mapping[str, WriteResult]
-"""What each format made of one frame."""
+"""Result of each format for one frame."""
 
 
 class FrameJournal:

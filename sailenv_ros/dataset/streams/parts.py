@@ -56,7 +56,7 @@ class StreamFolder:
 
     @property
     def parts(self) -> int:
-        """How many parts are whole, counted from the first on."""
+        """Number of complete parts, counted from the first on."""
         count = 0
         while (self._growing / self._part(count)).is_file():
             count += 1

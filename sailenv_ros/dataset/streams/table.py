@@ -1,4 +1,4 @@
-"""Which streams there are: scene, rate and length of each, and who pushes what in it."""
+"""Table of the streams: scene, rate and length of each, and its pusher."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["STREAMS", "ForceSchedule", "StreamKind", "stream_named"]
 
 
 class ForceSchedule(Protocol):
-    """What acts on a stream's scene before each frame but the first."""
+    """Action on a stream's scene before each frame but the first."""
 
     def apply(self, simulation: Simulation, number: int) -> None:
         """Act before the steps that lead to frame `number`, from 1 on."""

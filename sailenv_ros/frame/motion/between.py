@@ -21,7 +21,7 @@ __all__ = ["Motion", "motion"]
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Motion:
-    """Where the surface points that one frame shows are in another one.
+    """Motion of the visible surface points of one frame to another frame.
 
     All arrays are of the first frame's pixels, and the caller's own. Of each pixel whose motion is
     known exactly one is true: `visible`, `occluded`, `out_of_view`.

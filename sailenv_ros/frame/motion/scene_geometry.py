@@ -33,7 +33,7 @@ MOST_HOLES = 64
 
 
 class SurfaceHits(NamedTuple):
-    """What each ray meets first.
+    """First hit of each ray.
 
     Attributes
     ----------

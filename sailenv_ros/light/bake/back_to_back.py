@@ -20,7 +20,7 @@ GRID_M = 1e-4
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class BackToBack:
-    """Which triangle lies on which, facing the other way.
+    """Triangles that lie on one another and face opposite ways.
 
     Attributes
     ----------

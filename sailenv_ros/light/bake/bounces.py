@@ -22,7 +22,7 @@ Floats = NDArray[np.float32]
 
 
 FEWEST_RAYS = 2 * TURN
-"""Of each texel count at least in a patch of many."""
+"""Least number of rays of each texel that count in a patch of many texels."""
 
 BLOCK = 8
 """Channels that are added up at a time."""

@@ -17,10 +17,10 @@ __all__ = ["denoised", "dilated", "stand_ins"]
 Floats = NDArray[np.float32]
 
 DILATIONS = 12
-"""How many texels light is dilated into what lies inside of other things."""
+"""Number of texels by which light is dilated into regions inside of solids."""
 
 STAND_INS = 2
-"""How many texels rays that meet what lies inside of other things find light beside it."""
+"""Number of texels beside the inside of a solid in which rays that hit it find light."""
 
 
 def denoised(

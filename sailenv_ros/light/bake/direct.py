@@ -1,4 +1,4 @@
-"""What arrives straight from the lights, with soft shadows.
+"""Direct light, with soft shadows.
 
 From `Light` and points of surfaces to irradiance / pi, for white light of intensity 1. Where rays
 to a light go and what they bring says src/kernels/light_sampling.h, for relighting, too.

@@ -25,7 +25,7 @@ LARGEST_M = 0.5
 """Radius of a ball around an emitter; what is larger is met often enough."""
 
 LEAST_SHARE = 0.01
-"""Of what the strongest emitter sends out, below which one is not looked for."""
+"""Least power of an emitter that is sampled, as a share of the strongest one's."""
 
 
 def emitters_of(

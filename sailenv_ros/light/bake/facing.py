@@ -1,4 +1,4 @@
-"""Which side of two-sided surfaces the light map shows. From `Texels` to `Texels`.
+"""Choice of the side of two-sided surfaces that the light map holds. From `Texels` to `Texels`.
 
 A light map holds one side. Of a closed body whose triangles were wound either way that must be
 the outer one, of a sheet that hangs before a wall the open one.
@@ -20,10 +20,10 @@ __all__ = ["facing_the_light"]
 
 RAYS = 42
 FAR_M = 0.5
-"""What is farther counts as open."""
+"""Greatest distance of view that counts; farther is open [m]."""
 
 CLEARLY = 1.5
-"""How many times more open the back must be than the front."""
+"""Least ratio of the openness of the back to that of the front for turning a surface."""
 
 LIFT_M = 1e-3
 

@@ -1,4 +1,4 @@
-"""What arrives at points from all the surfaces around them and from the sky.
+"""Gathers the light that arrives at points from the surfaces around them and from the sky.
 
 From points and the radiance of texels to irradiance / pi. Sky that comes in through glass is
 looked for in two ways, by rays in all directions and by rays to the panes, which are joined by the
@@ -39,12 +39,12 @@ BACK = -2
 """Stands for the back of a surface that has none: such light is lost."""
 
 EMITTER_RAYS = 4
-"""From each point to each emitter; texels of a tile of 4 by 4 use different ones."""
+"""Rays from each point to each emitter; texels of a tile of 4 by 4 use different ones."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Surroundings:
-    """What rays may meet.
+    """Surroundings that rays are traced through.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Surroundings:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Looks:
-    """What is added to the light of points for small things that shine.
+    """Contributions of small emitters to the light of points.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class Looks:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Seen:
-    """What points see of the half spaces before them.
+    """View from points into their half spaces.
 
     Attributes
     ----------

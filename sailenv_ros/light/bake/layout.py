@@ -25,7 +25,8 @@ SIMPLE_TRIANGLES = 1000
 """Models of fewer triangles are boards and walls, whose large faces show fine shadows."""
 
 MOST_TEXELS = 50_000
-"""That a model of many triangles takes, if larger texels can help it: leaves are many."""
+"""Greatest number of texels of a model of many triangles, unless its texels are as large as they
+may be."""
 
 TRIALS = 8
 

@@ -61,7 +61,7 @@ def probe_positions(grid: ProbeGrid) -> Floats:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ProbeViews:
-    """What probes see: (R, 3) directions, and (N, R) texels and how clear the glass is."""
+    """Views from probes: (R, 3) directions, (N, R) texels and the transmittance of glass."""
 
     directions: Floats
     texels: NDArray[np.int32]

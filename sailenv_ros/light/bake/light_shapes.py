@@ -14,13 +14,14 @@ from sailenv_ros.types.lights import Light
 __all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "area_sides", "light_record"]
 
 SUN_RADIUS = math.tan(math.radians(0.4))
-"""Of a directional light's disc at a distance of 1, for texels: shadows end as they are wide."""
+"""Radius of a directional light's disc at distance 1, for texels: their shadow edges are as
+wide."""
 
 SUN_DISC_RADIUS = math.tan(math.radians(0.265))
 """The sun's own, for `SunEdges`."""
 
 LAMP_RADIUS_M = 0.03
-"""Of point and spot lights, for their shadows' edges alone."""
+"""Radius of point and spot lights, used for the edges of their shadows only."""
 
 
 _KINDS = {"directional": 0, "point": 1, "spot": 2, "area": 3}

@@ -1,4 +1,4 @@
-"""Which triangles of a masked material are there at all. From `Material` and uvs to booleans."""
+"""Presence of the triangles of a masked material. From `Material` and uvs to booleans."""
 
 from __future__ import annotations
 

@@ -53,7 +53,8 @@ Report = Callable[[str, float], None]
 """Is told the name of the stage and which share of the whole is done, 0 to 1."""
 
 DRAFT_SMOOTHING = 5
-"""How often a draft is averaged over tiles: what few rays cannot tell is left out, not noisy."""
+"""Number of smoothing passes of a draft over tiles: details beyond few rays are left out, not
+noisy."""
 
 Preview = Callable[[BakedLight], None]
 """Is given light of the same scene that is right, but rougher than what comes in the end."""

@@ -23,7 +23,7 @@ NEVER = 1e30
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Hits:
-    """What rays met first.
+    """First hits of rays.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What each texel gives back of the light it gets, and what it gives of itself.
+"""Albedo and emission of each texel.
 
 From `StaticGeometry`, `Layout` and `Texels` to albedo and emission. What is mirrored goes
 everywhere, too: the amount is right, the direction is the mean one. Normal maps do nothing.

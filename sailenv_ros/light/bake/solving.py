@@ -29,13 +29,13 @@ __all__ = ["Samples", "SolvedLight", "Solver", "Stages"]
 Floats = NDArray[np.float32]
 
 SURELY_INSIDE = 0.5
-"""What sees more at first is not looked at any further."""
+"""Share of back faces in the first pass above which a texel is not traced any further."""
 
 CHUNK_RAYS = 131_072
 """Cast at a time by one thread: few enough to stay in its cache."""
 
 EDGE_SHARE = 0.03
-"""Where shares of a light that few rays find differ by more among neighbours, a shadow ends."""
+"""Least difference between neighbours' shares of a light at which a shadow edge is assumed."""
 
 EDGE_TEXELS = 5
 """Side of the squares of neighbours."""
@@ -105,13 +105,13 @@ class Samples:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of texels."""
         return len(self.albedo)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SolvedLight:
-    """What arrives straight from one light, and the share that is visible of a directional one.
+    """Direct light of one source, and the visible share of a directional one.
 
     `light` is None for the surroundings, of which nothing counts as straight; `mixed` are the
     points near which a shadow of a directional one ends.

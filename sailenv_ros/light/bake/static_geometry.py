@@ -82,7 +82,7 @@ class StaticGeometry:
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles there are."""
+        """Number of triangles."""
         return len(self.corners)
 
     def bounds(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Where the sun's light ends on surfaces, more finely than texels. From texels to `SunEdges`.
+"""Shadow edges of the sun, at a finer resolution than texels. From texels to `SunEdges`.
 
 The share of the sun that arrives is found by rays at 4 by 4 points of each texel near which a
 shadow of it ends; elsewhere the light map says all there is to say.
@@ -27,7 +27,7 @@ __all__ = ["sun_edges"]
 Floats = NDArray[np.float32]
 
 RAYS = 16
-"""To the sun from each point."""
+"""Rays from each point to the sun."""
 
 SIDE = EDGE_POINTS
 POINTS = SIDE * SIDE

@@ -1,4 +1,4 @@
-"""Which point of which triangle each texel of the light map stands for.
+"""Point on a triangle that each texel of the light map stands for.
 
 From `StaticGeometry` and `Layout` to `Texels`. Knows neither rays nor light.
 """
@@ -24,7 +24,7 @@ EDGE = 1e-3
 """Points of which a corner's weight is less lie on the edge."""
 
 EDGE_M = 3e-3
-"""How far they are moved in [m]."""
+"""Distance by which points are moved away from an edge [m]."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -58,7 +58,7 @@ class Texels:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of texels."""
         return len(self.triangle)
 
     def of_map(self, owners: NDArray[np.int32]) -> TexelMap:

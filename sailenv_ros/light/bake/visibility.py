@@ -1,4 +1,4 @@
-"""Which static geometry is visible from the air in it. From `StaticGeometry` and rays to booleans.
+"""Visibility of static geometry from the air. From `StaticGeometry` and rays to booleans.
 
 Walls have backs and beds have insides: texels there would be lost. Knows no light.
 """
@@ -21,17 +21,17 @@ from sailenv_ros.light.bake.static_geometry import StaticGeometry
 __all__ = ["ProbeVisibility", "visible_triangles", "probe_visibility"]
 
 LEAST_VIEW_M = 0.5
-"""Who nowhere sees farther is inside of something, too."""
+"""A probe whose longest ray is shorter than this is inside a solid [m]."""
 
 CHUNK_RAYS = 250_000
 
 MOST_SKY = 0.5
-"""Who sees more sky stands outside of a room, if there are others who see little of it."""
+"""A probe that sees more sky than this share is outside of a room, if others see little of it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class ProbeVisibility:
-    """What was found at points in and around a scene.
+    """Result of looking around from points in and around a scene.
 
     Attributes
     ----------

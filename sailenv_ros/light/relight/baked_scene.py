@@ -78,7 +78,7 @@ class Panes:
 
 
 class BakedScene:
-    """What relighting needs to know of a bake; arrays are read-only by agreement.
+    """Bake in the form that relighting needs; arrays are read-only by agreement.
 
     Parameters
     ----------

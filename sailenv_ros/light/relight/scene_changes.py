@@ -1,4 +1,4 @@
-"""What stands elsewhere than where its light was baked. From poses to changes and back to rays."""
+"""Objects that are not where their light was baked. From poses to changes and back to rays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which clusters of triangles an eye sees, for the OpenGL renderer.
+"""Culling of clusters of triangles, for the OpenGL renderer.
 
 Clusters (see `clusters`) and an eye come in, the indices of the triangles that it may see go out.
 """

@@ -36,7 +36,7 @@ FLAT = 0.05
 LEAST_SIDE_M = 0.1
 LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.1
 CATEGORY = "mirror"
-"""In objects of this category any flat metal is a mirror, however rough its material says."""
+"""Category of objects in which any flat metal is a mirror, whatever its roughness."""
 
 SILVERED = 0.9
 """Least reflectance of such a mirror in its brightest channel, as of silver behind glass: models

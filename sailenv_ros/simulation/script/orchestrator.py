@@ -26,7 +26,7 @@ __all__ = ["Orchestrator"]
 
 
 class Orchestrator:
-    """What comes and goes in one simulation; used by one thread alone.
+    """Schedule of appearing and leaving objects in one simulation; used by one thread alone.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Orchestrator:
 
     @property
     def state(self) -> LessonState | None:
-        """Where the lessons are; None while there are none."""
+        """State of the lessons; None while there are none."""
         return self._state
 
     @property
