@@ -131,7 +131,7 @@ def test_a_program_of_the_page_on_simulation_runs(
 @pytest.mark.usefixtures("here")
 def test_the_readme_s_program_without_ros_runs(capsys: pytest.CaptureFixture[str]) -> None:
     """A frame of the default size with its simulated time."""
-    (program,) = (code for code in programs("README.md") if "import Simulation" in code)
+    (program,) = (code for code in programs("README.md") if "Simulation\n" in code)
     assert run(program, capsys) == "(480, 640, 2) 33333333\n"
 
 

@@ -16,7 +16,7 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 @pytest.fixture
 def frame() -> Frame:
     """Return a frame of two views."""
-    camera = Camera(intrinsics=CameraIntrinsics(width=4, height=3), world_from_camera=np.eye(4))
+    camera = Camera(intrinsics=CameraIntrinsics(width=12, height=9), world_from_camera=np.eye(4))
     return Frame(
         agent="a",
         scene="s",
@@ -27,8 +27,8 @@ def frame() -> Frame:
         dt_ns=0,
         camera=camera,
         views={
-            "depth": np.ones((3, 4), np.float32),
-            "rgb": np.zeros((3, 4, 3), np.uint8),
+            "depth": np.ones((9, 12), np.float32),
+            "rgb": np.zeros((9, 12, 3), np.uint8),
         },
     )
 
@@ -41,7 +41,7 @@ def test_a_frame_is_a_mapping_of_its_views(frame: Frame) -> None:
     assert list(frame) == list(frame.keys()) == ["rgb", "depth"]
     assert len(frame) == 2
     assert all(frame[name] is array for name, array in frame.items())
-    assert [array.shape for array in frame.values()] == [(3, 4, 3), (3, 4)]
+    assert [array.shape for array in frame.values()] == [(9, 12, 3), (9, 12)]
     assert dict(frame) == dict(frame.views)
 
 

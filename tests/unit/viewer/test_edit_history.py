@@ -6,7 +6,7 @@ import asyncio
 from types import SimpleNamespace
 from typing import Any, cast
 
-from sailenv_ros.simulation.editing.edit_records import EditOperations
+from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.editing.room_edits import RoomRecord
 from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.viewer.command_context import CommandContext
