@@ -16,7 +16,7 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 @pytest.fixture
 def frame() -> Frame:
     """Return a frame of two views."""
-    camera = Camera(intrinsics=CameraIntrinsics(width=12, height=9), world_from_camera=np.eye(4))
+    camera = Camera(intrinsics=CameraIntrinsics(width=12, height=9))
     return Frame(
         agent="a",
         scene="s",
