@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sailenv_ros.scene.serialisation import PLACE_KEYS, VELOCITY_KEYS, pose_entry, rounded
 from sailenv_ros.scene.spec import ObjectSpec
 from sailenv_ros.simulation.settled_places import settled_place
-from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.geometry import Pose, pose_angle_deg
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.placement import Placement
@@ -148,7 +148,7 @@ def _only_settled(body: Body) -> bool:
         return True
     return (
         math.dist(first.position_m, now.position_m) <= SETTLED_M
-        and _angle_deg(first, now) <= SETTLED_DEG
+        and pose_angle_deg(first, now) <= SETTLED_DEG
         and float(np.abs(speeds).max()) <= AT_REST
     )
 
@@ -156,13 +156,8 @@ def _only_settled(body: Body) -> bool:
 def _is_same(first: Pose, second: Pose, within_m: float = 1e-12, within_deg: float = 1e-6) -> bool:
     """Return whether two poses are the same up to rounding, or up to so much [m], [deg]."""
     return math.dist(first.position_m, second.position_m) < within_m and (
-        _angle_deg(first, second) < within_deg
+        pose_angle_deg(first, second) < within_deg
     )
-
-
-def _angle_deg(first: Pose, second: Pose) -> float:
-    share = abs(float(np.dot(first.orientation_xyzw, second.orientation_xyzw)))
-    return math.degrees(2.0 * math.acos(min(1.0, share)))
 
 
 def _velocities(body: Body) -> Entry:

@@ -8,13 +8,8 @@ from sailenv_ros.authoring.viewpoints import CameraView, sample_cameras
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.simulation.operations.targets import ViewsScene
-from sailenv_ros.types.validation import checked_integer
 
 __all__ = ["ViewpointOperations"]
-
-
-def _seed(what: str, value: object) -> int:
-    return checked_integer(what, value, 0, 2**63 - 1)
 
 
 class ViewpointOperations(Caller):
@@ -24,7 +19,7 @@ class ViewpointOperations(Caller):
         deadline_s=300.0,
         rule=check.text,
         name=check.text,
-        seed=check.optional(_seed),
+        seed=check.optional(check.seed),
         agent=check.optional(check.text),
     )
     @staticmethod
