@@ -1,6 +1,6 @@
 """The kernels of rays: trees over the triangles of models, and what rays through instances meet.
 
-What they compute is defined in `render.reference_rays`.
+What they compute is defined in `tests.support.reference_rays`.
 """
 
 from __future__ import annotations

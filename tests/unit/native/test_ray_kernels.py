@@ -12,7 +12,7 @@ from sailenv_ros.errors import InvalidRequest, NativeLibraryError
 from sailenv_ros.native import ray_kernels
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.native.ray_kernels import RayModels, TriangleTree
-from sailenv_ros.render import reference_rays as reference
+from tests.support import reference_rays as reference
 
 
 @pytest.fixture(params=load_library().instruction_sets)

@@ -1,4 +1,5 @@
-// Rays against the triangles of instances: what each one meets first; see render/reference_rays.py.
+// Rays against the triangles of instances: what each one meets first; see
+// tests/support/reference_rays.py.
 //
 // All in double precision. Which triangle is met does not depend on the tree: of equal distances
 // the lower instance and the lower triangle win.
