@@ -23,7 +23,14 @@ from collections.abc import Collection, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-__all__ = ["LIBRARY_NAME", "SOURCES", "CompilerError", "compile_library", "source_hash"]
+__all__ = [
+    "LIBRARY_NAME",
+    "SOURCES",
+    "CompilerError",
+    "compile_library",
+    "has_sources",
+    "source_hash",
+]
 
 SOURCES = Path(__file__).resolve().parent / "src"
 LIBRARY_NAME = "libsailenv_native.so"
@@ -166,6 +173,11 @@ def instruction_sets(compiler: Sequence[str]) -> dict[str, tuple[str, ...]]:
     """
     machine = _told(compiler, "-dumpmachine").partition("-")[0]
     return INSTRUCTION_SETS.get(machine, {"portable": ()})
+
+
+def has_sources() -> bool:
+    """Return whether the sources lie here: an installed package has the library alone."""
+    return (SOURCES / "abi.cpp").is_file()
 
 
 def source_hash(sources: Path = SOURCES) -> str:

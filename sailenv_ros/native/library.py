@@ -80,7 +80,8 @@ class NativeLibrary:
         self.path = path
         if not path.is_file():
             raise NativeLibraryError(f"there is no {path}")
-        if native_compile.SOURCES.is_dir():
+        # An installed package has no sources, but for the headers that shaders include.
+        if native_compile.has_sources():
             made_of = native_compile.compiled_hash(path)
             if made_of != native_compile.source_hash():
                 raise NativeLibraryError(f"{path} was made of other sources")

@@ -5,32 +5,17 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 
-import numpy as np
 import pytest
 
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from tests.support.recordings import SMALL, noise_frame
 
 
 @pytest.fixture
 def frame() -> Frame:
     """Return a frame of two views."""
-    camera = Camera(intrinsics=CameraIntrinsics(width=12, height=9))
-    return Frame(
-        agent="a",
-        scene="s",
-        epoch=0,
-        revision=0,
-        sequence=1,
-        stamp_ns=0,
-        dt_ns=0,
-        camera=camera,
-        views={
-            "depth": np.ones((9, 12), np.float32),
-            "rgb": np.zeros((9, 12, 3), np.uint8),
-        },
-    )
+    return noise_frame(1, views=("depth", "rgb"))
 
 
 def test_a_frame_is_a_mapping_of_its_views(frame: Frame) -> None:
@@ -41,7 +26,10 @@ def test_a_frame_is_a_mapping_of_its_views(frame: Frame) -> None:
     assert list(frame) == list(frame.keys()) == ["rgb", "depth"]
     assert len(frame) == 2
     assert all(frame[name] is array for name, array in frame.items())
-    assert [array.shape for array in frame.values()] == [(9, 12, 3), (9, 12)]
+    assert [array.shape for array in frame.values()] == [
+        (SMALL.height, SMALL.width, 3),
+        (SMALL.height, SMALL.width),
+    ]
     assert dict(frame) == dict(frame.views)
 
 
