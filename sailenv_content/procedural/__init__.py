@@ -18,9 +18,9 @@ from sailenv_content.procedural.stationery import books, mirror, notebook, pen
 from sailenv_content.procedural.textiles import cushion, folded_towel, hanging_towel, rug
 from sailenv_ros.assets.model_files import RawPart
 
-__all__ = ["HANDMADE"]
+__all__ = ["PROCEDURAL"]
 
-HANDMADE: dict[str, Callable[[], list[RawPart]]] = {
+PROCEDURAL: dict[str, Callable[[], list[RawPart]]] = {
     "painting_landscape": partial(painting, 4, 0.90, 0.62, (0.10, 0.055, 0.025)),
     "painting_blocks": partial(painting, 5, 0.60, 0.80, (0.02, 0.02, 0.02)),
     "painting_washes": partial(painting, 6, 0.70, 0.70, (0.75, 0.72, 0.66)),

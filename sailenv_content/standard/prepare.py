@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_content.procedural import HANDMADE
+from sailenv_content.procedural import PROCEDURAL
 from sailenv_content.procedural.devices import SCREEN_BLACK, desktop_picture
 from sailenv_content.procedural.paintings import landscape_picture
 from sailenv_content.standard.catalogues import CatalogueEntry, Catalogues
@@ -95,7 +95,7 @@ def prepare(name: str, entry: RecipeEntry, catalogues: Catalogues) -> PreparedAs
     """
     library, _, what = entry.source.partition("/")
     if library == "made":
-        raw = HANDMADE[what]()
+        raw = PROCEDURAL[what]()
         origin = ("sailenv_ros", "Apache-2.0", f"sailenv_ros {what}", what.replace("_", " "))
     else:
         listed = catalogues.entry(entry.source)

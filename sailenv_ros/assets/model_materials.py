@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sailenv_ros.assets.box_mapping import box_mapped
-from sailenv_ros.assets.material_stock import LaidMaterial, MaterialStock, appearance_key
+from sailenv_ros.assets.material_library import LaidMaterial, MaterialLibrary, appearance_key
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialSpec
 from sailenv_ros.types.model import Model, ModelPart
@@ -26,7 +26,7 @@ _made: weakref.WeakKeyDictionary[Model, weakref.WeakValueDictionary[object, Mode
 
 
 def finished(
-    model: Model, specs: Sequence[MaterialSpec], stock: MaterialStock, scale: Vector3
+    model: Model, specs: Sequence[MaterialSpec], stock: MaterialLibrary, scale: Vector3
 ) -> Model:
     """Return a model with other materials.
 
@@ -35,7 +35,7 @@ def finished(
     model : Model
     specs : sequence of MaterialSpec
         Applied one after another.
-    stock : MaterialStock
+    stock : MaterialLibrary
     scale : (3,) tuple of float
         That the model is drawn at: pictures keep their size.
 
@@ -69,7 +69,7 @@ def finished(
 
 
 def _part(
-    part: ModelPart, spec: MaterialSpec, stock: MaterialStock, scale: Vector3
+    part: ModelPart, spec: MaterialSpec, stock: MaterialLibrary, scale: Vector3
 ) -> ModelPart | None:
     """Return a part with another look; None for one that cannot have it."""
     if part.material.alpha != "opaque" and (spec.material or spec.picture):

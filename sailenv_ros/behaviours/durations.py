@@ -75,10 +75,10 @@ def lesson_errors(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, .
     for number, lesson in enumerate(sequence):
         if not isinstance(lesson, Mapping) or lesson.get("duration") is not None:
             continue
-        pupils = [str(name) for name in _listed(lesson, "objects")]
-        if not pupils or any(name not in objects for name in pupils):
+        scheduled_objects = [str(name) for name in _listed(lesson, "objects")]
+        if not scheduled_objects or any(name not in objects for name in scheduled_objects):
             continue
-        times = {name: presence_s(objects[name]) for name in pupils}
+        times = {name: presence_s(objects[name]) for name in scheduled_objects}
         endless = next((name for name, time_s in times.items() if time_s is None), None)
         place = ("lessons", "sequence", number)
         if endless is not None and not (goes_on and number == len(sequence) - 1):

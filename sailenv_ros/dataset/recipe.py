@@ -15,7 +15,7 @@ from sailenv_ros.authoring.generation.rule_files import room_kinds
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered
-from sailenv_ros.scene.field_types import Choice, Number, Several, Switch, Text
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
 from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.rules import distinct, distinct_values
@@ -61,7 +61,7 @@ class SceneRecipe(SceneModel):
     )
     seeds: Annotated[
         tuple[_Seed, _Seed],
-        Several(2, "two numbers [first, last], or one for both", one_for_all=True),
+        Vector(2, "two numbers [first, last], or one for both", one_for_all=True),
     ] = Field(default=(0, 0), description="first and last seed of generated scenes")
     splits: tuple[Annotated[str, Choice(SPLITS)], ...] = Field(
         default=(), description="splits that see these scenes; all if left out"

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from sailenv_ros.authoring.viewpoints.rule_table import camera_rules, checked_rule
 from sailenv_ros.errors import InvalidEntry
-from sailenv_ros.scene.field_types import Choice, Number, Several, Text
+from sailenv_ros.scene.field_types import Choice, Number, Text, Vector
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.placing import Aimed
 from sailenv_ros.scene.rules import at_most_one, few_samples
@@ -36,7 +36,7 @@ _Metres: TypeAlias = Annotated[float, Number(least=0.0, most=1e3, unit="m")]
 _Degrees: TypeAlias = Annotated[float, Number(least=-90.0, most=90.0, unit="deg")]
 _Turn: TypeAlias = Annotated[float, Number(least=-720.0, most=720.0, unit="deg/s")]
 _Speed: TypeAlias = Annotated[float, Number(least=0.0, most=20.0, unit="m/s")]
-_ENDS = Several(2, "two numbers [lowest, highest], or one for both", one_for_all=True)
+_ENDS = Vector(2, "two numbers [lowest, highest], or one for both", one_for_all=True)
 _LENS = CameraIntrinsics()
 
 

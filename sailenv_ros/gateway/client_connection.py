@@ -18,7 +18,7 @@ from sailenv_ros.errors import DeadlineExceeded, ProtocolError, SailenvError
 from sailenv_ros.gateway.codec import Message, MessageReader
 from sailenv_ros.gateway.gateway_limits import GatewayLimits
 from sailenv_ros.gateway.session import Session
-from sailenv_ros.gateway.steps import Answer, Ask, Step, one_line
+from sailenv_ros.gateway.steps import Request, Response, Step, one_line
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.silent_peers import end_when_silent
 
@@ -143,7 +143,7 @@ class ClientConnection:
                 self._writer.write(memoryview(piece)[start : start + CHUNK_BYTES])
                 await self._writer.drain()
 
-    async def _carried_out(self, answer: Answer) -> Sequence[bytes]:
+    async def _carried_out(self, answer: Response) -> Sequence[bytes]:
         """Drive an answer to its end."""
         result: Any = None
         error: SailenvError | None = None
@@ -160,7 +160,7 @@ class ClientConnection:
                 error = problem
 
     async def _done(self, step: Step) -> Any:
-        if not isinstance(step, Ask):
+        if not isinstance(step, Request):
             return await asyncio.get_running_loop().run_in_executor(self._workers, step.function)
         future = step.operation.submit_to(self._simulation, *step.args, **step.kwargs)
         what = f"the operation {step.operation.name!r} of {self.peer}"

@@ -10,7 +10,7 @@ from typing import Any
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_floats, pack_ints, pack_string, pack_strings
-from sailenv_ros.gateway.steps import Answer, Ask, in_words, one_line
+from sailenv_ros.gateway.steps import Request, Response, errors_as_text, one_line
 from sailenv_ros.gateway.unity import unity_from_vector, vector_from_unity
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.types.colour import linear_from_srgb8, srgb8_from_linear
@@ -31,18 +31,20 @@ def _linear(red: int, green: int, blue: int) -> Vector3:
 
 def _attribute(
     name: str, pack: Callable[[Any], bytes], unpack: Callable[..., Any]
-) -> tuple[Callable[..., Answer], Callable[..., Answer]]:
+) -> tuple[Callable[..., Response], Callable[..., Response]]:
     """Return the answers that read and write an attribute of a light, by its name in `Light`."""
 
-    def read(self: LightAnswers, light: str) -> Answer:
+    def read(self: LightAnswers, light: str) -> Response:
         try:
-            found: Light = yield Ask(Operations.get_light, light)
+            found: Light = yield Request(Operations.get_light, light)
             return [pack_string("ok"), pack(getattr(found, name))]
         except SailenvError as error:
             return [pack_string(one_line(error))]
 
-    def write(self: LightAnswers, light: str, **fields: Any) -> Answer:
-        return in_words(lambda: Ask(Operations.set_light, light, **{name: unpack(**fields)}))
+    def write(self: LightAnswers, light: str, **fields: Any) -> Response:
+        return errors_as_text(
+            lambda: Request(Operations.set_light, light, **{name: unpack(**fields)})
+        )
 
     return read, write
 
@@ -79,30 +81,34 @@ class LightAnswers:
         lambda vector: vector_from_unity("direction", vector),
     )
 
-    def get_lights(self) -> Answer:
+    def get_lights(self) -> Response:
         """Return the lights' names."""
         yield from ()
         return [pack_strings(light.name for light in self._info().lights)]
 
-    def get_light_type(self, light: str) -> Answer:
+    def get_light_type(self, light: str) -> Response:
         """Return a light's type."""
         try:
-            found: Light = yield Ask(Operations.get_light, light)
+            found: Light = yield Request(Operations.get_light, light)
         except SailenvError:
             return [pack_string(LIGHT_NOT_FOUND)]
         return [pack_string(found.type)]
 
-    def get_ambient_colour(self) -> Answer:
+    def get_ambient_colour(self) -> Response:
         """Return the colour of the light that arrives from everywhere."""
         yield from ()
         return [pack_string("ok"), pack_ints(*srgb8_from_linear(self._info().environment.ambient))]
 
-    def set_ambient_colour(self, red: int, green: int, blue: int) -> Answer:
+    def set_ambient_colour(self, red: int, green: int, blue: int) -> Response:
         """Change the colour of the light that arrives from everywhere."""
-        return in_words(lambda: Ask(Operations.set_ambient_light, _linear(red, green, blue)))
+        return errors_as_text(
+            lambda: Request(Operations.set_ambient_light, _linear(red, green, blue))
+        )
 
-    def set_background(self, red: int, green: int, blue: int) -> Answer:
+    def set_background(self, red: int, green: int, blue: int) -> Response:
         """Show a colour where nothing is hit, or the sky if one channel is negative."""
         if min(red, green, blue) < 0:
-            return in_words(lambda: Ask(Operations.set_background, "sky"))
-        return in_words(lambda: Ask(Operations.set_background, "colour", _linear(red, green, blue)))
+            return errors_as_text(lambda: Request(Operations.set_background, "sky"))
+        return errors_as_text(
+            lambda: Request(Operations.set_background, "colour", _linear(red, green, blue))
+        )

@@ -13,7 +13,7 @@ from sailenv_ros.gateway.scenario_json import (
     mapping_of_json,
 )
 from sailenv_ros.gateway.scene_names import scene_of_wire
-from sailenv_ros.gateway.steps import Answer, Ask, in_words, one_line
+from sailenv_ros.gateway.steps import Request, Response, errors_as_text, one_line
 from sailenv_ros.gateway.unity import pose_from_unity, scale_from_unity
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.types.scene_info import SceneInfo
@@ -40,9 +40,9 @@ class ObjectAnswers:
         self._info = info
         self._agent = agent
 
-    def get_spawnables(self) -> Answer:
+    def get_spawnables(self) -> Response:
         """Return the names of what can be spawned, as people write them: ``Chair 01``."""
-        names = yield Ask(Operations.spawnable_display_names)
+        names = yield Request(Operations.spawnable_display_names)
         return [pack_strings(names)]
 
     def spawn_object(
@@ -57,7 +57,7 @@ class ObjectAnswers:
         has_dynamic: bool = False,
         dynamic_type: str = "",
         dynamic: str = "{}",
-    ) -> Answer:
+    ) -> Response:
         """Put an object into the scene; tell its instance id, or nothing if it was refused.
 
         Objects have no parents here, so `use_parent` has no effect. What has a dynamic has a
@@ -65,7 +65,7 @@ class ObjectAnswers:
         """
         try:
             description = mapping_of_json("description of the dynamic", dynamic)
-            instance_id = yield Ask(
+            instance_id = yield Request(
                 Operations.spawn_object,
                 name,
                 pose=pose_from_unity(position, rotation),
@@ -81,22 +81,22 @@ class ObjectAnswers:
             return [pack_string("")]
         return [pack_string(str(instance_id))]
 
-    def despawn_object(self, id: int) -> Answer:
+    def despawn_object(self, id: int) -> Response:
         """Take an object out of the scene."""
-        return in_words(lambda: Ask(Operations.despawn_object, id))
+        return errors_as_text(lambda: Request(Operations.despawn_object, id))
 
-    def move_object(self, id: int, position: Vector3, rotation: Vector3) -> Answer:
+    def move_object(self, id: int, position: Vector3, rotation: Vector3) -> Response:
         """Move an object."""
-        return in_words(
-            lambda: Ask(Operations.move_object, id, pose=pose_from_unity(position, rotation))
+        return errors_as_text(
+            lambda: Request(Operations.move_object, id, pose=pose_from_unity(position, rotation))
         )
 
-    def spawn_view_frustum(self) -> Answer:
+    def spawn_view_frustum(self) -> Response:
         """Do nothing: what stays in a view needs no body around it. Nothing is answered."""
         yield from ()
         return []
 
-    def load_scenario(self, scenario: str) -> Answer:
+    def load_scenario(self, scenario: str) -> Response:
         """Begin a scene with more objects; tell their ids, or nothing for each if refused.
 
         Raises
@@ -113,16 +113,16 @@ class ObjectAnswers:
             described = {"scene": scene, "objects": entries}
             if wanted.get("timings") is not None:
                 described["timings"] = wanted["timings"]
-            ids = yield Ask(Operations.load_scenario, described)
+            ids = yield Request(Operations.load_scenario, described)
         except SailenvError as error:
             _log.warning("a scenario was refused: %s", one_line(error))
             return [pack_string("")] * count
         return [pack_string(str(instance_id)) for instance_id in ids]
 
-    def send_obj_zip(self, filename: str, data: bytes) -> Answer:
+    def send_obj_zip(self, filename: str, data: bytes) -> Response:
         """Import a model; tell the name that spawns it, or what is wrong after ``error:``."""
         try:
-            name = yield Ask(Operations.upload_model, data, filename)
+            name = yield Request(Operations.upload_model, data, filename)
         except SailenvError as error:
             _log.warning("the model %r was refused: %s", filename, one_line(error))
             return [pack_string(f"error: {one_line(error)}")]

@@ -16,7 +16,7 @@ from sailenv_ros.gateway.light_answers import LightAnswers
 from sailenv_ros.gateway.object_answers import ObjectAnswers
 from sailenv_ros.gateway.payloads import packed_frame, views_of_flags
 from sailenv_ros.gateway.scene_names import scene_of_wire, wire_scenes
-from sailenv_ros.gateway.steps import Answer, Ask, Step, Work, in_words
+from sailenv_ros.gateway.steps import Request, Response, Step, Work, errors_as_text
 from sailenv_ros.gateway.unity import (
     pose_from_unity,
     unity_angles_deg,
@@ -65,15 +65,15 @@ class Session:
         """True once the client has said that it goes."""
         return self._ended
 
-    def answer(self, message: Message) -> Answer:
+    def answer(self, message: Message) -> Response:
         """Begin the answer to a message; the errors that a client cannot be told are raised."""
         group = next(group for group in self._answers if hasattr(group, message.name))
-        answer: Callable[..., Answer] = getattr(group, message.name)
+        answer: Callable[..., Response] = getattr(group, message.name)
         return answer(**message.fields)
 
     # -- life ------------------------------------------------------------------------------
 
-    def register(self, width: int, height: int, use_gzip: bool) -> Answer:
+    def register(self, width: int, height: int, use_gzip: bool) -> Response:
         """Become an agent; tell its number and the scenes."""
         intrinsics = CameraIntrinsics(width=width, height=height)
         number = yield from self._registered(intrinsics)
@@ -88,28 +88,28 @@ class Session:
                 name=f"{AGENT_PREFIX}{number}", intrinsics=intrinsics, rate_hz=0.0
             )
             try:
-                self._agent = yield Ask(Operations.register_agent, self._agent)
+                self._agent = yield Request(Operations.register_agent, self._agent)
             except NameTaken:
                 self._agent = None  # it is somebody else's
             else:
                 return number
 
-    def delete(self) -> Answer:
+    def delete(self) -> Response:
         """Remove the agent; nothing is answered."""
         self._ended = True
-        yield Ask(Operations.delete_agent, self.agent)
+        yield Request(Operations.delete_agent, self.agent)
         self._agent = None
         return []
 
     # -- frames ----------------------------------------------------------------------------
 
-    def frame(self, flags: int) -> Answer:
+    def frame(self, flags: int) -> Response:
         """Render the views asked for, now, and tell the time since the frame before."""
         if self._agent is None:
             raise ProtocolError("a frame was asked for before the registration")
         views = views_of_flags(flags)
         # Someone may want nothing but the time.
-        frame: Frame = yield Ask(Operations.capture, views or ("instance",), agent=self.agent)
+        frame: Frame = yield Request(Operations.capture, views or ("instance",), agent=self.agent)
         depth_range_m, use_gzip = self._agent.depth_range_m, self._use_gzip
 
         def pack() -> list[bytes]:
@@ -120,11 +120,13 @@ class Session:
 
     # -- scene -----------------------------------------------------------------------------
 
-    def change_scene(self, name: str) -> Answer:
+    def change_scene(self, name: str) -> Response:
         """Change the scene, for everybody."""
-        return in_words(lambda: Ask(Operations.change_scene, scene_of_wire(name, self._info())))
+        return errors_as_text(
+            lambda: Request(Operations.change_scene, scene_of_wire(name, self._info()))
+        )
 
-    def get_categories(self) -> Answer:
+    def get_categories(self) -> Response:
         """Return the number and name of each category."""
         yield from ()
         table = self._info().categories
@@ -133,34 +135,34 @@ class Session:
 
     # -- pose ------------------------------------------------------------------------------
 
-    def get_position(self) -> Answer:
+    def get_position(self) -> Response:
         """Return where the agent is."""
-        here = yield Ask(Operations.get_agent_pose, agent=self.agent)
+        here = yield Request(Operations.get_agent_pose, agent=self.agent)
         return [pack_floats(*unity_from_vector(here.pose.position_m))]
 
-    def set_position(self, position: Vector3) -> Answer:
+    def set_position(self, position: Vector3) -> Response:
         """Move the agent, or the mover that it follows."""
-        return in_words(
-            lambda: Ask(
+        return errors_as_text(
+            lambda: Request(
                 Operations.set_position, vector_from_unity("position", position), agent=self.agent
             )
         )
 
-    def get_rotation(self) -> Answer:
+    def get_rotation(self) -> Response:
         """Return how the agent is turned."""
-        here = yield Ask(Operations.get_agent_pose, agent=self.agent)
+        here = yield Request(Operations.get_agent_pose, agent=self.agent)
         return [pack_floats(*unity_angles_deg(here.pose))]
 
-    def set_rotation(self, rotation: Vector3) -> Answer:
+    def set_rotation(self, rotation: Vector3) -> Response:
         """Turn the agent, or the mover that it follows."""
-        return in_words(
-            lambda: Ask(
+        return errors_as_text(
+            lambda: Request(
                 Operations.set_rotation,
                 pose_from_unity((0.0, 0.0, 0.0), rotation).rpy_deg,
                 agent=self.agent,
             )
         )
 
-    def toggle_follow(self) -> Answer:
+    def toggle_follow(self) -> Response:
         """Follow the mover, or stop."""
-        return in_words(lambda: Ask(Operations.toggle_follow, agent=self.agent))
+        return errors_as_text(lambda: Request(Operations.toggle_follow, agent=self.agent))

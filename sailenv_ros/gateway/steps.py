@@ -14,7 +14,7 @@ from sailenv_ros.errors import SailenvError
 from sailenv_ros.gateway.codec import pack_string
 from sailenv_ros.simulation.operations import Operation
 
-__all__ = ["Answer", "Ask", "Step", "Work", "in_words", "one_line"]
+__all__ = ["Response", "Request", "Step", "Work", "errors_as_text", "one_line"]
 
 P = ParamSpec("P")
 
@@ -24,7 +24,7 @@ MAX_WORDS = 1000
 """Longest sentence that a client is told [characters]."""
 
 
-class Ask:
+class Request:
     """An operation of the simulation with its arguments; its result is the operation's.
 
     Parameters
@@ -47,13 +47,13 @@ class Work:
     function: Callable[[], Any]
 
 
-Step: TypeAlias = Ask | Work
+Step: TypeAlias = Request | Work
 
-Answer: TypeAlias = Generator[Step, Any, Sequence[bytes]]
+Response: TypeAlias = Generator[Step, Any, Sequence[bytes]]
 """Yields steps, is sent their results or thrown their errors, returns the bytes to send."""
 
 
-def in_words(asked: Callable[[], Ask]) -> Answer:
+def errors_as_text(asked: Callable[[], Request]) -> Response:
     """Answer ``ok`` when what is asked for is done, else with the sentence of what went wrong.
 
     Parameters

@@ -22,7 +22,7 @@ __all__ = [
     "Choice",
     "Colour",
     "Number",
-    "Several",
+    "Vector",
     "Switch",
     "Text",
     "field_error",
@@ -106,7 +106,7 @@ class Number(Bounds, _FieldType):
 
 
 @dataclass(frozen=True, slots=True)
-class Several:
+class Vector:
     """Checks that a value is a list of so many entries; the entries check themselves.
 
     Attributes

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
-from sailenv_ros.scene.field_types import Colour, Number, Several, Text
+from sailenv_ros.scene.field_types import Colour, Number, Text, Vector
 from sailenv_ros.types.lights import MAX_RADIANCE
 
 __all__ = [
@@ -94,39 +94,39 @@ _NewtonMetres = Annotated[float, Number(least=-1e6, most=1e6, unit="N m")]
 _Turn = Annotated[float, Number(least=-1e5, most=1e5, unit="deg/s")]
 
 Position: TypeAlias = Annotated[
-    tuple[_Metres, _Metres, _Metres], Several(3, "three numbers [x, y, z] in [m]")
+    tuple[_Metres, _Metres, _Metres], Vector(3, "three numbers [x, y, z] in [m]")
 ]
 Rotation: TypeAlias = Annotated[
-    tuple[_Degrees, _Degrees, _Degrees], Several(3, "three numbers [roll, pitch, yaw] in [deg]")
+    tuple[_Degrees, _Degrees, _Degrees], Vector(3, "three numbers [roll, pitch, yaw] in [deg]")
 ]
 Orientation: TypeAlias = Annotated[
-    tuple[_Unitless, _Unitless, _Unitless, _Unitless], Several(4, "four numbers [x, y, z, w]")
+    tuple[_Unitless, _Unitless, _Unitless, _Unitless], Vector(4, "four numbers [x, y, z, w]")
 ]
 Direction: TypeAlias = Annotated[
-    tuple[_Unitless, _Unitless, _Unitless], Several(3, "three numbers [x, y, z], not all 0")
+    tuple[_Unitless, _Unitless, _Unitless], Vector(3, "three numbers [x, y, z], not all 0")
 ]
 Scale: TypeAlias = Annotated[
     tuple[_Factor, _Factor, _Factor],
-    Several(3, "one number, or three [x, y, z], from 0.001 to 1000", one_for_all=True),
+    Vector(3, "one number, or three [x, y, z], from 0.001 to 1000", one_for_all=True),
 ]
 Acceleration: TypeAlias = Annotated[
     tuple[_Acceleration, _Acceleration, _Acceleration],
-    Several(3, "three numbers [x, y, z] in [m/s2]"),
+    Vector(3, "three numbers [x, y, z] in [m/s2]"),
 ]
 MetresPerSecond: TypeAlias = Annotated[
-    tuple[_Speed, _Speed, _Speed], Several(3, "three numbers [x, y, z] in [m/s]")
+    tuple[_Speed, _Speed, _Speed], Vector(3, "three numbers [x, y, z] in [m/s]")
 ]
 Force: TypeAlias = Annotated[
-    tuple[_Newtons, _Newtons, _Newtons], Several(3, "three numbers [x, y, z] in [N]")
+    tuple[_Newtons, _Newtons, _Newtons], Vector(3, "three numbers [x, y, z] in [N]")
 ]
 Torque: TypeAlias = Annotated[
     tuple[_NewtonMetres, _NewtonMetres, _NewtonMetres],
-    Several(3, "three numbers [x, y, z] in [N m]"),
+    Vector(3, "three numbers [x, y, z] in [N m]"),
 ]
 DegreesPerSecond: TypeAlias = Annotated[
-    tuple[_Turn, _Turn, _Turn], Several(3, "three numbers [x, y, z] in [deg/s]")
+    tuple[_Turn, _Turn, _Turn], Vector(3, "three numbers [x, y, z] in [deg/s]")
 ]
 JointCoordinate: TypeAlias = Annotated[float, Number(least=-1e4, most=1e4)]
 JointLimits: TypeAlias = Annotated[
-    tuple[JointCoordinate, JointCoordinate], Several(2, "two numbers [low, high] in [rad] or [m]")
+    tuple[JointCoordinate, JointCoordinate], Vector(2, "two numbers [low, high] in [rad] or [m]")
 ]

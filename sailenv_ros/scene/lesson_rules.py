@@ -73,13 +73,13 @@ def visitors_stand_alone(scene: Entry) -> Faults:
     """Refuse joints of and on what comes and goes."""
     objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
     lessons = scene.get("lessons")
-    taught = {name for _, name in _named(scene)} if isinstance(lessons, Mapping) else set()
+    lesson_objects = {name for _, name in _named(scene)} if isinstance(lessons, Mapping) else set()
     joints = [entry["joint"] for entry in objects if isinstance(entry.get("joint"), Mapping)]
     parents = {str(joint.get("parent")) for joint in joints}
     for number, entry in enumerate(objects):
         given = entry.get("name")
         name = given if isinstance(given, str) else ""
-        comes = name in taught or entry.get("appear") or entry.get("leave") is not None
+        comes = name in lesson_objects or entry.get("appear") or entry.get("leave") is not None
         if comes and (entry.get("joint") is not None or name in parents):
             yield (
                 ("objects", number),

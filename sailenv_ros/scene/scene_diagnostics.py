@@ -18,7 +18,7 @@ from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
 from sailenv_ros.scene.randomise.random_rules import drawn_names
-from sailenv_ros.scene.randomise.thing import Thing
+from sailenv_ros.scene.randomise.randomisation import Randomisation
 from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
 from sailenv_ros.scene.spec_materials import LookSpec
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
@@ -128,7 +128,7 @@ def _unknown_names(
             yield from _unknown_surfaces(loc, model, entry, knowledge)
         elif issubclass(model, LookSpec):
             yield from _unknown_looks(loc, entry, knowledge)
-        elif issubclass(model, Thing):
+        elif issubclass(model, Randomisation):
             yield from _unknown_drawn(loc, entry, knowledge)
         elif issubclass(model, EnvironmentSpec):
             if entry.get("sky_map"):

@@ -176,12 +176,12 @@ class SceneSpec(SceneModel):
         return (self.mover or MoverSpec(),)
 
     @property
-    def taught(self) -> frozenset[str]:
+    def lesson_objects(self) -> frozenset[str]:
         """Names of the objects that come and go with lessons."""
         return frozenset() if self.lessons is None else self.lessons.names
 
     @property
-    def visitors(self) -> frozenset[str]:
+    def transient_objects(self) -> frozenset[str]:
         """Names of the objects that are not there all the time."""
         passing = (e.name for e in self.objects if e.appear or e.leave is not None)
-        return self.taught.union(passing)
+        return self.lesson_objects.union(passing)

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Final, TypeAlias
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Several, Text
+from sailenv_ros.scene.field_types import Choice, Number, Text, Vector
 from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
 from sailenv_ros.scene.rules import at_most_one
 
@@ -65,7 +65,7 @@ class LookSpec(SceneModel):
     tile: (
         Annotated[
             tuple[_Side, _Side],
-            Several(2, "one length, or two [width, height], in [m]", one_for_all=True),
+            Vector(2, "one length, or two [width, height], in [m]", one_for_all=True),
         ]
         | None
     ) = Field(

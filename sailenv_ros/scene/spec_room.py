@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from sailenv_ros.scene.field_types import Choice, Number, Several, Switch
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Vector
 from sailenv_ros.scene.fields import LinearColour, Name, Rule, SceneModel
 from sailenv_ros.scene.partition_rules import (
     along_an_axis,
@@ -61,7 +61,7 @@ _Extent: TypeAlias = Annotated[float, Number(least=1.0, most=100.0, unit="m")]
 _Opening: TypeAlias = Annotated[float, Number(least=0.3, most=100.0, unit="m")]
 _Along: TypeAlias = Annotated[float, Number(least=-50.0, most=50.0, unit="m")]
 _Wall: TypeAlias = Annotated[WallName, Choice(WALLS)]
-_Corner: TypeAlias = Annotated[tuple[_Along, _Along], Several(2, "two numbers [x, y] in [m]")]
+_Corner: TypeAlias = Annotated[tuple[_Along, _Along], Vector(2, "two numbers [x, y] in [m]")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,7 +292,7 @@ class RoomSpec(SceneModel):
 
     size: Annotated[
         tuple[_Extent, _Extent, _Extent],
-        Several(3, "three numbers [along x, along y, height] in [m]"),
+        Vector(3, "three numbers [along x, along y, height] in [m]"),
     ] = Field(description="inner size along x, along y, and height [m]")
     thickness: Annotated[float, Number(least=0.15, most=1.0, unit="m")] = Field(
         default=0.2, description="of walls, floor and ceiling, outwards [m]"

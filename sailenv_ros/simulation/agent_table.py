@@ -18,7 +18,7 @@ from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import Observation
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
-from sailenv_ros.world.gaze import Gaze
+from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.world import World
 
 __all__ = ["AgentRecord", "AgentTable"]
@@ -36,7 +36,7 @@ class AgentRecord:
         As it is now (its follow state changes).
     pose : Pose
         Where it is while it does not follow, and how it would be turned if it faced nothing.
-    gaze : Gaze or None
+    gaze : LookAtSolver or None
         What it faces in the present world.
     sequence : int
         Number of its last frame.
@@ -51,7 +51,7 @@ class AgentRecord:
     registered: AgentSpec
     spec: AgentSpec
     pose: Pose
-    gaze: Gaze | None = None
+    gaze: LookAtSolver | None = None
     sequence: int = 0
     latest: Observation | None = None
     earlier: Observation | None = None
@@ -185,7 +185,7 @@ class AgentTable:
             return world.mover(record.spec.mover).pose_at(world.sim_time_ns)
         return record.pose
 
-    def look_at(self, name: str | None, gaze: Gaze | None, world: World) -> None:
+    def look_at(self, name: str | None, gaze: LookAtSolver | None, world: World) -> None:
         """Have an agent face something from now on; without anything, it stays as it is turned."""
         record = self[name]
         if gaze is None and not record.spec.following:
@@ -306,7 +306,9 @@ class AgentTable:
                 record.spec = replace(record.spec, mover=first)
                 record.registered = replace(record.registered, mover=first)
 
-    def _gaze_in(self, record: AgentRecord, world: World, *, as_registered: bool) -> Gaze | None:
+    def _gaze_in(
+        self, record: AgentRecord, world: World, *, as_registered: bool
+    ) -> LookAtSolver | None:
         """Return what an agent faces in a world that has just begun; nothing that it lacks."""
         faced = record.spec.look_at if as_registered else record.look_at
         try:

@@ -28,8 +28,8 @@ from sailenv_ros.simulation.live_scene import LiveScene, SceneAnnouncer
 from sailenv_ros.simulation.present_scene import PresentScene
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.orchestrator import Orchestrator
-from sailenv_ros.simulation.script.randomiser import Chance, Randomiser
-from sailenv_ros.simulation.script.scenario import NOTHING_MORE, Additions, wanted_scenario
+from sailenv_ros.simulation.script.randomiser import RandomisationRequest, Randomiser
+from sailenv_ros.simulation.script.scenario import NOTHING_MORE, SceneOverlay, wanted_scenario
 from sailenv_ros.simulation.space_queries import SpaceQueries
 from sailenv_ros.simulation.stream_schedule import StreamSchedule
 from sailenv_ros.simulation.view_planes import view_planes
@@ -68,7 +68,7 @@ class SimulationCore:
         World, agents and library.
     epoch : int
         Grows at each change of scene and each reset.
-    additions : Additions
+    additions : SceneOverlay
         What a scenario added to what the scene has by itself.
     orchestrator : Orchestrator
         Lets objects come and go.
@@ -118,10 +118,10 @@ class SimulationCore:
         self.editor = SceneEditor(self.scene)
         self.scene_writer = SceneWriter(self.scene)
         self.randomiser = Randomiser(self.scene, self.editor, self.view_scene)
-        self.orchestrator = Orchestrator(self.scene, self.clock, self.randomiser.dress)
+        self.orchestrator = Orchestrator(self.scene, self.clock, self.randomiser.apply_materials)
         for spec in library.agents_of(self.world.scene):
             self.agents.add(spec, self.world)
-        self.randomiser.begin(Chance())
+        self.randomiser.begin(RandomisationRequest())
         self.orchestrator.begin()
         self.randomiser.place_cameras()
 
@@ -188,8 +188,8 @@ class SimulationCore:
         seed: int,
         *,
         as_registered: bool,
-        more: Additions = NOTHING_MORE,
-        chance: Chance | None = None,
+        more: SceneOverlay = NOTHING_MORE,
+        chance: RandomisationRequest | None = None,
     ) -> None:
         """Leave the present world for a new one at simulated time 0.
 
@@ -200,9 +200,9 @@ class SimulationCore:
         as_registered : bool
             True puts the agents back to what they were on registration and keeps them alone;
             False adds those that the scene brings along.
-        more : Additions
+        more : SceneOverlay
             What there is besides what the scene has by itself.
-        chance : Chance or None
+        chance : RandomisationRequest or None
             What decides what is drawn at random; None is the first epoch of what the scene draws.
         """
         world = self.library.build(scene, seed, self.epoch + 1, self._next_revision, more=more)
@@ -218,7 +218,7 @@ class SimulationCore:
         self.frames.watch_light()
         try:
             with self.scene.announce.silent():
-                self.randomiser.begin(chance or Chance())
+                self.randomiser.begin(chance or RandomisationRequest())
                 self.orchestrator.begin()
         except BaseException:
             world.close()

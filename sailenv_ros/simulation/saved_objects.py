@@ -43,12 +43,12 @@ def object_entries(world: World) -> list[Entry]:
     """Return the entries of all objects, those too that wait, in the order of their ids."""
     begun, waiting = world.first_bodies, world.waiting
     assert world.described is not None
-    visitors = world.described.visitors
+    transient = world.described.transient_objects
     # What is at a wall would come nearer to it without the board at its foot.
     same_walls = not world.room_changed and "skirting" not in world.missing_parts
     entries = {
         id_: _visitor(body.placement, body.entry_pose)
-        if body.placement.name in visitors
+        if body.placement.name in transient
         else _object(
             body, begun, unchanged=_placement_unchanged(body, begun, same_walls=same_walls)
         )

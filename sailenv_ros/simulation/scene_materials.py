@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.pictures import Pictures
 
 __all__ = ["SceneMaterials"]
@@ -36,14 +36,14 @@ class SceneMaterials:
         """Take note of the file that a scene was built from."""
         self._folders[scene] = file.absolute().parent
 
-    def of(self, scene: str) -> MaterialStock:
+    def of(self, scene: str) -> MaterialLibrary:
         """Return where the materials of a scene that was built come from."""
-        return MaterialStock(self._assets, self.pictures, self._picture_folders(scene))
+        return MaterialLibrary(self._assets, self.pictures, self._picture_folders(scene))
 
-    def beside(self, file: Path) -> MaterialStock:
+    def beside(self, file: Path) -> MaterialLibrary:
         """Return where the materials of a scene's file come from."""
         folders = (file.absolute().parent, self._own_folder)
-        return MaterialStock(self._assets, self.pictures, folders)
+        return MaterialLibrary(self._assets, self.pictures, folders)
 
     def picture_content(self, picture: str, scene: str) -> bytes:
         """Return the bytes of a picture that a scene shows.

@@ -11,7 +11,7 @@ from typing import Any
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.fit import ObjectFit
-from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.authoring.generation.names import PREFIX as GENERATED
@@ -39,7 +39,7 @@ from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
 from sailenv_ros.simulation.open_packs import OpenPacks
 from sailenv_ros.simulation.scene_materials import SceneMaterials
-from sailenv_ros.simulation.script.scenario import NOTHING_MORE, Additions
+from sailenv_ros.simulation.script.scenario import NOTHING_MORE, SceneOverlay
 from sailenv_ros.simulation.uploaded_models import UploadedModels
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
@@ -139,7 +139,7 @@ class SceneLibrary:
         )
 
     @property
-    def _knowledge_of_strangers(self) -> SceneKnowledge:
+    def _untrusted_context(self) -> SceneKnowledge:
         """Names that requests may refer to: unlike files, they cannot have code imported."""
         return replace(self.knowledge, behaviour_errors=known_behaviour_errors)
 
@@ -170,7 +170,7 @@ class SceneLibrary:
         epoch: int,
         next_revision: Callable[[], int],
         *,
-        more: Additions = NOTHING_MORE,
+        more: SceneOverlay = NOTHING_MORE,
     ) -> World:
         """Build the world of a scene, with `more` objects and lessons than it has by itself.
 
@@ -279,7 +279,7 @@ class SceneLibrary:
         """
         names = tuple(category.name for category in world.categories.values())
         stock = self.materials.of(world.scene)
-        known = replace(self._knowledge_of_strangers, categories=names)
+        known = replace(self._untrusted_context, categories=names)
         spec = checked_alone(entry, self._with_materials(known, stock)).placed(pose)
         return make_placement(
             spec,
@@ -331,7 +331,7 @@ class SceneLibrary:
 
     # -- inside ----------------------------------------------------------------------------
 
-    def _with_materials(self, known: SceneKnowledge, stock: MaterialStock) -> SceneKnowledge:
+    def _with_materials(self, known: SceneKnowledge, stock: MaterialLibrary) -> SceneKnowledge:
         return replace(known, material_fault=stock.fault, picture_fault=stock.picture_fault)
 
     def _load_light(self, world: World, scene: str) -> None:
@@ -344,5 +344,5 @@ class SceneLibrary:
         """Check objects that come on top of a scene's; those without a name are given one."""
         named = named_entries(entries, (entry.name for entry in spec.objects), self.canonical_asset)
         own = tuple(category.name for category in spec.categories)
-        known = self._with_materials(self._knowledge_of_strangers, self.materials.of(spec.name))
+        known = self._with_materials(self._untrusted_context, self.materials.of(spec.name))
         return checked_objects(named, replace(known, categories=(*known.categories, *own)))

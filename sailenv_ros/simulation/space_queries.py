@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
 from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
-from sailenv_ros.space.met_surfaces import RayCast
 from sailenv_ros.space.outlines import Solid, solids_of
+from sailenv_ros.space.ray_hits import RayCast
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from sailenv_ros.world.world import World
 

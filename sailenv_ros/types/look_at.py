@@ -1,6 +1,6 @@
 """Look-at constraint: the point or the object that an agent or a mover faces.
 
-Crosses `scene/`, `simulation/` and `world/`, which resolves it: see `world.gaze`.
+Crosses `scene/`, `simulation/` and `world/`, which resolves it: see `world.look_at_solver`.
 """
 
 from __future__ import annotations

@@ -18,10 +18,10 @@ from sailenv_ros.types.model import AssetPart
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.inactive_objects import InactiveObjects
 from sailenv_ros.world.joint_table import JointTable
 from sailenv_ros.world.jointed_bodies import make_body
 from sailenv_ros.world.placement import Placement
-from sailenv_ros.world.waiting_room import WaitingRoom
 
 __all__ = ["BodyTable", "LabelledPiece"]
 
@@ -67,7 +67,7 @@ class BodyTable:
 
     Attributes
     ----------
-    waiting : WaitingRoom
+    waiting : InactiveObjects
         Objects that are nowhere now.
     others : callable
         Returns bodies that are in the engine too, and no objects.
@@ -80,7 +80,7 @@ class BodyTable:
         waiting: Collection[str] = (),
     ) -> None:
         self._client = client
-        self.waiting = WaitingRoom()
+        self.waiting = InactiveObjects()
         self.others: Callable[[], Iterable[Body]] = tuple
         self.joints = JointTable(client)
         self._bodies: dict[int, Body] = {}
@@ -271,7 +271,7 @@ class BodyTable:
         else:
             gone = self[instance_id]
             self._require_nothing_on(gone, "to be removed")
-            self.rouse_beside(gone)
+            self.wake_neighbours(gone)
             self._note_last_pose(instance_id)
             gone.remove()
             del self._bodies[instance_id]
@@ -292,7 +292,7 @@ class BodyTable:
     def leave(self, instance_id: int) -> None:
         """Take a body out of the engine as `remove` does, but keep its ids for when it enters."""
         gone = self[instance_id]
-        self.rouse_beside(gone)
+        self.wake_neighbours(gone)
         self._note_last_pose(instance_id)
         self.waiting.take_back(instance_id, gone)
         gone.remove()
@@ -305,7 +305,7 @@ class BodyTable:
         placement = self.waiting.give(instance_id, seed=seed, start_s=start_s)
         self._bodies[instance_id] = make_body(self._client, placement)
         self._bodies = dict(sorted(self._bodies.items()))
-        self.cut_off_past(instance_id)
+        self.reset_motion_history(instance_id)
         self._pieces = None
         self.joints.arrange(self)
 
@@ -324,7 +324,7 @@ class BodyTable:
         if not placement.static and placement.joint is None:
             self._require_nothing_on(old, "that moves freely")
         new = old.rebuilt(placement)
-        self.rouse_beside(old)
+        self.wake_neighbours(old)
         self._bodies[instance_id] = new
         try:
             self.joints.arrange(self)
@@ -375,7 +375,7 @@ class BodyTable:
                 id_ = self._last_id
             self._bodies[id_] = body
             self._parts[id_] = ()  # what makes rooms labels all of a wall alike
-            self.cut_off_past(id_)
+            self.reset_motion_history(id_)
             leaving.discard(id_)
         for id_ in leaving:
             del self._bodies[id_], self._histories[id_], self._parts[id_]
@@ -383,14 +383,14 @@ class BodyTable:
         self.joints.arrange(self)
         self._room_parts = frozenset(placement.name for placement in wanted)
 
-    def rouse_beside(self, body: Body) -> None:
+    def wake_neighbours(self, body: Body) -> None:
         """Wake what sleeps beside or upon a body that is about to leave its place."""
         touching = body.touching_ids()
         for other in (*self, *self.others()):
             if other is not body and other.bullet_id in touching:
                 other.wake()
 
-    def cut_off_past(self, instance_id: int) -> None:
+    def reset_motion_history(self, instance_id: int) -> None:
         """Begin a new history: flow does not see where the body was before."""
         self._last_history += 1
         self._histories[instance_id] = self._last_history
@@ -404,7 +404,7 @@ class BodyTable:
             self._bodies[self._last_id + 1] = make_body(self._client, placement)
         self._last_id += 1
         self._parts[self._last_id] = ()
-        self.cut_off_past(self._last_id)
+        self.reset_motion_history(self._last_id)
         return self._last_id
 
     def _number_parts(self, body_id: int) -> None:

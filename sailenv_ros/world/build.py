@@ -10,7 +10,7 @@ import numpy as np
 
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.material_stock import MaterialStock, material_names
+from sailenv_ros.assets.material_library import MaterialLibrary, material_names
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
@@ -39,7 +39,7 @@ def build_world(
     epoch: int,
     next_revision: Callable[[], int],
     skies: Mapping[str, Path] | None = None,
-    materials: MaterialStock | None = None,
+    materials: MaterialLibrary | None = None,
 ) -> World:
     """Build the world of a scene.
 
@@ -55,7 +55,7 @@ def build_world(
         As `World` takes them.
     skies : mapping of str to Path or None
         Files of the photographed skies by name.
-    materials : MaterialStock or None
+    materials : MaterialLibrary or None
         Where materials and pictures come from; None knows no pictures.
 
     Raises
@@ -67,7 +67,7 @@ def build_world(
     poses = arranged(spec.objects, stock, spec.room)
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
-    found = materials or MaterialStock(assets)
+    found = materials or MaterialLibrary(assets)
     parts = list(room_placements(spec.room, table, found))
     world = World(
         scene=spec.name,
@@ -84,7 +84,7 @@ def build_world(
             # After the objects, whose ids do not depend on how doors are made.
             *(part for part in parts if part.joint is not None),
         ],
-        waiting=spec.taught.union(e.name for e in spec.objects if e.appear),
+        waiting=spec.lesson_objects.union(e.name for e in spec.objects if e.appear),
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
         lights=[light.to_light() for light in spec.lights],
@@ -121,7 +121,7 @@ def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Enviro
 
 
 def room_placements(
-    room: RoomSpec | None, categories: CategoryTable, materials: MaterialStock | None = None
+    room: RoomSpec | None, categories: CategoryTable, materials: MaterialLibrary | None = None
 ) -> Iterator[Placement]:
     """Yield the parts of a room, none if there is no room."""
     made = () if room is None else room_parts(room, materials)
@@ -151,7 +151,7 @@ def make_placement(
     seed: int,
     *,
     start_s: float = 0.0,
-    materials: MaterialStock | None = None,
+    materials: MaterialLibrary | None = None,
 ) -> Placement:
     """Turn an object's description into what `World.spawn` takes.
 
@@ -167,7 +167,7 @@ def make_placement(
         Of its behaviours' generators.
     start_s : float
         Simulated time at which they start [s].
-    materials : MaterialStock or None
+    materials : MaterialLibrary or None
         Needed for an entry that has materials.
 
     Raises
@@ -218,12 +218,12 @@ def _joint(entry: ObjectSpec) -> JointPlacement | None:
     )
 
 
-def _painted(entry: ObjectSpec, asset: Asset, materials: MaterialStock | None) -> Asset:
+def _painted(entry: ObjectSpec, asset: Asset, materials: MaterialLibrary | None) -> Asset:
     model = painted(
         asset.model, colour=entry.colour, metallic=entry.metallic, roughness=entry.roughness
     )
     if entry.materials:
-        stock = materials or MaterialStock(AssetLibrary())
+        stock = materials or MaterialLibrary(AssetLibrary())
         model = finished(model, entry.materials, stock, entry.scale)
     return asset if model is asset.model else replace(asset, model=model)
 

@@ -16,7 +16,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.types.validation import vector
-from sailenv_ros.world.gaze import Gaze
+from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.mover_body import Motion, MoverBody
 from sailenv_ros.world.mover_motion import MoverCommand, WaypointTrack, turned
 
@@ -73,7 +73,7 @@ class Mover:
         self._since_ns = 0
         self._command: MoverCommand | None = None
         self._command_ends_ns = 0
-        self._gaze: Gaze | None = None
+        self._gaze: LookAtSolver | None = None
 
     @property
     def track(self) -> WaypointTrack | None:
@@ -115,7 +115,7 @@ class Mover:
         return self._track.pose_at(self._ran_ns(time_ns) * 1e-9)
 
     @property
-    def gaze(self) -> Gaze | None:
+    def gaze(self) -> LookAtSolver | None:
         """Solver of its gaze; None if it looks at nothing."""
         return self._gaze
 
@@ -124,7 +124,7 @@ class Mover:
         """Its look-at target as data; None if there is none."""
         return None if self._gaze is None else self._gaze.described()
 
-    def face(self, gaze: Gaze | None, time_ns: int) -> None:
+    def face(self, gaze: LookAtSolver | None, time_ns: int) -> None:
         """Face something from now on; without anything, waypoints or commands alone turn it.
 
         One that stands stays turned as it is.
@@ -138,7 +138,7 @@ class Mover:
         """Its rigid body in the engine; None if it has none."""
         return self._body
 
-    def embody(self, body: MoverBody | None, time_ns: int) -> None:
+    def set_body(self, body: MoverBody | None, time_ns: int) -> None:
         """Let a body carry it from now on, or none any more: it stays where it is then."""
         self.control("rigidbody", time_ns)
         self._body = body

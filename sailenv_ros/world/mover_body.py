@@ -27,8 +27,8 @@ from sailenv_ros.types.model import Asset, Model, SphereShape
 from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
+from sailenv_ros.world.contact_body import ContactBody, ContactLink, LinkMotion, Strike, links_near
 from sailenv_ros.world.placement import Placement
-from sailenv_ros.world.struck import LinkMotion, Strike, StruckBody, StruckLink, links_near
 
 __all__ = ["AT_REST", "BOUNCES_FROM_M_S", "Motion", "MoverBody"]
 
@@ -212,11 +212,11 @@ class MoverBody(Body):
         body, link = other
         if link != LINK_OF_BASE or self._client.getNumJoints(body):
             before = self._links.get(other)
-            struck: StruckBody | StruckLink = StruckLink(
+            struck: ContactBody | ContactLink = ContactLink(
                 self._client, other, at, before, strike.impulse_n_s
             )
         else:
-            struck = StruckBody(self._client, body, at)
+            struck = ContactBody(self._client, body, at)
         mobility = 1.0 / self.mass_kg + struck.mobility(n)
         out = float((self.velocity()[0] - struck.velocity) @ n)
         into = strike.impulse_n_s * mobility - out

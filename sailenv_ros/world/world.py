@@ -105,7 +105,7 @@ class World(WorldState):
         old = self.body(instance_id)
         self._bodies.rebuild(instance_id, placement)
         if placement.scale != old.placement.scale:
-            self._bodies.cut_off_past(instance_id)
+            self._bodies.reset_motion_history(instance_id)
             self._shown.forget_charts(self._bodies.ids_of(instance_id))
         self.described = described or self.described
         self._changed_step = self._step
@@ -147,7 +147,7 @@ class World(WorldState):
         """Move an object and stop it; `teleport` cuts its past off, so flow does not see a jump."""
         moved = self.body(instance_id)
         moved.require_free()
-        self._bodies.rouse_beside(moved)
+        self._bodies.wake_neighbours(moved)
         moved.put(pose)
         self._bodies.joints.follow(moved)
         carried = set(self._bodies.joints.above(moved))
@@ -156,7 +156,7 @@ class World(WorldState):
         if teleport:
             for id_, body in self._bodies.items():
                 if id_ == instance_id or body in carried:
-                    self._bodies.cut_off_past(id_)
+                    self._bodies.reset_motion_history(id_)
         self._snapshot = self._states = None
 
     def joint(self, instance_id: int) -> JointState | None:
@@ -184,7 +184,7 @@ class World(WorldState):
             accepted = f"one on a joint: {', '.join(names[:20]) or 'this scene has none'}"
             raise InvalidRequest("object", body.placement.name, accepted)
         body.set_joint(position, seconds, self._step / STEPS_PER_SECOND)
-        self._bodies.rouse_beside(body)
+        self._bodies.wake_neighbours(body)
         if not seconds:
             self._changed_step = self._step
         self._snapshot = self._states = None
@@ -205,7 +205,7 @@ class World(WorldState):
         command = MoverCommand(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s)
         self._stands.drive(mover, command, self.sim_time_ns)
 
-    def embody(self, mover: str, rigid: RigidBody | None) -> bool:
+    def set_mover_body(self, mover: str, rigid: RigidBody | None) -> bool:
         """Make a mover a rigid body, or none any more; return whether that changed anything.
 
         It stays where it is. One that is another body already keeps its motion and what pushes it.
@@ -215,7 +215,7 @@ class World(WorldState):
         UnknownName, InvalidState
             If there is no such mover, or waypoints drive it; nothing is changed then.
         """
-        return self._stands.embody(mover, rigid, self.sim_time_ns)
+        return self._stands.set_mover_body(mover, rigid, self.sim_time_ns)
 
     def set_lights(self, lights: Sequence[Light]) -> None:
         """Replace the lights."""

@@ -23,12 +23,12 @@ from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.contents_maker import ContentsMaker
-from sailenv_ros.world.gaze import Gaze
+from sailenv_ros.world.inactive_objects import InactiveObjects
+from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.mover import Mover
-from sailenv_ros.world.moving_stands import MovingStands
+from sailenv_ros.world.mover_table import MoverTable
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
-from sailenv_ros.world.waiting_room import WaitingRoom
 
 __all__ = ["WorldState"]
 
@@ -93,7 +93,7 @@ class WorldState:
         self.described = described
         self._first_room = described.room if described is not None else None
         self._client = BulletClient()
-        self._stands = MovingStands(self._client, movers)
+        self._stands = MoverTable(self._client, movers)
         self._contact_log = ContactLog(self._client, self._stands.gain)
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
@@ -277,7 +277,7 @@ class WorldState:
                 return self._stands[obj].require_body()
         return self.body(self.find(obj))
 
-    def gaze(self, look_at: LookAt) -> Gaze:
+    def gaze(self, look_at: LookAt) -> LookAtSolver:
         """Return a look-at constraint in this world.
 
         Raises
@@ -285,7 +285,7 @@ class WorldState:
         UnknownName
             If no object of that name is there or waits.
         """
-        return Gaze(self._bodies, look_at)
+        return LookAtSolver(self._bodies, look_at)
 
     def object_state(self, instance_id: int) -> ObjectState:
         """Return what and where an object, or a part of one, is now.
@@ -310,7 +310,7 @@ class WorldState:
         return self._contact_log.contacts(self._step, count, ids, self._stands.pieces)
 
     @property
-    def waiting(self) -> WaitingRoom:
+    def waiting(self) -> InactiveObjects:
         """The objects that are nowhere now; read-only."""
         return self._bodies.waiting
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import Pictures
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
@@ -26,7 +26,7 @@ AHEAD = Pose((2.0, 0.0, 0.0))
 
 def exchanged(model: Model) -> Model:
     specs = [MaterialSpec.model_validate({"material": "stone_tiles", "tile": 0.4})]
-    return finished(model, specs, MaterialStock(AssetLibrary(), Pictures()), (1.0, 1.0, 1.0))
+    return finished(model, specs, MaterialLibrary(AssetLibrary(), Pictures()), (1.0, 1.0, 1.0))
 
 
 def corner_places(snapshot: WorldSnapshot) -> NDArray[np.float32]:
@@ -57,7 +57,7 @@ def test_picture_shows_the_light_of_the_bake(render: Render) -> None:
         finished(
             cube,
             [MaterialSpec.model_validate({"colour": colour, "roughness": 1.0})],
-            MaterialStock(AssetLibrary()),
+            MaterialLibrary(AssetLibrary()),
             (1.0, 1.0, 1.0),
         )
         for colour in ([0.5, 0.5, 0.5], [0.5, 0.1, 0.1])

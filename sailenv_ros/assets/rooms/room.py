@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.material_stock import MaterialStock, appearance_key
+from sailenv_ros.assets.material_library import MaterialLibrary, appearance_key
 from sailenv_ros.assets.rooms.door_leaves import door_leaf
 from sailenv_ros.assets.rooms.doors import (
     ARCHITRAVE_M,
@@ -89,13 +89,13 @@ class RoomPart:
     parent: str = ""
 
 
-def room_parts(spec: RoomSpec, stock: MaterialStock | None = None) -> tuple[RoomPart, ...]:
+def room_parts(spec: RoomSpec, stock: MaterialLibrary | None = None) -> tuple[RoomPart, ...]:
     """Build a room; the same objects for an equal description while they are kept.
 
     Parameters
     ----------
     spec : RoomSpec
-    stock : MaterialStock or None
+    stock : MaterialLibrary or None
         Where its materials come from; None knows those that are made for rooms.
 
     Raises
@@ -103,7 +103,7 @@ def room_parts(spec: RoomSpec, stock: MaterialStock | None = None) -> tuple[Room
     UnknownName, InvalidRequest, AssetError
         If a material is not known, or a picture cannot be used.
     """
-    found = stock or MaterialStock(AssetLibrary())
+    found = stock or MaterialLibrary(AssetLibrary())
     looks = {look: _surface(look, found) for look in dict.fromkeys(_looks(spec))}
     return _room_parts(spec, tuple(looks.items()))
 
@@ -298,7 +298,7 @@ def _openings(spec: RoomSpec, frames: _Frames) -> Iterator[RoomPart]:
             yield _part(f"curtains {number}", "curtain", looks, [], frame.world_point(window.at))
 
 
-def _surface(spec: SurfaceSpec, stock: MaterialStock) -> Surface:
+def _surface(spec: SurfaceSpec, stock: MaterialLibrary) -> Surface:
     """Return what a surface is made of; the same object for equal finishes while they are kept."""
     finish = stock.finish(spec)
     material, tile_m = finish.material, finish.tile_m or (1.0, 1.0)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from sailenv_ros.authoring.generation.plan import Area, Block, WallGap, WallSide
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.room_shapes import (
     DOOR_M,
     OUTER,
@@ -42,7 +42,7 @@ class _Room:
     sides: list[WallSide] = field(default_factory=list)
 
 
-def apartment(kind: str, rules: Rules, dice: Dice) -> Shell:
+def apartment(kind: str, rules: Rules, dice: RandomStream) -> Shell:
     """Return the shell of an apartment."""
     file = rules.kind(kind)
     x, y = (round(dice.between(span), 1) for span in (file.shape.width, file.shape.depth))
@@ -90,7 +90,7 @@ def _divided(
     low: tuple[float, float],
     high: tuple[float, float],
     flips: tuple[bool, bool],
-    dice: Dice,
+    dice: RandomStream,
 ) -> Sequence[_Room]:
     """Return the rooms of a layout within a rectangle; both axes may be turned round."""
     if split.along is None:
@@ -147,7 +147,7 @@ def _outer_sides(room: _Room, size: tuple[float, float]) -> list[WallSide]:
 
 
 def _partitions(
-    rooms: Sequence[_Room], size: tuple[float, float], dice: Dice
+    rooms: Sequence[_Room], size: tuple[float, float], dice: RandomStream
 ) -> list[dict[str, Any]]:
     """Return the walls between rooms; each room has a doorway to the hub, or to one that has."""
     shared = []
@@ -197,7 +197,7 @@ def _wall_between(
     extent: tuple[float, float],
     size: tuple[float, float],
     with_door: bool,
-    dice: Dice,
+    dice: RandomStream,
 ) -> dict[str, Any]:
     """Return the entry of a wall between two rooms; both get their side of it."""
     other = 1 - axis

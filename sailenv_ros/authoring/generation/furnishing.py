@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from sailenv_ros.authoring.generation.asset_index import AssetIndex
 from sailenv_ros.authoring.generation.companion_spots import CompanionSpots
 from sailenv_ros.authoring.generation.items import Item, Namer
 from sailenv_ros.authoring.generation.plan import Area, Block, RoomPlan
 from sailenv_ros.authoring.generation.positions import Positioner
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.rule_files import Rules
 from sailenv_ros.authoring.generation.rule_models import CompanionRule, FurnitureRule, PieceRule
-from sailenv_ros.authoring.generation.stock import Stock
 
 __all__ = ["Furnisher"]
 
@@ -49,8 +49,8 @@ class Furnisher:
     plan : RoomPlan
         What stands there is added to it.
     rules : Rules
-    stock : Stock
-    dice : Dice
+    stock : AssetIndex
+    dice : RandomStream
     namer : Namer
     skirting_m : float
         How far the skirting keeps off what stands at a wall [m].
@@ -59,8 +59,8 @@ class Furnisher:
     area: Area
     plan: RoomPlan
     rules: Rules
-    stock: Stock
-    dice: Dice
+    stock: AssetIndex
+    dice: RandomStream
     namer: Namer
     skirting_m: float
     items: list[Item] = field(default_factory=list)

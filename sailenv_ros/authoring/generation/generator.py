@@ -16,6 +16,7 @@ from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.sources import installed_packs, installed_sources
+from sailenv_ros.authoring.generation.asset_index import AssetIndex
 from sailenv_ros.authoring.generation.checks import Fault, faults, look_backend, unseen
 from sailenv_ros.authoring.generation.draft import Draft
 from sailenv_ros.authoring.generation.furnishing import Furnisher
@@ -23,14 +24,13 @@ from sailenv_ros.authoring.generation.items import Item, Namer
 from sailenv_ros.authoring.generation.lighting import environment_entry, light_entries
 from sailenv_ros.authoring.generation.names import MAX_SEED
 from sailenv_ros.authoring.generation.plan import RoomPlan
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.room_agents import StandingWorld, agent_entries, best_first
 from sailenv_ros.authoring.generation.route import mover_entry
 from sailenv_ros.authoring.generation.rule_files import Rules, rules_of
 from sailenv_ros.authoring.generation.rule_models import KindFile
 from sailenv_ros.authoring.generation.scene_text import scene_text
 from sailenv_ros.authoring.generation.shells import shell_of
-from sailenv_ros.authoring.generation.stock import Stock
 from sailenv_ros.authoring.generation.things import lay_things
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.render.contract import RenderBackend
@@ -96,7 +96,7 @@ class Generator:
 
     def __init__(self, *, assets: AssetLibrary | None = None, rules: Rules | None = None) -> None:
         library = AssetLibrary(installed_sources(installed_packs())) if assets is None else assets
-        self._stock = Stock(library)
+        self._stock = AssetIndex(library)
         self._rules = rules_of() if rules is None else rules
         self._categories = load_categories()
 
@@ -147,8 +147,8 @@ class Generator:
     def _drafted(self, kind: str, file: KindFile, seed: int, attempt: int) -> Draft | None:
         """Draw a room and furnish it; None if something that is needed has no place."""
 
-        def dice(purpose: str) -> Dice:
-            return Dice(kind, seed, attempt, purpose)
+        def dice(purpose: str) -> RandomStream:
+            return RandomStream(kind, seed, attempt, purpose)
 
         shell = shell_of(kind, self._rules, dice("shell"))
         plan = RoomPlan(areas=shell.areas, doors=shell.doors, walls=shell.walls)
@@ -220,8 +220,8 @@ class Generator:
     def _described(self, draft: Draft) -> dict[str, Any]:
         """Return a draft as a scene file has it, without agents."""
 
-        def dice(purpose: str) -> Dice:
-            return Dice(draft.kind, draft.seed, draft.attempt, purpose)
+        def dice(purpose: str) -> RandomStream:
+            return RandomStream(draft.kind, draft.seed, draft.attempt, purpose)
 
         rule = self._rules.light[dice("time of the day").one(draft.file.light)]
         objects = [item.described() for item in draft.items]

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from sailenv_ros.authoring.generation.asset_index import AssetIndex
 from sailenv_ros.authoring.generation.plan import Block, WallSide
 from sailenv_ros.authoring.generation.rule_models import FurnitureRule
-from sailenv_ros.authoring.generation.stock import Stock
 
 __all__ = ["Item", "Namer", "block_of", "clear_blocks"]
 
@@ -100,7 +100,7 @@ class Namer:
 
 
 def block_of(
-    stock: Stock, asset: str, scale: float, x: float, y: float, yaw_deg: float, z: float = 0.0
+    stock: AssetIndex, asset: str, scale: float, x: float, y: float, yaw_deg: float, z: float = 0.0
 ) -> Block:
     """Return the room that an object takes whose origin stands somewhere."""
     low, high = stock.bounds(asset, scale)

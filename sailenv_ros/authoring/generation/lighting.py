@@ -8,7 +8,7 @@ from typing import Any
 
 from sailenv_ros.authoring.generation.items import Item
 from sailenv_ros.authoring.generation.plan import Area, WallGap, WallSide
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.rule_models import LightRule
 
 __all__ = ["environment_entry", "light_entries"]
@@ -26,7 +26,7 @@ _IN_FRONT_M = 0.2
 _BELOW_CEILING_M = 0.3
 
 
-def environment_entry(rule: LightRule, dice: Dice) -> dict[str, Any]:
+def environment_entry(rule: LightRule, dice: RandomStream) -> dict[str, Any]:
     """Return the surroundings."""
     entry: dict[str, Any] = {}
     if rule.sky_maps:
@@ -48,7 +48,7 @@ def light_entries(
     items: Sequence[Item],
     heights: dict[str, float],
     areas: Sequence[Area],
-    dice: Dice,
+    dice: RandomStream,
 ) -> Iterator[dict[str, Any]]:
     """Yield the lights: sun, windows, lamps.
 
@@ -61,7 +61,7 @@ def light_entries(
         Of the origin of each lamp that has a light, by its name [m].
     areas : sequence of Area
         The rooms.
-    dice : Dice
+    dice : RandomStream
     """
     if rule.sun is not None and windows:
         side, _ = max(windows, key=lambda w: (w[1].along[1] - w[1].along[0], w[0].wall))
@@ -81,7 +81,7 @@ def light_entries(
     yield from _lamps(rule, items, heights, areas, dice)
 
 
-def _sun(rule: LightRule, side: WallSide, dice: Dice) -> dict[str, Any]:
+def _sun(rule: LightRule, side: WallSide, dice: RandomStream) -> dict[str, Any]:
     assert rule.sun is not None
     up = math.radians(dice.between(rule.sun.elevation))
     yaw = math.radians(side.yaw_deg + dice.between(rule.sun.aside))
@@ -100,7 +100,7 @@ def _lamps(
     items: Sequence[Item],
     heights: dict[str, float],
     areas: Sequence[Area],
-    dice: Dice,
+    dice: RandomStream,
 ) -> Iterator[dict[str, Any]]:
     count = 0
     for item in items:

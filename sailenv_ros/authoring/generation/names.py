@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.rule_files import Rules
 from sailenv_ros.errors import InvalidRequest
 
@@ -38,4 +38,4 @@ def parsed_name(name: str, rules: Rules) -> tuple[str, int]:
 
 def drawn_kind(seed: int, rules: Rules) -> str:
     """Return the kind of room that a seed stands for where none is asked for."""
-    return Dice("kind", seed).one(sorted(rules.kinds))
+    return RandomStream("kind", seed).one(sorted(rules.kinds))

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailenv_ros.assets.arranging import RESTING_GAP_M, WALL_GAP_M
+from sailenv_ros.authoring.generation.asset_index import AssetIndex
 from sailenv_ros.authoring.generation.items import Item, block_of, clear_blocks
 from sailenv_ros.authoring.generation.plan import Area, Block, WallGap, WallSide
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.rule_models import FurnitureRule
-from sailenv_ros.authoring.generation.stock import Stock
 
 __all__ = ["Positioner", "offset"]
 
@@ -34,15 +34,15 @@ class Positioner:
     Parameters
     ----------
     area : Area
-    stock : Stock
-    dice : Dice
+    stock : AssetIndex
+    dice : RandomStream
     skirting_m : float
         How far the skirting keeps off what stands at a wall [m].
     """
 
     area: Area
-    stock: Stock
-    dice: Dice
+    stock: AssetIndex
+    dice: RandomStream
     skirting_m: float
 
     def at_wall(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.authoring.viewpoints import ViewScene, sample_cameras
-from sailenv_ros.authoring.viewpoints.room_view import outlook
+from sailenv_ros.authoring.viewpoints.room_view import view_score
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
@@ -91,7 +91,8 @@ def agent_entries(scene: StandingWorld, count: int, seed: int) -> list[dict[str,
 def best_first(scene: StandingWorld, waypoints: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the waypoints of a closed way, beginning where the view is best."""
     worth = [
-        outlook(scene, look_at(point["position"], point["look_at"])).worth() for point in waypoints
+        view_score(scene, look_at(point["position"], point["look_at"])).worth()
+        for point in waypoints
     ]
     first = int(np.argmax(worth))
     return [*waypoints[first:], *waypoints[:first]]

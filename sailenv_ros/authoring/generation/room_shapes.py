@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from sailenv_ros.authoring.generation.plan import Area, Block, WallGap, WallSide
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.rule_models import KindFile, MaterialsRule
 
 __all__ = ["PARTITION_M", "Shell", "single_room", "surface_entry"]
@@ -60,7 +60,7 @@ class Shell:
     windows: list[tuple[WallSide, WallGap]] = field(default_factory=list)
 
 
-def single_room(kind: str, rules: KindFile, materials: MaterialsRule, dice: Dice) -> Shell:
+def single_room(kind: str, rules: KindFile, materials: MaterialsRule, dice: RandomStream) -> Shell:
     """Return the shell of one room, a rectangle or an L."""
     shape = rules.shape
     x, y = (round(dice.between(span), 1) for span in (shape.width, shape.depth))
@@ -98,7 +98,7 @@ def outer_sides(low: Sequence[float], high: Sequence[float]) -> list[WallSide]:
 
 
 def _cut_corner(
-    size: tuple[float, float], height: float, rules: KindFile, dice: Dice
+    size: tuple[float, float], height: float, rules: KindFile, dice: RandomStream
 ) -> tuple[Block, list[tuple[dict[str, Any], WallSide]]]:
     """Return a corner that is cut out of a rectangle, and the two walls that close it off."""
     sx, sy = dice.one([-1.0, 1.0]), dice.one([-1.0, 1.0])
@@ -147,7 +147,7 @@ def add_openings(
     sides: Sequence[WallSide],
     rules: KindFile,
     materials: MaterialsRule,
-    dice: Dice,
+    dice: RandomStream,
     height: float,
     *,
     doors: bool = True,
@@ -282,7 +282,9 @@ def surface_entry(surface: Any, seed: int) -> dict[str, Any] | str:
     return entry
 
 
-def materials_of(shell: Shell, materials: MaterialsRule, dice: Dice) -> Iterator[tuple[str, Any]]:
+def materials_of(
+    shell: Shell, materials: MaterialsRule, dice: RandomStream
+) -> Iterator[tuple[str, Any]]:
     """Yield the keys of a room that say what it is made of."""
     yield "walls", surface_entry(dice.one(materials.walls), dice.whole((0, 99)))
     sides = [side.wall for side in shell.areas[0].walls if side.wall]

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from sailenv_ros.authoring.generation.items import Item
 from sailenv_ros.authoring.generation.plan import RoomPlan
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 
 __all__ = ["mover_entry", "walk_cells"]
 
@@ -37,7 +37,7 @@ Cell = tuple[int, int]
 
 
 def mover_entry(
-    plan: RoomPlan, items: Sequence[Item], dice: Dice, speed_m_per_s: float
+    plan: RoomPlan, items: Sequence[Item], dice: RandomStream, speed_m_per_s: float
 ) -> dict[str, Any]:
     """Return the mover of a scene; it goes in a circle, there and back where there is no other way.
 
@@ -81,7 +81,7 @@ def _in_the_way(items: Sequence[Item]) -> list[Any]:
             and item.block.low < 1.9 and item.block.high > 0.05]  # fmt: skip
 
 
-def _stops(free: Flags, clearance: Floats, plan: RoomPlan, dice: Dice) -> list[Cell]:
+def _stops(free: Flags, clearance: Floats, plan: RoomPlan, dice: RandomStream) -> list[Cell]:
     """Return places that lie far from each other, each the farthest from those before."""
     cells = np.argwhere(free)
     places = plan.points[free]
@@ -188,7 +188,7 @@ def _sees(start: Cell, end: Cell, free: Flags) -> bool:
 
 
 def _looks(
-    points: Sequence[tuple[float, ...]], items: Sequence[Item], dice: Dice
+    points: Sequence[tuple[float, ...]], items: Sequence[Item], dice: RandomStream
 ) -> list[tuple[float, float, float]]:
     """Return what is looked at from each place: furniture that is near, another one each time."""
     pieces = [item for item in items if item.rule is not None and not item.is_flat]

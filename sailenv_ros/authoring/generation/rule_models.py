@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Several, Switch, Text
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector
 from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
 from sailenv_ros.scene.spec_room import SurfaceSpec
 
@@ -42,12 +42,12 @@ _Strength = Annotated[float, Number(least=0.0, most=1000.0)]
 _Name = Annotated[str, Text(r"[a-z][a-z0-9_ ]{0,40}", "a lower-case name")]
 
 _PAIR = "one number, or two [least, most]"
-Metres: TypeAlias = Annotated[tuple[_Length, _Length], Several(2, _PAIR, one_for_all=True)]
-Turn: TypeAlias = Annotated[tuple[_Degrees, _Degrees], Several(2, _PAIR, one_for_all=True)]
-Count: TypeAlias = Annotated[tuple[_Whole, _Whole], Several(2, _PAIR, one_for_all=True)]
-Factor: TypeAlias = Annotated[tuple[_Factor, _Factor], Several(2, _PAIR, one_for_all=True)]
-Shares: TypeAlias = Annotated[tuple[_Share, _Share], Several(2, _PAIR, one_for_all=True)]
-Strength: TypeAlias = Annotated[tuple[_Strength, _Strength], Several(2, _PAIR, one_for_all=True)]
+Metres: TypeAlias = Annotated[tuple[_Length, _Length], Vector(2, _PAIR, one_for_all=True)]
+Turn: TypeAlias = Annotated[tuple[_Degrees, _Degrees], Vector(2, _PAIR, one_for_all=True)]
+Count: TypeAlias = Annotated[tuple[_Whole, _Whole], Vector(2, _PAIR, one_for_all=True)]
+Factor: TypeAlias = Annotated[tuple[_Factor, _Factor], Vector(2, _PAIR, one_for_all=True)]
+Shares: TypeAlias = Annotated[tuple[_Share, _Share], Vector(2, _PAIR, one_for_all=True)]
+Strength: TypeAlias = Annotated[tuple[_Strength, _Strength], Vector(2, _PAIR, one_for_all=True)]
 
 Place = Literal["wall", "corner", "middle", "free", "ceiling"]
 Side = Literal["front", "back", "left", "right", "beside", "around", "under", "over", "corner"]
@@ -191,7 +191,7 @@ class LightRule(_RuleModel):
     sky_zenith: Radiance = Field(description="where there is no photographed sky")
     sky_horizon: Radiance = Field(description="where there is no photographed sky")
     sky_ground: Radiance = Field(description="where there is no photographed sky")
-    exposure: Annotated[tuple[float, float], Several(2, _PAIR, one_for_all=True)] = Field(
+    exposure: Annotated[tuple[float, float], Vector(2, _PAIR, one_for_all=True)] = Field(
         description="[stops]"
     )
     sun: SunRule | None = Field(default=None, description="none on a cloudy day and at night")

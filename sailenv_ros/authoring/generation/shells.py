@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from sailenv_ros.authoring.generation.apartments import apartment
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.room_shapes import Shell, materials_of, single_room
 from sailenv_ros.authoring.generation.rule_files import Rules
 
 __all__ = ["Shell", "shell_of"]
 
 
-def shell_of(kind: str, rules: Rules, dice: Dice) -> Shell:
+def shell_of(kind: str, rules: Rules, dice: RandomStream) -> Shell:
     """Draw the shell of a room."""
     file = rules.kind(kind)
     if file.layouts:

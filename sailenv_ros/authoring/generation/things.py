@@ -10,12 +10,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from sailenv_ros.authoring.generation.asset_index import AssetIndex
 from sailenv_ros.authoring.generation.items import Item, Namer, block_of
 from sailenv_ros.authoring.generation.plan import Block
-from sailenv_ros.authoring.generation.randomness import Dice
+from sailenv_ros.authoring.generation.random_stream import RandomStream
 from sailenv_ros.authoring.generation.rule_files import Rules
 from sailenv_ros.authoring.generation.rule_models import ThingRule
-from sailenv_ros.authoring.generation.stock import Stock
 
 __all__ = ["lay_things"]
 
@@ -27,7 +27,7 @@ APART_M = 0.012
 
 
 def lay_things(
-    items: Sequence[Item], rules: Rules, stock: Stock, dice: Dice, namer: Namer
+    items: Sequence[Item], rules: Rules, stock: AssetIndex, dice: RandomStream, namer: Namer
 ) -> Iterator[Item]:
     """Yield what lies on furniture."""
     for item in items:
@@ -62,7 +62,7 @@ def _area_of(item: Item) -> str:
     return item.section.rpartition(":")[0]
 
 
-def _laid(item: Item, thing: ThingRule, asset: str, stock: Stock, dice: Dice) -> Item:
+def _laid(item: Item, thing: ThingRule, asset: str, stock: AssetIndex, dice: RandomStream) -> Item:
     """Return a thing somewhere on a piece, in the piece's own axes."""
     scale = round(dice.between(thing.scale), 2)
     turn = float(round(dice.between(thing.turn)))
@@ -77,7 +77,7 @@ def _laid(item: Item, thing: ThingRule, asset: str, stock: Stock, dice: Dice) ->
 
 
 def _laid_before(
-    item: Item, guest: Item, thing: ThingRule, asset: str, stock: Stock, dice: Dice
+    item: Item, guest: Item, thing: ThingRule, asset: str, stock: AssetIndex, dice: RandomStream
 ) -> Item:
     """Return a thing of a place that is laid before a guest, in the table's own axes."""
     yaw = math.radians(item.yaw_deg)
@@ -109,8 +109,8 @@ def _thing(
     x: float,
     y: float,
     turn: float,
-    stock: Stock,
-    dice: Dice,
+    stock: AssetIndex,
+    dice: RandomStream,
 ) -> Item:
     x, y, turn = round(x, 3), round(y, 3), (turn + 180.0) % 360.0 - 180.0
     entry: dict[str, object] = {"on": item.name, "position": [x, y, 0.0]}
@@ -138,7 +138,7 @@ def _thing(
 
 
 def _kept(
-    laid: Item, item: Item, taken: list[Block], stock: Stock, namer: Namer, prefix: str
+    laid: Item, item: Item, taken: list[Block], stock: AssetIndex, namer: Namer, prefix: str
 ) -> Iterable[Item]:
     """Yield a thing if it lies within its carrier and touches no other."""
     low, high = stock.bounds(item.asset, item.scale)

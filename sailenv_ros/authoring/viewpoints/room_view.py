@@ -15,7 +15,7 @@ from sailenv_ros.authoring.viewpoints.free_view import FreeView, poses_in_free_s
 from sailenv_ros.authoring.viewpoints.view_scene import CameraView, ViewScene, camera_rule
 from sailenv_ros.types.geometry import Pose
 
-__all__ = ["Outlook", "RoomView", "outlook", "room_view"]
+__all__ = ["ViewScore", "RoomView", "view_score", "room_view"]
 
 FULL_SHARE = 1 / 15
 """Share of the picture above which an object counts no more, so that one couch does not outweigh a
@@ -43,7 +43,7 @@ class RoomView(FreeView):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outlook:
+class ViewScore:
     """Measures of the view from a pose.
 
     Attributes
@@ -87,7 +87,7 @@ class Outlook:
         )
 
 
-def outlook(scene: ViewScene, pose: Pose) -> Outlook:
+def view_score(scene: ViewScene, pose: Pose) -> ViewScore:
     """Return what is seen from a pose."""
     # NaN is nearer than the near plane.
     depth = np.nan_to_num(scene.depth_m(pose).astype(np.float64), nan=0.0, posinf=1e4)
@@ -98,7 +98,7 @@ def outlook(scene: ViewScene, pose: Pose) -> Outlook:
         whole = wholes.get(id_) or id_
         if whole in scene.object_ids:
             counts[whole] += count
-    return Outlook(
+    return ViewScore(
         pose=pose,
         shares={id_: count / depth.size for id_, count in counts.items()},
         depth_m=float(np.median(depth)),
@@ -115,7 +115,7 @@ def room_view(
 
     Each next view counts half what those before it show.
     """
-    seen = (outlook(scene, pose) for pose in poses_in_free_space(scene, settings, random))
+    seen = (view_score(scene, pose) for pose in poses_in_free_space(scene, settings, random))
     candidates = [
         view
         for view in itertools.islice(seen, settings.attempts)

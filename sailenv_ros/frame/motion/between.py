@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.motion.moments import AnyFrame, moment_of, require_common_past
+from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of, require_common_past
 from sailenv_ros.frame.motion.rigid_motion import OCCLUSION_TOLERANCE, motion_table
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points
@@ -87,7 +87,7 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
     A point counts as occluded if none of the four pixels around its place in the other picture is
     of its instance and not nearer than the point by more than 1 % of its depth.
     """
-    first, last = moment_of(begin, "first frame"), moment_of(end, "other frame")
+    first, last = frame_state_of(begin, "first frame"), frame_state_of(end, "other frame")
     require_common_past(first, last)
     table = motion_table(first.observed_poses(), last.observed_poses())
     depth, instance = first.surfaces("first frame")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.motion.moments import AnyFrame, moment_of
+from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of
 from sailenv_ros.frame.motion.rigid_motion import object_points
 from sailenv_ros.native.library import thread_count
 
@@ -25,6 +25,6 @@ def object_coordinates(frame: AnyFrame) -> NDArray[np.float32]:
     InvalidRequest
         If the frame lacks one of the views or the states of its instances.
     """
-    moment = moment_of(frame)
+    moment = frame_state_of(frame)
     depth, instance = moment.surfaces("frame")
     return object_points(depth, instance, moment.observed_poses(), threads=thread_count())

@@ -13,7 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame.motion.moments import AnyFrame, Moment, moment_of, require_common_past
+from sailenv_ros.frame.motion.frame_state import (
+    AnyFrame,
+    FrameState,
+    frame_state_of,
+    require_common_past,
+)
 from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
 
 __all__ = ["ObjectPoints", "Tracks", "track"]
@@ -101,7 +106,7 @@ def track(
         If there is no frame, a pixel is not within its picture, an instance is not in the geometry,
         or frames do not belong together.
     """
-    moments = [moment_of(frame, f"frame {number}") for number, frame in enumerate(frames)]
+    moments = [frame_state_of(frame, f"frame {number}") for number, frame in enumerate(frames)]
     if not moments:
         raise InvalidRequest("frames", "none", "at least one")
     for moment in moments[1:]:
@@ -125,7 +130,7 @@ def track(
 
 
 def _given(
-    points: ObjectPoints, moments: Sequence[Moment]
+    points: ObjectPoints, moments: Sequence[FrameState]
 ) -> tuple[NDArray[np.uint16], Doubles, NDArray[np.int64]]:
     """Return instances, places in them and histories of points on objects."""
     instances = np.asarray(points.instances)
@@ -146,7 +151,7 @@ def _given(
 
 
 def _found(
-    points: ArrayLike, moments: Sequence[Moment], geometry: SceneGeometry
+    points: ArrayLike, moments: Sequence[FrameState], geometry: SceneGeometry
 ) -> tuple[NDArray[np.uint16], Doubles, NDArray[np.int64]]:
     """Return instances, places in them and histories of what pixels show."""
     queries = np.asarray(points, np.float64)
@@ -184,7 +189,7 @@ def _follow(
     tracks: Tracks,
     histories: NDArray[np.int64],
     number: int,
-    moment: Moment,
+    moment: FrameState,
     geometry: SceneGeometry,
 ) -> None:
     """Fill in one frame of the tracks."""
@@ -210,7 +215,7 @@ def _follow(
     tracks.visible[chosen[asked], number] = own & (np.abs(hits.distance - 1.0) <= SURFACE)
 
 
-def _within(pixels: Doubles, moment: Moment) -> NDArray[np.bool_]:
+def _within(pixels: Doubles, moment: FrameState) -> NDArray[np.bool_]:
     """Return which places (N, 2) lie within the picture; nan does not."""
     lens = moment.camera.intrinsics
     inside = (pixels >= -0.5) & (pixels <= np.array([lens.width - 0.5, lens.height - 0.5]))

@@ -51,7 +51,7 @@ class ShadowMap:
 
     Attributes
     ----------
-    nearness : (SIZE_PX, SIZE_PX + ROW_PADDING) float32
+    inverse_depth : (SIZE_PX, SIZE_PX + ROW_PADDING) float32
         1 - depth of the nearest caster, 0 where there is none.
     """
 
@@ -60,7 +60,7 @@ class ShadowMap:
         self._resting: NDArray[np.float32] | None = None
         self._changed = np.ones((SIZE_PX + 15) // 16, np.uint8)
         self.plan = ShadowPlan()
-        self.nearness: NDArray[np.float32] = _empty_map()
+        self.inverse_depth: NDArray[np.float32] = _empty_map()
 
     def draw(
         self,
@@ -78,8 +78,8 @@ class ShadowMap:
         poses = np.ascontiguousarray(redraw.poses)
         if redraw.keep:
             before = self._resting
-            self._resting = self.nearness
-            self.nearness = _empty_map() if before is None else before
+            self._resting = self.inverse_depth
+            self.inverse_depth = _empty_map() if before is None else before
             self._changed[:] = 1
         if redraw.resting is not None:
             if self._resting is None:
@@ -88,14 +88,14 @@ class ShadowMap:
             unused = np.ones_like(self._changed)
             self._draw(poses, table, redraw.resting, self._resting, unused, resting=None)
         begin = self._resting if redraw.from_resting else None
-        self._draw(poses, table, redraw.casters, self.nearness, self._changed, resting=begin)
+        self._draw(poses, table, redraw.casters, self.inverse_depth, self._changed, resting=begin)
 
     def _draw(
         self,
         poses: NDArray[np.float64],
         table: PartTable,
         drawn: NDArray[np.bool_],
-        nearness: NDArray[np.float32],
+        inverse_depth: NDArray[np.float32],
         changed: NDArray[np.uint8],
         *,
         resting: NDArray[np.float32] | None,
@@ -106,7 +106,7 @@ class ShadowMap:
         matrix = np.ascontiguousarray(texels @ self.plan.map_from_world)
         instances = table.instances(poses, None, drawn)
         self._drawing.shadow_map(
-            matrix, instances, table.casters, nearness, changed, resting=resting
+            matrix, instances, table.casters, inverse_depth, changed, resting=resting
         )
 
 
@@ -210,8 +210,8 @@ class FrameLight:
         light["map_from_world"][0] = shadow.plan.map_from_world[:3].reshape(-1)
         light["texel_m"] = shadow.plan.texel_m
         light["shadow_size"] = SIZE_PX
-        light["shadow_at"] = address(shadow.nearness)
-        light["static_shadow_at"] = address(static.nearness)
+        light["shadow_at"] = address(shadow.inverse_depth)
+        light["static_shadow_at"] = address(static.inverse_depth)
 
     def _set_lamps(self, light: NDArray[np.void], lamps: Sequence[Light]) -> None:
         shining = sum(lamp.intensity > 0.0 for lamp in lamps)

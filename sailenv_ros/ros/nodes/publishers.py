@@ -27,7 +27,7 @@ from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.ros.nodes.derived_topics import DerivedTopics
 from sailenv_ros.ros.nodes.diagnostics import AgentCounts, FrameCounter
-from sailenv_ros.ros.nodes.late_topics import LateTopics
+from sailenv_ros.ros.nodes.forward_motion_topics import ForwardMotionTopics
 from sailenv_ros.ros.nodes.object_topics import ObjectTopics
 from sailenv_ros.ros.nodes.qos import frame_qos, no_events, overridable
 from sailenv_ros.ros.nodes.tf_tree import TfTree
@@ -73,7 +73,7 @@ class AgentPublisher:
             depth_range_m=spec.depth_range_m,
             categories=lambda: simulation.info.categories,
         )
-        self._late = LateTopics(self._publisher)
+        self._late = ForwardMotionTopics(self._publisher)
         self._objects = ObjectTopics(self._publisher)
         self._counter = FrameCounter()
         self._publishing = threading.Lock()

@@ -13,13 +13,13 @@ from typing import Literal
 import numpy as np
 
 from sailenv_ros.scene.randomise.drawn import Draw
-from sailenv_ros.scene.randomise.thing import RandomTargets, Thing, Values
+from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTargets, Values
 
 __all__ = ["merged", "sampled"]
 
 
 def sampled(
-    things: Sequence[Thing],
+    things: Sequence[Randomisation],
     targets: RandomTargets,
     *,
     seed: int,
@@ -31,7 +31,7 @@ def sampled(
 
     Parameters
     ----------
-    things : sequence of Thing
+    things : sequence of Randomisation
         As under `randomise` in a scene file.
     targets : RandomTargets
         What there is.

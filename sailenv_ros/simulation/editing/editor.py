@@ -105,7 +105,7 @@ class SceneEditor:
         """
         world = self.scene.world
         name = world.body(instance_id).placement.name
-        if world.described is not None and name in world.described.taught:
+        if world.described is not None and name in world.described.lesson_objects:
             raise InvalidState(
                 f"object {name!r} comes and goes with the lessons of the scene, which name it; "
                 "begin other lessons first"

@@ -20,7 +20,7 @@ from sailenv_ros.scene.spec import RoomSpec
 from sailenv_ros.scene.spec_room import OpeningSpec
 from sailenv_ros.simulation.editing.edit_records import ObjectRecord, bring_back, record_of
 from sailenv_ros.simulation.editing.editor import SceneEditor
-from sailenv_ros.simulation.editing.saving import room_entry, unsaid
+from sailenv_ros.simulation.editing.saving import room_entry, unserialisable_changes
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.build import room_placements
@@ -113,7 +113,7 @@ def resize_room(
     scene = editor.scene
     world = scene.world
     assert world.described is not None
-    lost = list(unsaid(world))
+    lost = list(unserialisable_changes(world))
     if lost:
         raise InvalidEntry("room", world.described.room, lost)
     present = room_entry(world)

@@ -32,7 +32,13 @@ from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
 
-__all__ = ["described_world", "environment_entry", "room_entry", "unsaid", "uploaded_models"]
+__all__ = [
+    "described_world",
+    "environment_entry",
+    "room_entry",
+    "unserialisable_changes",
+    "uploaded_models",
+]
 
 Entry = dict[str, Any]
 
@@ -76,7 +82,7 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
     return {key: data[key] for key in SceneSpec.model_fields if key in data}
 
 
-def unsaid(world: World) -> Iterator[tuple[str, str]]:
+def unserialisable_changes(world: World) -> Iterator[tuple[str, str]]:
     """Yield what a scene file cannot say of a world: what it is about, and why."""
     for name in sorted(world.missing_parts):
         if not name.startswith(_MAY_BE_LEFT_OUT):

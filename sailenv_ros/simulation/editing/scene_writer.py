@@ -15,7 +15,11 @@ from sailenv_ros.scene.dumper import dump_scene
 from sailenv_ros.scene.entries import checked_scene
 from sailenv_ros.scene.loader import MAX_BYTES
 from sailenv_ros.scene.user_scenes import checked_scene_name, write_scene
-from sailenv_ros.simulation.editing.saving import described_world, unsaid, uploaded_models
+from sailenv_ros.simulation.editing.saving import (
+    described_world,
+    unserialisable_changes,
+    uploaded_models,
+)
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.system.files import make_folder, write_file
 
@@ -34,7 +38,7 @@ class SceneWriter:
         data: dict[str, Any] = described_world(world, self._scene.agents, cameras=cameras)
         if title:
             data["title"] = title
-        lost = list(unsaid(world))
+        lost = list(unserialisable_changes(world))
         if lost:
             raise InvalidEntry(what, name, lost)
         text = dump_scene(

@@ -52,7 +52,7 @@ class BodyOperations(Caller):
         >>> agent.set_mover_body(RigidBody(mass_kg=0.5, drag_per_s=0.2))  # doctest: +SKIP
         >>> agent.apply_wrench("mover", force_n=(2, 0, 0), duration_s=0.1)  # doctest: +SKIP
         """
-        if core.world.embody(mover, body):
+        if core.world.set_mover_body(mover, body):
             core.announce()
 
     @operation(mover=check.text)

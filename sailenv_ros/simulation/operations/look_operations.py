@@ -15,7 +15,7 @@ from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.validation import vector
 
 if TYPE_CHECKING:
-    from sailenv_ros.world.gaze import Gaze
+    from sailenv_ros.world.look_at_solver import LookAtSolver
 
 __all__ = ["LookOperations"]
 
@@ -24,7 +24,7 @@ def _point(what: str, value: ArrayLike) -> tuple[float, float, float]:
     return vector(what, value, limit=POSITION_LIMIT_M)
 
 
-def _gaze(core: HasWorld, obj: int | str | None, point_m: ArrayLike | None) -> Gaze | None:
+def _gaze(core: HasWorld, obj: int | str | None, point_m: ArrayLike | None) -> LookAtSolver | None:
     if obj is None and point_m is None:
         return None
     point = (0.0, 0.0, 0.0) if point_m is None else _point("point_m", point_m)

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from sailenv_ros.simulation.editing.scene_writer import SceneWriter
     from sailenv_ros.simulation.scenes import SceneLibrary
     from sailenv_ros.simulation.script.orchestrator import Orchestrator
-    from sailenv_ros.simulation.script.randomiser import Chance, Randomiser
-    from sailenv_ros.simulation.script.scenario import Additions
+    from sailenv_ros.simulation.script.randomiser import RandomisationRequest, Randomiser
+    from sailenv_ros.simulation.script.scenario import SceneOverlay
     from sailenv_ros.simulation.space_queries import SpaceQueries
     from sailenv_ros.space import FreeSpace
     from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -94,7 +94,7 @@ class BeginsScenes(HasWorld, Protocol):
     """Scenes that begin anew."""
 
     epoch: int
-    additions: Additions
+    additions: SceneOverlay
     randomiser: Randomiser
 
     @property
@@ -107,8 +107,8 @@ class BeginsScenes(HasWorld, Protocol):
         seed: int,
         *,
         as_registered: bool,
-        more: Additions = ...,
-        chance: Chance | None = None,
+        more: SceneOverlay = ...,
+        chance: RandomisationRequest | None = None,
     ) -> None:
         """Leave the present world for a new one at simulated time 0."""
 

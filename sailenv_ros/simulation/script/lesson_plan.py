@@ -1,7 +1,7 @@
 """Lessons as a plan in physics steps: who comes when, who goes when, in which order.
 
-`LessonsSpec` and the objects' entries in, `Turn`s out. Pure arithmetic and seeded generators; the
-same lessons and seed give the same plan.
+`LessonsSpec` and the objects' entries in, `ScheduledLesson`s out. Pure arithmetic and seeded
+generators; the same lessons and seed give the same plan.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sailenv_ros.behaviours.durations import presence_s
 from sailenv_ros.scene.spec import LessonSpec, LessonsSpec, ObjectSpec
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 
-__all__ = ["Lesson", "LessonPlan", "Presence", "Turn", "steps_of"]
+__all__ = ["Lesson", "LessonPlan", "Presence", "ScheduledLesson", "steps_of"]
 
 _ORDERS, _BEHAVIOURS = 1, 2
 """Purposes of a lap's generators: the order of the lessons, the behaviours of their objects."""
@@ -70,7 +70,7 @@ class Lesson:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Turn:
+class ScheduledLesson:
     """A lesson in its lap.
 
     Attributes
@@ -127,7 +127,7 @@ class LessonPlan:
             return seed
         return int(self._generator(draw, _BEHAVIOURS).integers(2**63))
 
-    def turns(self) -> Iterator[Turn]:
+    def turns(self) -> Iterator[ScheduledLesson]:
         """Yield one turn after another; they end only where the lessons do."""
         laps = self.spec.laps
         for lap in itertools.count(1):
@@ -136,7 +136,9 @@ class LessonPlan:
                 last = lap == laps and number == self.count
                 lesson = self.lessons[place]
                 endless = lesson.steps is None or (last and self.spec.after == "go_on")
-                yield Turn(lap=lap, number=number, lesson=lesson, endless=endless, draw=draw)
+                yield ScheduledLesson(
+                    lap=lap, number=number, lesson=lesson, endless=endless, draw=draw
+                )
                 if endless:
                     return
             if lap == laps and self.spec.after == "end":
@@ -148,26 +150,29 @@ class LessonPlan:
 
 
 def _lesson(entry: LessonSpec, spec: LessonsSpec, objects: Mapping[str, ObjectSpec]) -> Lesson:
-    pupils = [objects[name] for name in entry.objects]
+    scheduled_objects = [objects[name] for name in entry.objects]
     pause_s = spec.pause if entry.pause is None else entry.pause
     return Lesson(
         name=entry.name or ", ".join(entry.objects)[:200],
         presences=tuple(
             Presence(
-                name=pupil.name,
-                enters=steps_of(pupil.appear),
-                leaves=None if pupil.leave is None else max(1, steps_of(pupil.leave)),
+                name=scheduled.name,
+                enters=steps_of(scheduled.appear),
+                leaves=None if scheduled.leave is None else max(1, steps_of(scheduled.leave)),
             )
-            for pupil in pupils
+            for scheduled in scheduled_objects
         ),
-        steps=_steps(entry, pupils),
+        steps=_steps(entry, scheduled_objects),
         pause_steps=steps_of(pause_s),
     )
 
 
-def _steps(entry: LessonSpec, pupils: list[ObjectSpec]) -> int | None:
+def _steps(entry: LessonSpec, scheduled_objects: list[ObjectSpec]) -> int | None:
     if entry.duration is not None:
         return max(1, steps_of(entry.duration))
-    times = [presence_s(pupil.model_dump(mode="json", exclude_unset=True)) for pupil in pupils]
+    times = [
+        presence_s(scheduled.model_dump(mode="json", exclude_unset=True))
+        for scheduled in scheduled_objects
+    ]
     known = [time_s for time_s in times if time_s is not None]
     return max(1, steps_of(max(known))) if len(known) == len(times) else None

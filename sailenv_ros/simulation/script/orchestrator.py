@@ -18,7 +18,7 @@ from sailenv_ros.scene.entries import checked_lessons, read_document
 from sailenv_ros.scene.spec import LessonsSpec, ObjectSpec
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.live_scene import LiveScene
-from sailenv_ros.simulation.script.lesson_plan import LessonPlan, Turn, steps_of
+from sailenv_ros.simulation.script.lesson_plan import LessonPlan, ScheduledLesson, steps_of
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.world.bullet import sim_time_ns
 
@@ -47,8 +47,8 @@ class Orchestrator:
         self._events: list[tuple[int, int, Callable[[], None]]] = []
         self._lesson_events: list[tuple[int, int, Callable[[], None]]] = []
         self._plan: LessonPlan | None = None
-        self._turns: Iterator[Turn] = iter(())
-        self._turn: Turn | None = None
+        self._turns: Iterator[ScheduledLesson] = iter(())
+        self._turn: ScheduledLesson | None = None
         self._ids: dict[str, int] = {}
         self._state: LessonState | None = None
 
@@ -75,10 +75,10 @@ class Orchestrator:
         if described is None:
             return
         ids = self._all_ids()
-        taught = described.taught
+        lesson_objects = described.lesson_objects
         for entry in described.objects:
             id_ = ids.get(entry.name)
-            if id_ is None or entry.name in taught:
+            if id_ is None or entry.name in lesson_objects:
                 continue  # drawn away, or it comes with a lesson
             if entry.appear:
                 self._at(self._events, steps_of(entry.appear), partial(self._come, entry.name, id_))

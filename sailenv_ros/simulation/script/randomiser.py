@@ -15,7 +15,7 @@ from sailenv_ros.authoring.viewpoints import ViewScene
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.scene.entries import checked_scene, plain_value
 from sailenv_ros.scene.randomise.random_values import sampled
-from sailenv_ros.scene.randomise.thing import RandomTargets, Thing, Values
+from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTargets, Values
 from sailenv_ros.simulation.drawn_objects import arrange_drawn
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.live_scene import LiveScene
@@ -25,28 +25,28 @@ from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.lights import light_named
 from sailenv_ros.types.validation import SEED
 
-__all__ = ["Chance", "Randomiser"]
+__all__ = ["RandomisationRequest", "Randomiser"]
 
 _PICTURE = ("exposure", "full_well")
 _RECORD = ("seed", "index", "step", "epoch", "frame")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Chance:
+class RandomisationRequest:
     """Inputs of randomisation, besides the scene and the seed.
 
     Attributes
     ----------
     index : int
         Which of the seed's epochs.
-    things : tuple of Thing or None
+    things : tuple of Randomisation or None
         Instead of what the scene's file draws.
     record : mapping or None
         What was drawn for a frame and is to be made again.
     """
 
     index: int = 0
-    things: tuple[Thing, ...] | None = None
+    things: tuple[Randomisation, ...] | None = None
     record: Mapping[str, Any] | None = None
 
 
@@ -63,7 +63,7 @@ class Randomiser:
 
     Attributes
     ----------
-    chance : Chance
+    chance : RandomisationRequest
         Of the present epoch.
     """
 
@@ -76,13 +76,13 @@ class Randomiser:
         self._scene = scene
         self._editor = editor
         self._view_scene = view_scene
-        self.chance = Chance()
-        self._things: tuple[Thing, ...] = ()
+        self.chance = RandomisationRequest()
+        self._things: tuple[Randomisation, ...] = ()
         self._epoch: Values = {}
         self._frame: Values = {}
         self._drawn_at: int | None = None
 
-    def begin(self, chance: Chance) -> None:
+    def begin(self, chance: RandomisationRequest) -> None:
         """Draw what is drawn for an epoch, and change the world that has just been built."""
         self.chance = chance
         described = self._scene.world.described
@@ -133,7 +133,7 @@ class Randomiser:
 
     def next_chance(
         self, index: int | None, things: object, record: object, *, seeded: bool
-    ) -> Chance:
+    ) -> RandomisationRequest:
         """Return what `randomise` asks for; see there.
 
         Raises
@@ -142,7 +142,7 @@ class Randomiser:
             If it cannot be drawn.
         """
         if record is not None:
-            return Chance(
+            return RandomisationRequest(
                 index=int(_record(record)["index"]),
                 things=self.chance.things,
                 record=_record(record),
@@ -155,11 +155,11 @@ class Randomiser:
             )
         if index is None:
             index = 0 if seeded else self.chance.index + 1
-        return Chance(index=index, things=chosen)
+        return RandomisationRequest(index=index, things=chosen)
 
-    def chance_of_reset(self, *, seeded: bool) -> Chance:
+    def chance_of_reset(self, *, seeded: bool) -> RandomisationRequest:
         """Return what a reset draws: the same again, or the first epoch of a seed that is given."""
-        return Chance(things=self.chance.things) if seeded else self.chance
+        return RandomisationRequest(things=self.chance.things) if seeded else self.chance
 
     # -- inside ----------------------------------------------------------------------------
 
@@ -197,7 +197,7 @@ class Randomiser:
             lights={light.name: light.to_light().position_m for light in lights},
         )
 
-    def _checked(self, things: object) -> tuple[Thing, ...]:
+    def _checked(self, things: object) -> tuple[Randomisation, ...]:
         described = self._scene.world.described
         assert described is not None
         data = described.model_dump(mode="json", exclude_unset=True, exclude={"name"})
@@ -219,7 +219,7 @@ class Randomiser:
             del place["position"]
             self._editor.spawn(place, pose)
 
-    def dress(self, number: int) -> None:
+    def apply_materials(self, number: int) -> None:
         """Apply the looks that were drawn for an object that has just entered."""
         name = self._scene.world.body(number).placement.name
         for values in (self._epoch, self._frame):

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from sailenv_ros.authoring.viewpoints import ViewScene, sample_cameras
-from sailenv_ros.scene.randomise.thing import Values
+from sailenv_ros.scene.randomise.randomisation import Values
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 

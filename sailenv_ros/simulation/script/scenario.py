@@ -18,7 +18,7 @@ from sailenv_ros.types.validation import checked_flag, checked_number
 __all__ = [
     "NOTHING_MORE",
     "SCENARIO_KEYS",
-    "Additions",
+    "SceneOverlay",
     "scenario_additions",
     "scenario_entries",
     "wanted_scenario",
@@ -37,8 +37,8 @@ Entry = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Additions:
-    """Additions to a scene: more objects, and other lessons.
+class SceneOverlay:
+    """SceneOverlay to a scene: more objects, and other lessons.
 
     Attributes
     ----------
@@ -52,12 +52,12 @@ class Additions:
     lessons: Mapping[str, Any] | None = None
 
 
-NOTHING_MORE = Additions()
+NOTHING_MORE = SceneOverlay()
 
 
 def wanted_scenario(
     scenario: str | Mapping[str, Any], *, present: str, viewer: str
-) -> tuple[str, Additions]:
+) -> tuple[str, SceneOverlay]:
     """Return the scene that a scenario is played in, and what it adds to that.
 
     Parameters
@@ -81,13 +81,13 @@ def wanted_scenario(
     return scene, scenario_additions(wanted, viewer=viewer)
 
 
-def scenario_additions(scenario: Mapping[str, Any], *, viewer: str) -> Additions:
+def scenario_additions(scenario: Mapping[str, Any], *, viewer: str) -> SceneOverlay:
     """Return the objects and the lessons of a scenario; see `scenario_entries`."""
     lessons = plain_value(scenario.get("lessons"))
     if lessons is not None and scenario.get("timings") is not None:
         accepted = "left out where there are lessons, which say when objects come"
         raise InvalidRequest("timings", scenario["timings"], accepted)
-    return Additions(scenario_entries(scenario, viewer=viewer), lessons)
+    return SceneOverlay(scenario_entries(scenario, viewer=viewer), lessons)
 
 
 def scenario_entries(scenario: Mapping[str, Any], *, viewer: str) -> list[Entry]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_content.procedural import HANDMADE
+from sailenv_content.procedural import PROCEDURAL
 from sailenv_content.procedural.airliner import RADIUS
 from sailenv_content.procedural.cutlery import PLATE, SAUCER
 from sailenv_ros.assets.model_files import RawPart
@@ -27,7 +27,7 @@ def points(parts: list[RawPart], word: str) -> NDArray[np.float64]:
 )
 def test_cutlery_rests_on_its_plate(name: str, dish: str, profile: ArrayLike, lying: str) -> None:
     """It touches the plate, on both sides of its middle, and goes into it nowhere."""
-    parts = HANDMADE[name]()
+    parts = PROCEDURAL[name]()
     outline = np.asarray(profile)
     top = outline[int(outline[:, 0].argmax()) :][::-1]
     plate = points(parts, dish)
@@ -43,7 +43,7 @@ def test_cutlery_rests_on_its_plate(name: str, dish: str, profile: ArrayLike, ly
 
 def test_an_airliner_has_an_airliners_proportions() -> None:
     """Those of an Airbus A320: 37.6 m long, 3.95 m thick, 34 to 36 m wide, its fin 5.9 m high."""
-    parts = HANDMADE["airliner"]()
+    parts = PROCEDURAL["airliner"]()
     low, high = (
         np.min([part.mesh.positions.min(axis=0) for part in parts], axis=0),
         np.max([part.mesh.positions.max(axis=0) for part in parts], axis=0),
@@ -60,7 +60,7 @@ def test_an_airliner_has_an_airliners_proportions() -> None:
 
 def test_a_racket_is_as_the_rules_of_tennis_allow() -> None:
     """At most 73.7 cm long and 31.7 cm wide, the strung face at most 39.4 by 29.2 cm."""
-    parts = HANDMADE["tennis_racket"]()
+    parts = PROCEDURAL["tennis_racket"]()
     every = np.concatenate([part.mesh.positions for part in parts])
     assert np.ptp(every[:, 0]) < 0.737
     assert np.ptp(every[:, 1]) < 0.317

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sailenv_content.procedural import HANDMADE
+from sailenv_content.procedural import PROCEDURAL
 from sailenv_content.procedural.clutter import CLUTTER
 from sailenv_content.standard.catalogues import Catalogues
 from sailenv_content.standard.fetch import fetched
@@ -96,7 +96,7 @@ def test_each_object_has_its_catalogues_size(assets: dict[str, Asset]) -> None:
         source = standard_recipe().assets[name].source
         library, _, what = source.partition("/")
         if library == "made":
-            assert what in HANDMADE, name
+            assert what in PROCEDURAL, name
             continue
         size = np.ptp(asset.model.bounds(), axis=0)
         expected = catalogues.entry(source).size_m

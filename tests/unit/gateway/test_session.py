@@ -19,7 +19,7 @@ from sailenv_ros.gateway.light_answers import LightAnswers
 from sailenv_ros.gateway.object_answers import ObjectAnswers
 from sailenv_ros.gateway.protocol_commands import commands_of
 from sailenv_ros.gateway.session import Session
-from sailenv_ros.gateway.steps import Ask
+from sailenv_ros.gateway.steps import Request
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
 from tests.support.blank_renderer import BlankRenderer
@@ -63,7 +63,7 @@ def driven(session: Session, simulation: Simulation, message: Message) -> bytes:
             return b"".join(done.value)
         result = error = None
         try:
-            if isinstance(step, Ask):
+            if isinstance(step, Request):
                 result = step.operation.submit_to(simulation, *step.args, **step.kwargs).result(
                     60.0
                 )

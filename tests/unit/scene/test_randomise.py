@@ -17,7 +17,7 @@ from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.scene.randomise.distributions import DISTRIBUTIONS
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.random_values import merged, sampled
-from sailenv_ros.scene.randomise.thing import RandomTargets
+from sailenv_ros.scene.randomise.randomisation import RandomTargets
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
 

@@ -15,7 +15,7 @@ from sailenv_ros import Simulation
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState, SceneError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.scene.spec import LessonsSpec, ObjectSpec
-from sailenv_ros.simulation.script.lesson_plan import LessonPlan, Turn
+from sailenv_ros.simulation.script.lesson_plan import LessonPlan, ScheduledLesson
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
@@ -327,7 +327,7 @@ def plan(seed: int = 0, **lessons: Any) -> LessonPlan:
     return LessonPlan(LessonsSpec(sequence=sequence, **lessons), objects, seed)
 
 
-def turns(of: LessonPlan, count: int) -> list[Turn]:
+def turns(of: LessonPlan, count: int) -> list[ScheduledLesson]:
     return list(itertools.islice(of.turns(), count))
 
 

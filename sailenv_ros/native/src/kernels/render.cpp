@@ -200,14 +200,14 @@ SAILENV_KERNEL(draw_picture)
 }
 
 // Draws what a directional light sees into a shadow map: 1 - depth of the nearest surface. Rows of
-// `nearness` and `resting` hold `size` + ROW_PADDING numbers. `map_from_world` (4, 4) leads to
+// `inverse_depth` and `resting` hold `size` + ROW_PADDING numbers. `map_from_world` (4, 4) leads to
 // pixels (integers are centres) and depth, 0 to 1. Without `resting` the map is cleared first, else
 // it begins as a copy of that. `changed` has a number for each 16 rows: 1 where the map differs
 // from `resting`.
 SAILENV_KERNEL(draw_shadow_map)
 (int64_t threads, sailenv::DrawingScratch** handle, const double* map_from_world,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, int64_t size,
- const float* resting, uint8_t* changed, float* nearness) {
+ const float* resting, uint8_t* changed, float* inverse_depth) {
     using namespace sailenv;
     constexpr int32_t BAND_ROWS = 16;
     if (size < 8 || size > 8192) return STATUS_INVALID_ARGUMENT;
@@ -226,7 +226,7 @@ SAILENV_KERNEL(draw_shadow_map)
         const int64_t stride = size + ROW_PADDING;
         parallel_for(threads, size, BAND_ROWS, [&](int64_t first, int64_t last, int64_t) {
             const int32_t band = static_cast<int32_t>(first / BAND_ROWS);
-            float* band_nearness = nearness + first * stride;
+            float* band_nearness = inverse_depth + first * stride;
             bool reached = false;
             for (int64_t k = 0; k < set.segment_count; k++) {
                 const std::vector<uint32_t>& starts = set.segments[static_cast<size_t>(k)].starts;

@@ -70,7 +70,7 @@ static_assert(sizeof(Lamp) == 64, "shaders and lights.py take it for so long");
 
 // A shadow map: 1 - depth as the light sees it, the nearest surface, 0 where there is none.
 struct ShadowMap {
-    const float* nearness;  // (size, size + ROW_PADDING)
+    const float* inverse_depth;  // (size, size + ROW_PADDING)
 };
 
 // A light map that is added up where it is looked at: texels from `LAYER_RUN` to `LAYER_RUN`, each

@@ -9,7 +9,7 @@ namespace sailenv {
 namespace {
 
 // Share of the main light that a shadow map lets through, bilinear between four texels.
-f8 lit_share(const float* nearness, int32_t size, f8 x, f8 y, f8 near) {
+f8 lit_share(const float* inverse_depth, int32_t size, f8 x, f8 y, f8 near) {
     const float last = static_cast<float>(size) - 1.001f;
     const f8 tx = clamp8(x * static_cast<float>(size) - 0.5f, 0.0f, last);
     const f8 ty = clamp8(y * static_cast<float>(size) - 0.5f, 0.0f, last);
@@ -19,7 +19,7 @@ f8 lit_share(const float* nearness, int32_t size, f8 x, f8 y, f8 near) {
     const i8 at = iy * stride + ix;
     alignas(32) float corner[4][8];
     for (int k = 0; k < 8; k++) {
-        const float* p = nearness + at[k];
+        const float* p = inverse_depth + at[k];
         corner[0][k] = p[0];
         corner[1][k] = p[1];
         corner[2][k] = p[stride];
@@ -128,11 +128,11 @@ void light_from_bake(const Shading& s, Chunk& c) {
             const MapPlace place = in_shadow_map(light, c, i, facing);
             f8 past = share;
             if (any(asked & ~mapped)) {
-                const f8 standing = lit_share(light.static_shadow.nearness, light.shadow_size,
+                const f8 standing = lit_share(light.static_shadow.inverse_depth, light.shadow_size,
                                               place.x, place.y, place.near);
                 past = mapped ? share : light.main_clear * standing;
             }
-            arrives = past * lit_share(light.shadow.nearness, light.shadow_size, place.x, place.y,
+            arrives = past * lit_share(light.shadow.inverse_depth, light.shadow_size, place.x, place.y,
                                        place.near);
         }
         store(c.arrives + i, arrives);
@@ -152,7 +152,7 @@ void light_from_sky(const Shading& s, Chunk& c) {
             const float across[4] = {0.94f, -0.34f, -0.94f, 0.34f},
                         down[4] = {0.34f, 0.94f, -0.34f, -0.94f};
             for (int k = 0; k < 4; k++) {
-                arrives = arrives + lit_share(light.shadow.nearness, light.shadow_size,
+                arrives = arrives + lit_share(light.shadow.inverse_depth, light.shadow_size,
                                               p.x + across[k] * step, p.y + down[k] * step, p.near);
             }
             arrives = arrives * 0.25f;

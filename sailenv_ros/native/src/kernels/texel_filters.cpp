@@ -54,10 +54,10 @@ bool for_neighbours(const TexelMap& map, int64_t count, const int32_t* unknown,
 }  // namespace sailenv
 
 // Averages over tiles of 4 by 4 texels, twice; over less where other things are near. values:
-// (count, channels); valid, nearness: (count,). Result: result, (count, channels), of valid texels.
+// (count, channels); valid, inverse_depth: (count,). Result: result, (count, channels), of valid texels.
 SAILENV_KERNEL(denoise_texels)
 (int64_t threads, const sailenv::TexelMap* texels, int64_t channels, const float* values,
- const uint8_t* valid, const float* nearness, float* result) {
+ const uint8_t* valid, const float* inverse_depth, float* result) {
     using namespace sailenv;
     const TexelMap& map = *texels;
     if (map.count < 0 || channels < 1) return STATUS_INVALID_ARGUMENT;
@@ -69,7 +69,7 @@ SAILENV_KERNEL(denoise_texels)
             double weight[49], weights = 0.0;
             int count = 0;
             const double scale =
-                2.0 / std::max(static_cast<double>(nearness[k] * nearness[k]), 1e-6);
+                2.0 / std::max(static_cast<double>(inverse_depth[k] * inverse_depth[k]), 1e-6);
             for (int down = -3; down < 4; down++) {
                 for (int right = -3; right < 4; right++) {
                     const int64_t other = texel_at(map, map.rows[k] + down, map.columns[k] + right);

@@ -9,7 +9,14 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Position, Rotation, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
+from sailenv_ros.scene.randomise.randomisation import (
+    Pick,
+    Randomisation,
+    RandomTargets,
+    Values,
+    Which,
+    chosen,
+)
 from sailenv_ros.scene.rules import at_most_one, only_beside
 from sailenv_ros.types.camera import INTRINSICS_LIMITS
 from sailenv_ros.types.picture_settings import LIMITS
@@ -23,7 +30,7 @@ _Seed = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
 _Well = Annotated[float, Number.within(LIMITS["full_well"])]
 
 
-class RandomCamera(Thing):
+class RandomCamera(Randomisation):
     """Cameras, those of the scene and those that programs have registered."""
 
     KEY: ClassVar[str] = "agents"

@@ -8,10 +8,15 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number, Several, Text
+from sailenv_ros.scene.field_types import Number, Text, Vector
 from sailenv_ros.scene.fields import LinearColour, Position, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, ThingOfEpochs, Values
+from sailenv_ros.scene.randomise.randomisation import (
+    EpochRandomisation,
+    Pick,
+    RandomTargets,
+    Values,
+)
 
 __all__ = ["RandomDistractors"]
 
@@ -35,7 +40,7 @@ def _box_in_order(entry: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
         yield ("within",), "must be the lowest corner, then the highest"
 
 
-class RandomDistractors(ThingOfEpochs):
+class RandomDistractors(EpochRandomisation):
     """Objects in the air, turned in any way."""
 
     KEY: ClassVar[str] = "added"
@@ -48,7 +53,7 @@ class RandomDistractors(ThingOfEpochs):
     )
     count: Annotated[Draw, Drawn(_Count)] = Field(description="how many there are, 0 to 200")
     within: Annotated[
-        tuple[Position, Position], Several(2, "two corners [lowest, highest] of a box in [m]")
+        tuple[Position, Position], Vector(2, "two corners [lowest, highest] of a box in [m]")
     ] = Field(description="lowest and highest corner of the box that they float in [m]")
     scale: Annotated[Draw, Drawn(_Factor)] | None = Field(
         default=None, description="one factor for all axes"

@@ -9,7 +9,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values
+from sailenv_ros.scene.randomise.randomisation import Pick, Randomisation, RandomTargets, Values
 from sailenv_ros.types.lights import ENVIRONMENT_LIMITS
 
 __all__ = ["RandomEnvironment"]
@@ -19,7 +19,7 @@ _Share = Annotated[float, Number.within(ENVIRONMENT_LIMITS["sky_share"])]
 _Sky = Annotated[str, Text(r"[^\x00-\x1f]{0,200}", "the name of a sky, or an empty text")]
 
 
-class RandomEnvironment(Thing):
+class RandomEnvironment(Randomisation):
     """Keys of `environment`."""
 
     KEY: ClassVar[str] = "environment"

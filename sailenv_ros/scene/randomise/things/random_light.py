@@ -9,7 +9,14 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Direction, Position, Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
+from sailenv_ros.scene.randomise.randomisation import (
+    Pick,
+    Randomisation,
+    RandomTargets,
+    Values,
+    Which,
+    chosen,
+)
 from sailenv_ros.types.lights import LIGHT_LIMITS
 
 __all__ = ["RandomLight"]
@@ -18,7 +25,7 @@ _Intensity = Annotated[float, Number.within(LIGHT_LIMITS["intensity"])]
 _Indirect = Annotated[float, Number.within(LIGHT_LIMITS["indirect_multiplier"])]
 
 
-class RandomLight(Thing):
+class RandomLight(Randomisation):
     """Attributes of lights."""
 
     KEY: ClassVar[str] = "lights"

@@ -9,7 +9,14 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Fraction, LinearColour
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import Pick, RandomTargets, Thing, Values, Which, chosen
+from sailenv_ros.scene.randomise.randomisation import (
+    Pick,
+    Randomisation,
+    RandomTargets,
+    Values,
+    Which,
+    chosen,
+)
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialName, PictureName
 
 __all__ = ["RandomMaterial"]
@@ -18,7 +25,7 @@ _Turn = Annotated[float, Number(least=-360.0, most=360.0, unit="deg")]
 _Seed = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]
 
 
-class RandomMaterial(Thing):
+class RandomMaterial(Randomisation):
     """Material of objects, walls, the floor or the ceiling."""
 
     KEY: ClassVar[str] = "materials"

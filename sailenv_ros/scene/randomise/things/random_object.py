@@ -9,10 +9,10 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Switch, Text
 from sailenv_ros.scene.fields import Position
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
-from sailenv_ros.scene.randomise.thing import (
+from sailenv_ros.scene.randomise.randomisation import (
+    EpochRandomisation,
     Pick,
     RandomTargets,
-    ThingOfEpochs,
     Values,
     Which,
     chosen,
@@ -26,7 +26,7 @@ _Factor = Annotated[float, Number(least=1e-3, most=1e3)]
 _Bool = Annotated[bool, Switch()]
 
 
-class RandomObject(ThingOfEpochs):
+class RandomObject(EpochRandomisation):
     """Objects of the scene; what stands on one goes with it."""
 
     KEY: ClassVar[str] = "objects"

@@ -14,7 +14,7 @@ from sailenv_ros.authoring.generation.checks import look_backend
 from sailenv_ros.authoring.generation.generator import GeneratedScene, Generator
 from sailenv_ros.authoring.generation.room_agents import StandingWorld
 from sailenv_ros.authoring.generation.rule_files import Rules, room_kinds
-from sailenv_ros.authoring.viewpoints.room_view import outlook
+from sailenv_ros.authoring.viewpoints.room_view import view_score
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -158,7 +158,7 @@ def test_its_agents_and_its_way_begin_with_a_view_of_the_room(
     with closing(look_backend()) as backend:
         rules = StandingWorld(world, backend)
         for pose in (mover.waypoint_poses[0], *poses):
-            seen = outlook(rules, pose)
+            seen = view_score(rules, pose)
             assert len(seen.shares) >= 3
             assert seen.nearest_m > 0.2
             assert seen.close < 0.5

@@ -15,12 +15,12 @@ from sailenv_ros.assets.arranging import shape_points
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.types.model import Asset
 
-__all__ = ["Stock"]
+__all__ = ["AssetIndex"]
 
 Floats = NDArray[np.float64]
 
 
-class Stock:
+class AssetIndex:
     """Sizes of objects, each worked out once.
 
     Parameters

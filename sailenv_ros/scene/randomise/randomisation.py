@@ -18,7 +18,15 @@ from sailenv_ros.scene.fields import Name, SceneModel
 from sailenv_ros.scene.messages import shown
 from sailenv_ros.scene.randomise.drawn import Draw
 
-__all__ = ["EVERY", "Pick", "RandomTargets", "Thing", "ThingOfEpochs", "Values", "Which"]
+__all__ = [
+    "EVERY",
+    "Pick",
+    "RandomTargets",
+    "Randomisation",
+    "EpochRandomisation",
+    "Values",
+    "Which",
+]
 
 Values: TypeAlias = dict[str, Any]
 """Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
@@ -78,7 +86,7 @@ class _Names:
 Which: TypeAlias = Annotated[tuple[str, ...], _Names()]
 
 
-class Thing(SceneModel):
+class Randomisation(SceneModel):
     """Base of every entry of `randomise`."""
 
     KEY: ClassVar[str] = ""
@@ -102,7 +110,7 @@ class Thing(SceneModel):
         return {key: value for key, value in given.items() if isinstance(value, Draw)}
 
 
-class ThingOfEpochs(Thing):
+class EpochRandomisation(Randomisation):
     """A thing that physics knows: it is drawn when the scene begins, and stays."""
 
     every: Annotated[Literal["epoch"], Choice(("epoch",))] = Field(

@@ -8,12 +8,12 @@ from typing import TypeVar
 
 import numpy as np
 
-__all__ = ["Dice"]
+__all__ = ["RandomStream"]
 
 T = TypeVar("T")
 
 
-class Dice:
+class RandomStream:
     """Draws numbers for one purpose.
 
     Parameters

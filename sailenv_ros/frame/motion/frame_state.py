@@ -15,14 +15,14 @@ from sailenv_ros.frame.motion.rigid_motion import ObservedPoses
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
 
-__all__ = ["AnyFrame", "Moment", "moment_of", "require_common_past"]
+__all__ = ["AnyFrame", "FrameState", "frame_state_of", "require_common_past"]
 
 AnyFrame: TypeAlias = FrameData | Mapping[str, Any]
 """A `FrameData`, or a frame as `Agent.get_frame` gives it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class Moment:
+class FrameState:
     """A camera and all instances at one instant.
 
     Attributes
@@ -79,7 +79,7 @@ class Moment:
         return np.ascontiguousarray(self.depth), np.ascontiguousarray(self.instance)
 
 
-def moment_of(frame: AnyFrame, what: str = "frame") -> Moment:
+def frame_state_of(frame: AnyFrame, what: str = "frame") -> FrameState:
     """Read what motion needs of a frame.
 
     Parameters
@@ -112,10 +112,10 @@ def moment_of(frame: AnyFrame, what: str = "frame") -> Moment:
     if fields["states"] is None:
         accepted = "a frame with the states of its instances, which version 0.2.0 did not record"
         raise InvalidRequest(what, "without states", accepted)
-    return Moment(**fields)
+    return FrameState(**fields)
 
 
-def require_common_past(one: Moment, other: Moment) -> None:
+def require_common_past(one: FrameState, other: FrameState) -> None:
     """Refuse moments of different scenes, or of different lives of one scene.
 
     Raises

@@ -16,12 +16,12 @@ from sailenv_msgs_py.images import image_from_view
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import FORWARD_VIEWS, forward_views
 
-__all__ = ["LateTopics"]
+__all__ = ["ForwardMotionTopics"]
 
 _NEEDED = ("depth", "instance")
 
 
-class LateTopics:
+class ForwardMotionTopics:
     """Publishes the motion from each of an agent's frames to its next one.
 
     Parameters

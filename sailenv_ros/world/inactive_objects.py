@@ -15,12 +15,12 @@ from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.placement import Placement
 
-__all__ = ["WaitingRoom"]
+__all__ = ["InactiveObjects"]
 
 Kinds = tuple[tuple[str, Mapping[str, Any]], ...]
 
 
-class WaitingRoom:
+class InactiveObjects:
     """The objects that wait, by their instance ids."""
 
     def __init__(self) -> None:

@@ -13,7 +13,7 @@ from PIL import Image
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.box_mapping import box_mapped
-from sailenv_ros.assets.material_stock import MaterialStock
+from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES, Pictures, checked_picture
 from sailenv_ros.errors import AssetError, InvalidRequest, InvalidState, UnknownName
@@ -27,8 +27,8 @@ def picture(width: int = 8, height: int = 4, kind: str = "PNG", colour: int = 20
     return file.getvalue()
 
 
-def stock(folder: Path | None = None, pictures: Pictures | None = None) -> MaterialStock:
-    return MaterialStock(AssetLibrary(), pictures, () if folder is None else (folder,))
+def stock(folder: Path | None = None, pictures: Pictures | None = None) -> MaterialLibrary:
+    return MaterialLibrary(AssetLibrary(), pictures, () if folder is None else (folder,))
 
 
 class TestPictures:
@@ -119,7 +119,7 @@ class TestMaterialStock:
     def test_material_of_a_model(self) -> None:
         assets = AssetLibrary()
         cube = assets.get("cube").model.parts[0].material
-        finish = MaterialStock(assets).finish(LookSpec(material=f"cube/{cube.name}"))
+        finish = MaterialLibrary(assets).finish(LookSpec(material=f"cube/{cube.name}"))
         assert finish.material is cube
         assert "there is no material of cube" in stock().fault("cube/nothing")
         assert "there is no asset" in stock().fault("nothing/at_all")

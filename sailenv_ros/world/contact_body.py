@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
 
-__all__ = ["LinkMotion", "Strike", "StruckBody", "StruckLink", "links_near"]
+__all__ = ["LinkMotion", "Strike", "ContactBody", "ContactLink", "links_near"]
 
 Floats: TypeAlias = NDArray[np.float64]
 Piece: TypeAlias = tuple[int, int]
@@ -46,7 +46,7 @@ class Strike(NamedTuple):
     depth_m: float
 
 
-class StruckBody:
+class ContactBody:
     """A rigid body at a point where it is struck; what is static has no mobility."""
 
     def __init__(self, client: BulletClient, body: int, place_m: Floats) -> None:
@@ -80,7 +80,7 @@ class StruckBody:
             self._client.resetBaseVelocity(self._body, linear.tolist(), angular.tolist())
 
 
-class StruckLink:
+class ContactLink:
     """An assembly on joints, at the point where it is hit.
 
     How easily it gives way is told by how much faster the engine's impulse has made it. It is

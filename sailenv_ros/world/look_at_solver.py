@@ -10,12 +10,12 @@ from sailenv_ros.types.geometry import Pose, facing
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.world.body_table import BodyTable
 
-__all__ = ["Gaze"]
+__all__ = ["LookAtSolver"]
 
 Vector3 = tuple[float, float, float]
 
 
-class Gaze:
+class LookAtSolver:
     """One constraint. An object is followed by its id: it may be renamed, go and come again.
 
     Parameters

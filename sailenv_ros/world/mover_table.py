@@ -16,13 +16,13 @@ from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_body import AT_REST, Motion, MoverBody
 from sailenv_ros.world.mover_motion import MoverCommand
 
-__all__ = ["MovingStands"]
+__all__ = ["MoverTable"]
 
 Piece = tuple[int, int]
 """The engine's number of a body, and that of its link."""
 
 
-class MovingStands:
+class MoverTable:
     """The movers of one world.
 
     Parameters
@@ -42,7 +42,7 @@ class MovingStands:
         """Put those into the engine that begin as rigid bodies."""
         for mover in self._movers.values():
             if mover.begins_as is not None:
-                mover.embody(self._ball(mover, *mover.begins_as, 0), 0)
+                mover.set_body(self._ball(mover, *mover.begins_as, 0), 0)
 
     def __getitem__(self, name: str) -> Mover:
         """Find a mover; the empty name means the first.
@@ -114,14 +114,14 @@ class MovingStands:
         if driven.name not in self._proxies:
             self._proxies[driven.name] = CollisionProxy(self._client, driven)
 
-    def embody(self, name: str, rigid: RigidBody | None, time_ns: int) -> bool:
-        """Make a mover a rigid body, or none any more; see `World.embody`."""
+    def set_mover_body(self, name: str, rigid: RigidBody | None, time_ns: int) -> bool:
+        """Make a mover a rigid body, or none any more; see `World.set_mover_body`."""
         mover = self[name]
         old = mover.body
         if rigid is None:
             if old is None:
                 return False
-            mover.embody(None, time_ns)
+            mover.set_body(None, time_ns)
             old.remove()
             return True
         if old is not None and old.rigid == rigid:
@@ -131,7 +131,7 @@ class MovingStands:
         if old is not None:
             new.take_wrenches(old)
             old.remove()
-        mover.embody(new, time_ns)
+        mover.set_body(new, time_ns)
         return True
 
     def _ball(self, mover: Mover, rigid: RigidBody, motion: Motion, time_ns: int) -> MoverBody:

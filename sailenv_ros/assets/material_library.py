@@ -20,7 +20,7 @@ from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.spec_materials import LookSpec
 from sailenv_ros.types.model import Asset, Material, ModelPart
 
-__all__ = ["LaidMaterial", "MaterialStock", "appearance_key", "material_names"]
+__all__ = ["LaidMaterial", "MaterialLibrary", "appearance_key", "material_names"]
 
 PICTURE_TILE_M = 1.0
 """Side of a picture that says nothing of its size [m]."""
@@ -47,7 +47,7 @@ class LaidMaterial:
     turn_deg: float = 0.0
 
 
-class MaterialStock:
+class MaterialLibrary:
     """The materials that one scene can name: built in, of packs, and of its own pictures.
 
     Parameters
