@@ -37,10 +37,10 @@ from sailenv_ros.scene.user_scenes import user_scene_folder
 from sailenv_ros.simulation.entry_checks import checked_alone, named_entries
 from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
+from sailenv_ros.simulation.models.uploaded_models import UploadedModels
 from sailenv_ros.simulation.open_packs import OpenPacks
 from sailenv_ros.simulation.scene_materials import SceneMaterials
 from sailenv_ros.simulation.script.scenario import NOTHING_MORE, SceneOverlay
-from sailenv_ros.simulation.uploaded_models import UploadedModels
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable

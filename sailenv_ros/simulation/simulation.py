@@ -24,7 +24,7 @@ from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.listeners import Listeners
 from sailenv_ros.simulation.loop import SimulationLoop
-from sailenv_ros.simulation.model_workers import ModelWorkers
+from sailenv_ros.simulation.models.model_workers import ModelWorkers
 from sailenv_ros.simulation.models.thumbnails import Thumbnails
 from sailenv_ros.simulation.models.upload_queue import UploadQueue
 from sailenv_ros.simulation.operations import Operation, Operations

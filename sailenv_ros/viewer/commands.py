@@ -14,8 +14,8 @@ from typing import Any
 
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES
 from sailenv_ros.errors import InvalidRequest, InvalidState
-from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.joints import JointState

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from typing import ParamSpec, Protocol, TypeAlias, TypeVar
 
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.editing.edit_records import ObjectRecord, SurroundingsRecord
 from sailenv_ros.simulation.editing.room_edits import RoomRecord
 from sailenv_ros.simulation.operations import Operation
-from sailenv_ros.simulation.room_operations import RoomOperations
+from sailenv_ros.simulation.operations.edits import EditOperations
+from sailenv_ros.simulation.operations.rooms import RoomOperations
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["Conversation", "EditHistory", "EditStep", "Record"]

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.editing.edit_records import ObjectRecord
+from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.viewer.command_context import CommandContext, Run
 from sailenv_ros.viewer.edit_history import EditStep, Record
 from sailenv_ros.viewer.request_arguments import Arguments

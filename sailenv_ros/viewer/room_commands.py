@@ -11,7 +11,7 @@ from sailenv_ros.authoring.generation.names import MAX_SEED, PREFIX
 from sailenv_ros.authoring.generation.rule_files import rules_of
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.simulation.operations.operations import Operations
-from sailenv_ros.simulation.room_operations import RoomOperations
+from sailenv_ros.simulation.operations.rooms import RoomOperations
 from sailenv_ros.types.validation import checked_integer, vector
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
 from sailenv_ros.viewer.recorded_commands import take_down

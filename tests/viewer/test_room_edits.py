@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, expect
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.room_operations import RoomOperations
+from sailenv_ros.simulation.operations.rooms import RoomOperations
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium

@@ -8,7 +8,7 @@ import trimesh
 from sailenv_ros.assets import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.edit_operations import EditOperations
+from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.types.geometry import Pose
 
 EMPTY = """

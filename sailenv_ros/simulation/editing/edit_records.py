@@ -1,7 +1,7 @@
 """Records of objects and surroundings by which an editor undoes a change.
 
 Objects and lights are known by their names, which last; an object that comes back has another id.
-Knows no operation; those of a history of changes are in `edit_operations`.
+Knows no operation; those of a history of changes are in `operations.edits`.
 """
 
 from __future__ import annotations

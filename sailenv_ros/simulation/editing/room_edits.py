@@ -1,7 +1,7 @@
 """The room of a running world: made, resized, put back, and its floor plan.
 
 A room is centred on the world's origin, so a resize moves opposite walls alike; objects stay where
-they are. Knows no operation; those are in `room_operations`.
+they are. Knows no operation; those are in `operations.rooms`.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ from sailenv_ros.scene.spec import (
     SceneSpec,
 )
 from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
-from sailenv_ros.simulation.saved_objects import object_entries
+from sailenv_ros.simulation.editing.saved_objects import object_entries
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World

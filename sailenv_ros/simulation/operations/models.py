@@ -16,7 +16,7 @@ from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, background_operation
 
 if TYPE_CHECKING:
-    from sailenv_ros.simulation.model_workers import ModelWorkers
+    from sailenv_ros.simulation.models.model_workers import ModelWorkers
 
 __all__ = ["ModelOperations"]
 

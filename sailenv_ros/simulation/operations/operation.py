@@ -31,7 +31,7 @@ from sailenv_ros.simulation.operations.argument_checks import declared_checks
 from sailenv_ros.system.futures import wait_for
 
 if TYPE_CHECKING:
-    from sailenv_ros.simulation.model_workers import ModelWorkers
+    from sailenv_ros.simulation.models.model_workers import ModelWorkers
     from sailenv_ros.simulation.operations.targets import OperationTarget
     from sailenv_ros.types.scene_info import SceneInfo
 

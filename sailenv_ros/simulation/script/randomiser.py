@@ -16,9 +16,9 @@ from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.scene.entries import checked_scene, plain_value
 from sailenv_ros.scene.randomise.random_values import sampled
 from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTargets, Values
-from sailenv_ros.simulation.drawn_objects import arrange_drawn
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.simulation.script.drawn_objects import arrange_drawn
 from sailenv_ros.simulation.script.rule_places import placed_by_rules
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at

@@ -13,7 +13,7 @@ import yaml
 
 from sailenv_ros import Simulation
 from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
-from sailenv_ros.simulation.edit_operations import EditOperations
+from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.types.geometry import Pose
 from tests.support.plain_doors import SCENE
 

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
-from sailenv_ros.simulation.edit_operations import EditOperations
+from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.labels import Instance

@@ -6,9 +6,9 @@ import asyncio
 from types import SimpleNamespace
 from typing import Any, cast
 
-from sailenv_ros.simulation.edit_operations import EditOperations
 from sailenv_ros.simulation.editing.room_edits import RoomRecord
 from sailenv_ros.simulation.operations import Operation, Operations
+from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.viewer.command_context import CommandContext
 from sailenv_ros.viewer.edit_history import Conversation, EditHistory, EditStep
 from sailenv_ros.viewer.recorded_commands import edits_object

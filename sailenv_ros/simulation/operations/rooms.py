@@ -1,4 +1,4 @@
-"""Operations of an editor upon the room; like `edit_operations` for one that keeps a history."""
+"""Operations of an editor upon the room; like `operations.edits` for one that keeps a history."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.scene.serialisation import PLACE_KEYS, VELOCITY_KEYS, pose_entry, rounded
 from sailenv_ros.scene.spec import ObjectSpec
-from sailenv_ros.simulation.settled_places import settled_place
+from sailenv_ros.simulation.editing.settled_places import settled_place
 from sailenv_ros.types.geometry import Pose, pose_angle_deg
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.jointed_bodies import JointedBody
