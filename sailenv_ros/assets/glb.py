@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from sailenv_ros.assets.gltf_emission import write_strength
 from sailenv_ros.assets.meshes import smooth_mesh
@@ -22,6 +21,7 @@ from sailenv_ros.types.model import ConvexShape, Material, Mesh, ModelPart, Text
 
 if TYPE_CHECKING:
     import trimesh
+    from PIL import Image
 
 __all__ = ["DRAWN", "glb_bytes", "read_glb"]
 
@@ -122,6 +122,8 @@ def _picture(texture: Texture | None, *, lossless: bool = False) -> Image.Image 
     """Return a texture as a picture that says how it is to be stored; JPEG where none sees it."""
     if texture is None:
         return None
+    from PIL import Image
+
     picture = Image.fromarray(np.asarray(texture)).convert("RGBA" if lossless else "RGB")
     stored = io.BytesIO()
     if lossless:

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from sailenv_ros.assets.gltf_emission import by_glow, description_with_strength, lit_by_picture
 from sailenv_ros.assets.meshes import RawMesh
@@ -27,6 +26,7 @@ from sailenv_ros.types.model import Material, Texture
 
 if TYPE_CHECKING:
     import trimesh
+    from PIL import Image
 
 __all__ = ["MAX_TRIANGLES", "MODEL_SUFFIXES", "RawPart", "read_parts", "texture_of"]
 

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 from sailenv_ros.errors import AssetError, InvalidRequest, InvalidState
 from sailenv_ros.types.model import Texture
@@ -51,6 +50,8 @@ def checked_picture(data: object) -> tuple[bytes, str]:
     InvalidRequest
         If it is no PNG or JPEG, or too large.
     """
+    from PIL import Image
+
     if not isinstance(data, bytes | bytearray | memoryview) or not data:
         raise InvalidRequest("picture", type(data).__name__, "the bytes of a PNG or JPEG file")
     if len(data) > MAX_PICTURE_BYTES:
@@ -76,6 +77,8 @@ def decoded_picture(data: object) -> Texture:
     InvalidRequest
         As `checked_picture`, and if the file is damaged.
     """
+    from PIL import Image
+
     content, _ = checked_picture(data)
     try:
         with Image.open(io.BytesIO(content), formats=list(_ENDINGS)) as picture:

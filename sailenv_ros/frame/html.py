@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.frame.data import FrameData
@@ -106,6 +105,8 @@ def tiles_html(pictures: Mapping[str, NDArray[np.uint8]]) -> str:
 
 
 def _tile(name: str, picture: NDArray[np.uint8]) -> str:
+    from PIL import Image
+
     image = Image.fromarray(np.ascontiguousarray(picture))
     if image.width > TILE_WIDTH_PX:
         size = (TILE_WIDTH_PX, max(1, round(image.height * TILE_WIDTH_PX / image.width)))

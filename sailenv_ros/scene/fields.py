@@ -54,7 +54,7 @@ class SceneModel(BaseModel):
     loader can report them beside the errors of single values.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
     rules: ClassVar[tuple[Rule, ...]] = ()
 

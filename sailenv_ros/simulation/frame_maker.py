@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
@@ -15,14 +15,15 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
-from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.agent_table import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+
+if TYPE_CHECKING:
+    from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 
 __all__ = ["FrameMaker"]
 
@@ -139,6 +140,10 @@ class FrameMaker:
             If there is no native library, which draws them.
         """
         if self._amodal is None:
+            # The renderers are what takes longest to import.
+            from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
+            from sailenv_ros.render.cpu.renderer import NativeRenderer
+
             renderer = self._renderer
             table = renderer.part_table if isinstance(renderer, NativeRenderer) else None
             self._amodal = AmodalRenderer(table)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +20,8 @@ def sky_picture(environment: Environment) -> NDArray[np.float32]:
     if environment.sky is not None:
         radiance = environment.sky.radiance.astype(np.float32)
         size = (2 * ROWS, ROWS) if len(radiance) > ROWS else radiance.shape[1::-1]
+        import cv2
+
         return np.asarray(cv2.resize(radiance, size, interpolation=cv2.INTER_AREA), np.float32)
     polar = (np.arange(ROWS) + 0.5) / ROWS * np.pi
     up = np.cos(polar)[:, None]

@@ -16,15 +16,16 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import IO
-
-from PIL import Image
+from typing import IO, TYPE_CHECKING
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.errors import DeadlineExceeded, RenderError, SailenvError
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.types.model import Asset
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 __all__ = ["HEIGHT_PX", "WIDTH_PX", "PreviewProcess"]
 
@@ -155,6 +156,8 @@ def _serve(backend: BackendName, device: int | None) -> None:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     os.nice(NICENESS)
+    from PIL import Image
+
     from sailenv_ros.simulation.models.preview_renderer import PreviewRenderer
 
     library = AssetLibrary(installed_sources())
@@ -176,6 +179,8 @@ def _serve(backend: BackendName, device: int | None) -> None:
 
 
 def _png(drawn: Image.Image) -> bytes:
+    from PIL import Image
+
     small = drawn.resize((WIDTH_PX, HEIGHT_PX), Image.Resampling.LANCZOS)
     data = io.BytesIO()
     small.save(data, "PNG", optimize=True)

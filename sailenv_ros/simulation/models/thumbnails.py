@@ -14,8 +14,6 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Protocol
 
-from PIL import Image
-
 from sailenv_ros.assets.folders import cache_folder
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.simulation.models.preview_process import PreviewProcess
@@ -145,6 +143,8 @@ def _kept(path: Path) -> bytes | None:
 
 def is_whole_png(data: bytes) -> bool:
     """Return whether every part of a PNG file is there and has the checksum that stands in it."""
+    from PIL import Image
+
     try:
         with Image.open(io.BytesIO(data), formats=["PNG"]) as picture:
             picture.verify()

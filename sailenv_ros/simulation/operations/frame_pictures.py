@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.frame.pictures.colours import colour_categories, colour_flow, view_picture
-from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
-from sailenv_ros.frame.pictures.object_pictures import draw_boxes
 from sailenv_ros.frame.truth.visible_parts import VisibleParts, visible_parts
 from sailenv_ros.simulation.operations.operation import Caller
 from sailenv_ros.types.labels import CategoryTable
@@ -65,6 +63,10 @@ class FramePictures(Caller):
 
         With `boxes` the picture shows the box and the category of each object that is visible.
         """
+        # They need Pillow and OpenCV.
+        from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
+        from sailenv_ros.frame.pictures.object_pictures import draw_boxes
+
         ranges = {spec.name: spec.depth_range_m for spec in self.info.agents}
         table, range_m = self.info.categories, ranges.get(self.own_agent or "", 10.0)
         pictures = frame_pictures(frame, table, depth_range_m=range_m)

@@ -8,7 +8,6 @@ from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 from typing_extensions import Unpack
 
 from sailenv_ros.errors import InvalidRequest
@@ -83,6 +82,8 @@ class MaterialOperations(Caller):
             if picture.dtype != np.uint8 or picture.ndim != 3 or picture.shape[2] != 3:
                 shape = f"{picture.shape} {picture.dtype}"
                 raise InvalidRequest("picture", shape, "an array (H, W, 3) of uint8")
+            from PIL import Image
+
             file = io.BytesIO()
             Image.fromarray(picture).save(file, "PNG")
             return self.upload_picture(file.getvalue())

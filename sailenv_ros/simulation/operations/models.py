@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.operations import argument_checks as check
@@ -95,6 +94,8 @@ class ModelOperations(Caller):
 
     def get_thumbnail(self, asset: str) -> NDArray[np.uint8]:
         """Return a picture of an object of the catalogue, (120, 160, 3) uint8 BGR."""
+        from PIL import Image
+
         with Image.open(io.BytesIO(self.get_thumbnail_png(asset))) as picture:
             return np.asarray(picture.convert("RGB"))[..., ::-1].copy()
 

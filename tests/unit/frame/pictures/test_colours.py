@@ -11,14 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.frame.pictures import (
+from sailenv_ros.frame.pictures.colours import (
     colour_categories,
     colour_depth,
     colour_flow,
+    encoded_colour,
     grey_depth,
     view_picture,
 )
-from sailenv_ros.frame.pictures.colours import encoded_colour
 from sailenv_ros.types.labels import Category, CategoryTable, colour_instances
 from sailenv_ros.types.views import VIEWS
 

@@ -9,8 +9,7 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame.pictures import contact_sheet, save_contact_sheet
-from sailenv_ros.frame.pictures.contact_sheet import GAP_PX
+from sailenv_ros.frame.pictures.contact_sheet import GAP_PX, contact_sheet, save_contact_sheet
 
 
 def plain(colour: tuple[int, int, int], width: int = 120, height: int = 90) -> np.ndarray:
