@@ -40,7 +40,7 @@ REQUIREMENTS = [
     "scipy>=1.11",
     "trimesh>=4.5",
     # Keywords of operations as typed dictionaries, for Python 3.10.
-    "typing_extensions>=4.6",
+    "typing-extensions>=4.6",
     "zstandard>=0.22",
 ]
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.

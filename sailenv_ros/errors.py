@@ -37,37 +37,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-__all__ = [
-    "AddressInUse",
-    "AssetError",
-    "BegunOtherwise",
-    "ContextError",
-    "DeadlineExceeded",
-    "InternalFault",
-    "InvalidEntry",
-    "InvalidRequest",
-    "InvalidState",
-    "MissingPackage",
-    "NameTaken",
-    "NativeLibraryError",
-    "NoFreeSpace",
-    "PhysicsError",
-    "PlaceTaken",
-    "ProtocolError",
-    "RecordingError",
-    "RenderError",
-    "SailenvError",
-    "SceneError",
-    "SceneDiagnostic",
-    "SimulationClosed",
-    "SimulatorLost",
-    "StorageError",
-    "UnknownName",
-    "WriteFailed",
-    "address_error",
-]
-
-
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 E = TypeVar("E", bound="SailenvError")
 
@@ -176,15 +145,7 @@ class NoFreeSpace(InvalidState):
 
 
 class AddressInUse(SailenvError, OSError):
-    """A port that another program listens on.
-
-    Parameters
-    ----------
-    what : str
-        Who wanted to listen, e.g. ``"the gateway"``.
-    host : str
-    port : int
-    """
+    """A port that another program listens on; `what` wanted to, e.g. ``"the gateway"``."""
 
     def __init__(self, what: str, host: str, port: int) -> None:
         self.host = host
@@ -192,24 +153,6 @@ class AddressInUse(SailenvError, OSError):
         super().__init__(
             f"{what} cannot listen on {host}:{port}: another program does; choose another port"
         )
-
-
-def address_error(what: str, host: str, port: int, problem: OSError) -> SailenvError:
-    """Return the error of a server that cannot listen on an address.
-
-    Parameters
-    ----------
-    what : str
-        The server, e.g. ``"the gateway"``.
-    host : str
-    port : int
-    problem : OSError
-        What the system said.
-    """
-    if problem.errno == errno.EADDRINUSE:
-        return AddressInUse(what, host, port)
-    accepted = f"one that can be listened on ({problem.strerror or problem})"
-    return InvalidRequest(f"address of {what}", f"{host}:{port}", accepted)
 
 
 class InternalFault(SailenvError):
@@ -277,13 +220,7 @@ class RenderError(SailenvError):
 
 
 class ContextError(RenderError):
-    """No OpenGL context could be created.
-
-    Parameters
-    ----------
-    attempts : iterable of str
-        One line for each device or backend tried, with the reason it was refused.
-    """
+    """No OpenGL context could be created; `attempts` says why, one line for each device tried."""
 
     def __init__(self, attempts: Iterable[str]) -> None:
         self.attempts = tuple(attempts)
@@ -329,15 +266,7 @@ class DeadlineExceeded(SailenvError, TimeoutError):
 
 
 class SimulatorLost(DeadlineExceeded):
-    """A simulator that answered before no longer answers.
-
-    Parameters
-    ----------
-    waited_for : str
-        What was waited for when that was noticed.
-    waited_s : float
-        How long it had been waited for [s].
-    """
+    """A simulator that answered before no longer answers; noticed after `waited_s` seconds."""
 
     def __init__(self, waited_for: str, waited_s: float) -> None:
         super().__init__(waited_for, waited_s)
@@ -353,14 +282,7 @@ class RecordingError(SailenvError):
 
 
 class WriteFailed(RecordingError):
-    """A file that the disk or a remote place refuses; once it does not, the same call goes on.
-
-    Parameters
-    ----------
-    path : object
-        The file or folder.
-    problem : Exception
-    """
+    """A file that the disk or a remote place refuses; once it does not, the same call goes on."""
 
     def __init__(self, path: object, problem: Exception) -> None:
         self.path = str(path)
@@ -370,13 +292,7 @@ class WriteFailed(RecordingError):
 
 
 class PlaceTaken(RecordingError):
-    """A place where something else is; it was left as it is.
-
-    Parameters
-    ----------
-    place : str
-    why : str
-    """
+    """A place where something else is; it was left as it is."""
 
     def __init__(self, place: str, why: str = "is not empty") -> None:
         self.place = place
@@ -409,15 +325,7 @@ class BegunOtherwise(RecordingError):
 
 
 class StorageError(SailenvError):
-    """A file of ours that cannot be written; what was there before is there.
-
-    Parameters
-    ----------
-    what : str
-        What was being written, e.g. ``"the baked light"``.
-    path : str
-    problem : OSError
-    """
+    """A file of ours that cannot be written, e.g. ``"the baked light"``; the old one is there."""
 
     def __init__(self, what: str, path: str, problem: OSError) -> None:
         self.what = what
@@ -428,16 +336,7 @@ class StorageError(SailenvError):
 
 
 class MissingPackage(SailenvError, ImportError):
-    """An optional package that something needs is not installed.
-
-    Parameters
-    ----------
-    purpose : str
-        What needs it, e.g. ``"a plot"``.
-    package : str
-    command : str
-        What installs it.
-    """
+    """An optional package that `purpose` needs is not installed; `command` installs it."""
 
     def __init__(self, purpose: str, package: str, command: str) -> None:
         self.purpose = purpose

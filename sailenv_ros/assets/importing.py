@@ -70,7 +70,7 @@ def import_asset(
     if not IDENTIFIER.fullmatch(name):
         raise InvalidRequest("asset name", name, "lower-case letters, digits and _, at most 63")
     if height_m is not None and not SMALLEST_M <= height_m <= LARGEST_M:
-        raise InvalidRequest("height", height_m, f"a length from {SMALLEST_M} to {LARGEST_M} [m]")
+        raise InvalidRequest("height_m", height_m, f"a length from {SMALLEST_M} to {LARGEST_M} [m]")
     if not path.is_file():
         raise AssetError(path.name, f"there is no such file ({path})")
     if path.stat().st_size > MAX_ARCHIVE_BYTES:

@@ -11,14 +11,14 @@ import logging
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
-from sailenv_ros.errors import InvalidRequest, ProtocolError, address_error
+from sailenv_ros.errors import ProtocolError
 from sailenv_ros.gateway.client_connection import CHUNK_BYTES, ClientConnection
 from sailenv_ros.gateway.codec import Message
 from sailenv_ros.gateway.gateway_limits import GatewayLimits
 from sailenv_ros.gateway.protocol_commands import commands_of
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.system.loop_thread import LoopThread
+from sailenv_ros.system.loop_server import LoopServer
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "GatewayServer"]
 
@@ -31,7 +31,7 @@ WORKERS = 2
 """Threads that write and compress pictures."""
 
 
-class GatewayServer:
+class GatewayServer(LoopServer):
     """Serves one simulation to clients of SAILenv's protocol; a context manager.
 
     Parameters
@@ -65,67 +65,32 @@ class GatewayServer:
         limits: GatewayLimits | None = None,
     ) -> None:
         commands_of(protocol)
-        if not 0 <= port <= 65535:
-            raise InvalidRequest("port of the gateway", port, "an integer from 0 to 65535")
+        super().__init__("gateway", host, port)
         self._simulation = simulation
-        self._host, self._port = host, port
         self._protocol = protocol
         self._limits = limits or GatewayLimits()
         self._ids = itertools.count(1)
         self._connections: dict[ClientConnection, asyncio.Task[None] | None] = {}
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="sailenv-gateway-work")
-        self._thread = LoopThread("gateway", self._serve)
-        try:
-            self._port = self._thread.start()
-        except BaseException:
-            self.close()
-            raise
-        _log.info(
-            "SAILenv clients (protocol %s) connect to %s, port %d",
-            protocol,
-            host,
-            self._port,
-        )
-
-    @property
-    def host(self) -> str:
-        """Address that is listened on."""
-        return self._host
-
-    @property
-    def port(self) -> int:
-        """Port that is listened on."""
-        return self._port
+        self._start()
+        _log.info("SAILenv clients (protocol %s) connect to %s, port %d", protocol, host, self.port)
 
     @property
     def clients(self) -> int:
         """Number of peers that are connected now."""
         return len(self._connections)
 
-    def close(self) -> None:
-        """Disconnect everybody and stop to listen; a second call does nothing."""
-        if self._thread.ended:
-            return
-        self._thread.end()
+    def _release(self) -> None:
         self._workers.shutdown(wait=False, cancel_futures=True)
-
-    def __enter__(self) -> GatewayServer:
-        return self
-
-    def __exit__(self, *exc: object) -> None:
-        self.close()
 
     # -- in the thread ---------------------------------------------------------------------
 
     async def _serve(self, listening: Callable[[int], None]) -> None:
-        try:
-            server = await asyncio.start_server(
-                self._accept, self._host, self._port, limit=CHUNK_BYTES, backlog=128
-            )
-        except OSError as problem:
-            raise address_error("the gateway", self._host, self._port, problem) from problem
+        server = await asyncio.start_server(
+            self._accept, self.host, self.port, limit=CHUNK_BYTES, backlog=128
+        )
         listening(server.sockets[0].getsockname()[1])
-        await self._thread.stop.wait()
+        await self._stop.wait()
         server.close()
         await asyncio.sleep(0)  # those that were accepted just now begin, so as to be known
         # Again and again: until Python 3.12, wait_for loses a cancellation that meets a result.

@@ -85,7 +85,7 @@ def checked_domain(domain_id: object) -> int:
     """
     text = str(domain_id)
     if not text.isascii() or not text.isdecimal() or int(text) > MAX_DOMAIN_ID:
-        raise InvalidRequest("ROS_DOMAIN_ID", domain_id, f"from 0 to {MAX_DOMAIN_ID}")
+        raise InvalidRequest("ROS_DOMAIN_ID", domain_id, f"an integer from 0 to {MAX_DOMAIN_ID}")
     return int(text)
 
 

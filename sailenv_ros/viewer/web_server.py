@@ -16,9 +16,9 @@ from typing import Any
 
 from aiohttp import web
 
-from sailenv_ros.errors import InvalidRequest, SailenvError, address_error
+from sailenv_ros.errors import SailenvError
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.system.loop_thread import LoopThread
+from sailenv_ros.system.loop_server import LoopServer
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
@@ -51,7 +51,7 @@ MAX_NAME = 200
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
-class ViewerServer:
+class ViewerServer(LoopServer):
     """Serves the web viewer on one simulation; a context manager.
 
     Parameters
@@ -83,10 +83,8 @@ class ViewerServer:
         control: bool = False,
         limits: ViewerLimits | None = None,
     ) -> None:
-        if not 0 <= port <= 65535:
-            raise InvalidRequest("port of the viewer", port, "an integer from 0 to 65535")
+        super().__init__("viewer", host, port)
         self._simulation = simulation
-        self._host, self._port = host, port
         loopback = is_loopback(host)
         self._access = AccessControl(
             loopback=loopback, token="" if loopback else secrets.token_urlsafe(16)
@@ -99,31 +97,17 @@ class ViewerServer:
         self._touched = 0
         self._history = EditHistory()
         self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
-        self._thread = LoopThread("viewer", self._serve)
-        try:
-            self._port = self._thread.start()
-        except BaseException:
-            self.close()
-            raise
+        self._end_news: Callable[[], None] = lambda: None
+        self._start()
         self._end_news = simulation.on_info(self._scene_changed)
-
-    @property
-    def host(self) -> str:
-        """Address that is listened on."""
-        return self._host
-
-    @property
-    def port(self) -> int:
-        """Port that is listened on."""
-        return self._port
 
     @property
     def url(self) -> str:
         """Address of the page, with the token where one is needed."""
-        name = socket.gethostname() if self._host in ("0.0.0.0", "::", "") else self._host
+        name = socket.gethostname() if self.host in ("0.0.0.0", "::", "") else self.host
         name = f"[{name}]" if ":" in name else name
         token = f"?token={self._access.token}" if self._access.token else ""
-        return f"http://{name}:{self._port}/{token}"
+        return f"http://{name}:{self.port}/{token}"
 
     @property
     def clients(self) -> int:
@@ -139,25 +123,14 @@ class ViewerServer:
         """Change what the debug agent sees: its pictures' size and its angle of view."""
         self._debug_agent.set_intrinsics(intrinsics)
 
-    def close(self) -> None:
-        """Disconnect everybody and stop to listen; a second call does nothing."""
-        if self._thread.ended:
-            return
-        with contextlib.suppress(AttributeError):
-            self._end_news()
-        self._thread.end()
+    def _release(self) -> None:
+        self._end_news()
         self._feeds.close()
-
-    def __enter__(self) -> ViewerServer:
-        return self
-
-    def __exit__(self, *exc: object) -> None:
-        self.close()
 
     def _scene_changed(self, _: SceneInfo) -> None:
         """Have everybody told; called by the simulation's thread."""
         with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._thread.loop.call_soon_threadsafe(self._announce_scene)
+            self._loop.call_soon_threadsafe(self._announce_scene)
 
     # -- in the thread ---------------------------------------------------------------------
 
@@ -170,14 +143,10 @@ class ViewerServer:
         runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=1.0)
         await runner.setup()
         try:
-            site = web.TCPSite(runner, self._host, self._port)
-            try:
-                await site.start()
-            except OSError as problem:
-                raise address_error("the viewer", self._host, self._port, problem) from problem
+            await web.TCPSite(runner, self.host, self.port).start()
             listening(runner.addresses[0][1])
             stats = asyncio.create_task(self._send_stats_repeatedly())
-            await self._thread.stop.wait()
+            await self._stop.wait()
             stats.cancel()
             await asyncio.gather(*(client.close() for client in tuple(self._clients)))
         finally:

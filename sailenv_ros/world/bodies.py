@@ -16,15 +16,12 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S, BodyState, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest, InvalidState, PhysicsError
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
-from sailenv_ros.types.labels import Instance
-from sailenv_ros.types.model import Model
-from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.world import actuation
+from sailenv_ros.world.body_creation import create_rigid_body, mass_of
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
-from sailenv_ros.world.collision import build_collision
 from sailenv_ros.world.placement import Placement
 
-__all__ = ["MAX_BEHAVIOURS", "Body", "FrustumPlanes", "Placement"]
+__all__ = ["MAX_BEHAVIOURS", "Body", "FrustumPlanes", "Placement", "vector3"]
 
 Vector3 = tuple[float, float, float]
 
@@ -75,10 +72,8 @@ class Body:
         self.is_fast = False
         self._wrenches: tuple[RunningBehaviour, ...] = ()
         self._client = client
-        self._centre = tuple(
-            c * s for c, s in zip(placement.asset.centre_of_mass_m, placement.scale, strict=True)
-        )
-        self.mass_kg = 0.0 if placement.static else _mass_kg(placement)
+        self._centre = vector3(np.multiply(placement.asset.centre_of_mass_m, placement.scale))
+        self.mass_kg = mass_of(placement)
         self._id = self._build()
         self.inertia_kg_m2 = np.ones(3)
         if self._id != NOT_THERE and not placement.static:
@@ -169,41 +164,6 @@ class Body:
             vx, vy, vz = vx - (wy * z - wz * y), vy - (wz * x - wx * z), vz - (wx * y - wy * x)
         return (vx, vy, vz), (wx, wy, wz)
 
-    def state(self, instance: Instance, sim_time_ns: int, model: Model) -> ObjectState:
-        """Return all that clients may know now of it, or of the part that is such an instance.
-
-        Parameters
-        ----------
-        instance : Instance
-        sim_time_ns : int
-            Now [ns].
-        model : Model
-            What it looks like, with all its parts: for its size.
-        """
-        placement = self.placement
-        low, high = model.bounds()
-        linear, angular = self.velocity()
-        return ObjectState(
-            id=instance.id,
-            name=instance.name,
-            asset=instance.asset,
-            category_id=instance.category_id,
-            category=instance.category,
-            pose=self.pose(),
-            scale=placement.scale,
-            size_m=_three((high - low) * np.asarray(placement.scale)),
-            bottom_m=float(low[2] * placement.scale[2]),
-            static=placement.static,
-            mass_kg=self.mass_kg,
-            linear_velocity=_three(linear),
-            angular_velocity=_three(angular),
-            behaviours=tuple(
-                {"type": running.kind.type, **running.parameters.to_json()}
-                for running in self._behaviours
-            ),
-            sim_time_ns=sim_time_ns,
-        )
-
     def rebuilt(self, placement: Placement) -> Body:
         """Make the body that another placement says, in the place and the motion of this one.
 
@@ -218,8 +178,8 @@ class Body:
         moving = replace(
             placement,
             pose=self.pose(),
-            linear_velocity=_three(linear),
-            angular_velocity=_three(angular),
+            linear_velocity=vector3(linear),
+            angular_velocity=vector3(angular),
             behaviours=self._behaviours,
         )
         new = Body(self._client, moving)
@@ -336,42 +296,8 @@ class Body:
 
     def _build(self) -> int:
         placement = self.placement
-        shape = build_collision(
-            self._client,
-            placement.asset.collision,
-            scale=placement.scale,
-            centre_of_mass_m=self._centre,  # type: ignore[arg-type]  # three floats, see __init__
-            name=placement.name,
-        )
-        body = self._client.createMultiBody(
-            baseMass=self.mass_kg,
-            baseCollisionShapeIndex=shape,
-            basePosition=self._centre_in_world(placement.pose),
-            baseOrientation=placement.pose.orientation_xyzw,
-            # A rigid body, not a tree of links with no link: the engine's step takes half the time.
-            useMaximalCoordinates=1,
-        )
-        self._client.changeDynamics(
-            body,
-            LINK_OF_BASE,
-            lateralFriction=placement.friction,
-            restitution=placement.restitution,
-            # Bullet's own default of 0.04 /s would make free fall and free flight inexact.
-            linearDamping=0.0,
-            angularDamping=0.0,
-            rollingFriction=0.002 if self.mass_kg else 0.0,
-            spinningFriction=0.002 if self.mass_kg else 0.0,
-        )
-        if not placement.static:
-            # What has come to rest sleeps: it keeps the very same pose, and costs nothing.
-            states = self._client.constants
-            self._client.changeDynamics(
-                body, LINK_OF_BASE, activationState=states.ACTIVATION_STATE_ENABLE_SLEEPING
-            )
-            self._client.resetBaseVelocity(
-                body, placement.linear_velocity, placement.angular_velocity
-            )
-        return int(body)
+        position = self._centre_in_world(placement.pose)
+        return create_rigid_body(self._client, placement, self.mass_kg, self._centre, position)
 
     def _state(self, running: RunningBehaviour, frustum_planes: FrustumPlanes) -> BodyState:
         linear, angular = self.velocity()
@@ -410,12 +336,6 @@ class Body:
         return matrix
 
 
-def _three(values: NDArray[np.float64]) -> Vector3:
+def vector3(values: NDArray[np.float64]) -> Vector3:
+    """Return three numbers of an array as a tuple."""
     return float(values[0]), float(values[1]), float(values[2])
-
-
-def _mass_kg(placement: Placement) -> float:
-    if placement.mass_kg is not None:
-        return placement.mass_kg
-    sx, sy, sz = placement.scale
-    return placement.asset.mass_kg * sx * sy * sz

@@ -6,50 +6,23 @@ Knows neither time nor lights: what is changed here, `World` tells.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, PhysicsError, UnknownName
+from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError, UnknownName
 from sailenv_ros.types.instance_states import InstanceStates
-from sailenv_ros.types.labels import MAX_INSTANCE_ID, PART_MARK
-from sailenv_ros.types.model import AssetPart
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.inactive_objects import InactiveObjects
+from sailenv_ros.world.instance_ids import InstanceIds
 from sailenv_ros.world.joint_table import JointTable
-from sailenv_ros.world.jointed_bodies import make_body
+from sailenv_ros.world.jointed_bodies import make_bodies, make_body
+from sailenv_ros.world.labelled_pieces import LabelledPiece, pieces_of, states_of
 from sailenv_ros.world.placement import Placement
 
-__all__ = ["BodyTable", "LabelledPiece"]
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class LabelledPiece:
-    """Meaning of one instance id: a body without its parts, or one part of it.
-
-    Attributes
-    ----------
-    id : int
-    body_id : int
-        Of the body; the same as `id` unless this is a part.
-    body : Body
-    part : AssetPart or None
-        None for the body.
-    """
-
-    id: int
-    body_id: int
-    body: Body
-    part: AssetPart | None
-
-    @property
-    def name(self) -> str:
-        """Its name in the scene."""
-        name = self.body.placement.name
-        return name if self.part is None else f"{name}{PART_MARK}{self.part.name}"
+__all__ = ["BodyTable"]
 
 
 class BodyTable:
@@ -86,14 +59,12 @@ class BodyTable:
         self._bodies: dict[int, Body] = {}
         self._parts: dict[int, tuple[int, ...]] = {}
         self._pieces: tuple[LabelledPiece, ...] | None = None
-        self._histories: dict[int, int] = {}
+        self._ids = InstanceIds()
         self._last_poses: dict[int, NDArray[np.float64]] = {}
-        self._last_id = 0
-        self._last_history = 0
         for placement in placements:
             self._add_body(placement, waits=placement.name in waiting)
         self.joints.arrange(self)
-        for body_id in range(1, self._last_id + 1):
+        for body_id in range(1, self._ids.last + 1):
             self._number_parts(body_id)
         self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
         self._room_parts = frozenset(
@@ -111,16 +82,12 @@ class BodyTable:
         InvalidRequest
             If no object has that id now, also if a part of one has it.
         """
-        if instance_id not in self._bodies:
-            for piece in self.pieces:
-                if piece.id == instance_id:
-                    whole = piece.body.placement.name
-                    accepted = (
-                        f"an object of its own; this goes with {whole!r}, of which it is a part"
-                    )
-                    raise InvalidRequest("object", piece.name, accepted)
-            raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
-        return self._bodies[instance_id]
+        if instance_id in self._bodies:
+            return self._bodies[instance_id]
+        piece = self.piece(instance_id)
+        whole = piece.body.placement.name
+        accepted = f"an object of its own; this goes with {whole!r}, of which it is a part"
+        raise InvalidRequest("object", piece.name, accepted)
 
     def piece(self, instance_id: int) -> LabelledPiece:
         """Find what an instance id stands for.
@@ -143,15 +110,7 @@ class BodyTable:
     def pieces(self) -> tuple[LabelledPiece, ...]:
         """Bodies and parts, in the order of their ids: a row of labels for each."""
         if self._pieces is None:
-            made = [
-                LabelledPiece(id_, body_id, body, part)
-                for body_id, body in self._bodies.items()
-                for id_, part in (
-                    (body_id, None),
-                    *zip(self._parts[body_id], body.placement.asset.parts, strict=True),
-                )
-            ]
-            self._pieces = tuple(sorted(made, key=lambda piece: piece.id))
+            self._pieces = pieces_of(self._bodies, self._parts)
         return self._pieces
 
     def ids_of(self, body_id: int) -> tuple[int, ...]:
@@ -221,27 +180,12 @@ class BodyTable:
 
     def states(self, world_from_body: NDArray[np.float64]) -> InstanceStates:
         """Return where all pieces are and how they move, at poses (N, 4, 4) that were just read."""
-        quats = [piece.body.orientation_of_matrix() for piece in self.pieces]
-        moving = [
-            piece.body.origin_velocity(matrix)
-            for piece, matrix in zip(self.pieces, world_from_body, strict=True)
-        ]
-        velocities = np.array(moving, np.float64).reshape(-1, 2, 3)
-        return InstanceStates(
-            ids=np.array([piece.id for piece in self.pieces], np.uint16),
-            positions=world_from_body[:, :3, 3],
-            orientations=np.array(quats, np.float64).reshape(-1, 4),
-            linear_velocities=velocities[:, 0],
-            angular_velocities=velocities[:, 1],
-            scales=np.array(
-                [piece.body.placement.scale for piece in self.pieces], np.float64
-            ).reshape(-1, 3),
-            histories=self.histories(),
-        )
+        return states_of(self.pieces, world_from_body, self.histories())
 
     def histories(self) -> NDArray[np.int64]:
         """Return (N,) numbers; a piece's past before its number changed has been cut off."""
-        return np.array([self._histories[piece.body_id] for piece in self.pieces], dtype=np.int64)
+        histories = self._ids.histories
+        return np.array([histories[piece.body_id] for piece in self.pieces], dtype=np.int64)
 
     def add(self, placement: Placement) -> int:
         """Put a body into the engine; return its instance id. Its parts get the next ones.
@@ -251,14 +195,14 @@ class BodyTable:
         NameTaken, InvalidRequest
             If there is one of that name, or no id is left.
         """
-        self._require_ids(1 + len(placement.asset.parts))
+        self._ids.require(1 + len(placement.asset.parts))
         body_id = self._add_body(placement)
         try:
             self.joints.arrange(self)
         except BaseException:
             self._bodies.pop(body_id).remove()
-            del self._histories[body_id], self._parts[body_id]
-            self._last_id -= 1
+            del self._ids.histories[body_id], self._parts[body_id]
+            self._ids.last -= 1
             raise
         self._number_parts(body_id)
         return body_id
@@ -269,13 +213,9 @@ class BodyTable:
             self._note_last_pose(instance_id)
             self.waiting.forget(instance_id)
         else:
-            gone = self[instance_id]
-            self._require_nothing_on(gone, "to be removed")
-            self.wake_neighbours(gone)
-            self._note_last_pose(instance_id)
-            gone.remove()
-            del self._bodies[instance_id]
-        del self._histories[instance_id], self._parts[instance_id]
+            self.joints.require_nothing_on(self[instance_id], "to be removed")
+            self._take_out(instance_id).remove()
+        del self._ids.histories[instance_id], self._parts[instance_id]
         self._pieces = None
         self.joints.arrange(self)
 
@@ -287,16 +227,13 @@ class BodyTable:
         if body.placement.joint is not None:
             name = body.placement.name
             raise InvalidRequest("object that comes and goes", name, "one that is not on a joint")
-        self._require_nothing_on(body, "that comes and goes")
+        self.joints.require_nothing_on(body, "that comes and goes")
 
     def leave(self, instance_id: int) -> None:
         """Take a body out of the engine as `remove` does, but keep its ids for when it enters."""
-        gone = self[instance_id]
-        self.wake_neighbours(gone)
-        self._note_last_pose(instance_id)
+        gone = self._take_out(instance_id)
         self.waiting.take_back(instance_id, gone)
         gone.remove()
-        del self._bodies[instance_id]
         self._pieces = None
         self.joints.arrange(self)
 
@@ -320,9 +257,9 @@ class BodyTable:
         old = self[instance_id]
         if placement.name != old.placement.name:
             self._require_free_name(placement.name)
-            self._require_nothing_on(old, "to be renamed")
+            self.joints.require_nothing_on(old, "to be renamed")
         if not placement.static and placement.joint is None:
-            self._require_nothing_on(old, "that moves freely")
+            self.joints.require_nothing_on(old, "that moves freely")
         new = old.rebuilt(placement)
         self.wake_neighbours(old)
         self._bodies[instance_id] = new
@@ -356,29 +293,19 @@ class BodyTable:
         for placement in wanted:
             if placement.name in others:
                 raise NameTaken("object", placement.name)
-        self._require_ids(sum(placement.name not in parts for placement in wanted))
-        made: list[Body] = []
-        try:
-            for placement in wanted:
-                made.append(make_body(self._client, placement))
-        except BaseException:
-            for body in made:
-                body.remove()
-            raise
+        self._ids.require(sum(placement.name not in parts for placement in wanted))
+        made = make_bodies(self._client, wanted)
         for id_ in leaving:
             self._note_last_pose(id_)
             self._bodies[id_].remove()
         for body in made:
-            id_ = parts.get(body.placement.name, 0)
-            if not id_:
-                self._last_id += 1
-                id_ = self._last_id
+            id_ = parts.get(body.placement.name) or self._ids.take(1)[0]
             self._bodies[id_] = body
             self._parts[id_] = ()  # what makes rooms labels all of a wall alike
             self.reset_motion_history(id_)
             leaving.discard(id_)
         for id_ in leaving:
-            del self._bodies[id_], self._histories[id_], self._parts[id_]
+            del self._bodies[id_], self._ids.histories[id_], self._parts[id_]
         self._pieces = None
         self.joints.arrange(self)
         self._room_parts = frozenset(placement.name for placement in wanted)
@@ -392,28 +319,31 @@ class BodyTable:
 
     def reset_motion_history(self, instance_id: int) -> None:
         """Begin a new history: flow does not see where the body was before."""
-        self._last_history += 1
-        self._histories[instance_id] = self._last_history
+        self._ids.begin_history(instance_id)
 
     def _add_body(self, placement: Placement, *, waits: bool = False) -> int:
         self._require_free_name(placement.name)
-        self._require_ids(1)
+        self._ids.require(1)
+        body_id = self._ids.last + 1
         if waits:
-            self.waiting.take(self._last_id + 1, placement)
+            self.waiting.take(body_id, placement)
         else:
-            self._bodies[self._last_id + 1] = make_body(self._client, placement)
-        self._last_id += 1
-        self._parts[self._last_id] = ()
-        self.reset_motion_history(self._last_id)
-        return self._last_id
+            self._bodies[body_id] = make_body(self._client, placement)
+        self._ids.take(1)
+        self._parts[body_id] = ()
+        self.reset_motion_history(body_id)
+        return body_id
+
+    def _take_out(self, body_id: int) -> Body:
+        gone = self[body_id]
+        self.wake_neighbours(gone)
+        self._note_last_pose(body_id)
+        return self._bodies.pop(body_id)
 
     def _number_parts(self, body_id: int) -> None:
         waits = body_id in self.waiting
         placement = self.waiting[body_id] if waits else self._bodies[body_id].placement
-        count = len(placement.asset.parts)
-        self._require_ids(count)
-        self._parts[body_id] = tuple(range(self._last_id + 1, self._last_id + 1 + count))
-        self._last_id += count
+        self._parts[body_id] = self._ids.take(len(placement.asset.parts))
         self._pieces = None
 
     def _note_last_pose(self, body_id: int) -> None:
@@ -423,20 +353,6 @@ class BodyTable:
         except PhysicsError:
             self._last_poses[body_id] = self._bodies[body_id].entry_pose.matrix()
 
-    def _require_nothing_on(self, body: Body, what: str) -> None:
-        carried = self.joints.carried_by(body)
-        if carried:
-            one = carried[0].placement.name
-            accepted = f"one that carries nothing on a joint; this one carries {one!r}"
-            raise InvalidRequest(f"object {what}", body.placement.name, accepted)
-
     def _require_free_name(self, name: str) -> None:
         if any(body.placement.name == name for body in self) or name in self.waiting.names():
             raise NameTaken("object", name)
-
-    def _require_ids(self, count: int) -> None:
-        if self._last_id + count > MAX_INSTANCE_ID:
-            raise InvalidState(
-                f"a scene can have {MAX_INSTANCE_ID} objects in its life and has had them; "
-                "reset the scene to begin anew"
-            )

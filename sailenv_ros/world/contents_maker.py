@@ -17,7 +17,8 @@ from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.labels import PART_MARK, CategoryTable, Instance, Keypoint
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
-from sailenv_ros.world.body_table import BodyTable, LabelledPiece
+from sailenv_ros.world.body_table import BodyTable
+from sailenv_ros.world.labelled_pieces import LabelledPiece
 from sailenv_ros.world.lit_lamps import lit_by
 from sailenv_ros.world.placement import Placement
 

@@ -83,6 +83,19 @@ class JointTable:
         """Return the objects whose joints are on one."""
         return tuple(one for group in self._trees for one in group if one.parent is body)
 
+    def require_nothing_on(self, body: Body, what: str) -> None:
+        """Refuse a body that carries another on a joint; `what` ends "object …" in the error.
+
+        Raises
+        ------
+        InvalidRequest
+        """
+        carried = self.carried_by(body)
+        if carried:
+            one = carried[0].placement.name
+            accepted = f"one that carries nothing on a joint; this one carries {one!r}"
+            raise InvalidRequest(f"object {what}", body.placement.name, accepted)
+
     def above(self, body: Body) -> tuple[JointedBody, ...]:
         """Return all objects that go where one goes: those on it, those on these, and so on."""
         found: list[JointedBody] = []

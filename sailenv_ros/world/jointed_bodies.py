@@ -5,6 +5,7 @@ Belongs to a `JointTree`, which `JointTable` makes of all that hangs together.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,7 @@ from sailenv_ros.world.joint_tree import JointLink, JointTree
 from sailenv_ros.world.kinematics import Twist, composed, link_pose, link_velocity
 from sailenv_ros.world.placement import JointPlacement, Placement
 
-__all__ = ["JointedBody", "make_body"]
+__all__ = ["JointedBody", "make_bodies", "make_body"]
 
 LONGEST_S = 1e4
 """Longest time that a motion to a position may take [s]."""
@@ -33,6 +34,19 @@ _STILL: Twist = (np.zeros(3), np.zeros(3))
 def make_body(client: BulletClient, placement: Placement) -> Body:
     """Make the body of a placement; one on a joint is in the engine once a tree has it."""
     return Body(client, placement) if placement.joint is None else JointedBody(client, placement)
+
+
+def make_bodies(client: BulletClient, placements: Iterable[Placement]) -> list[Body]:
+    """Make the bodies of placements, all of them or none."""
+    made: list[Body] = []
+    try:
+        for placement in placements:
+            made.append(make_body(client, placement))
+    except BaseException:
+        for body in made:
+            body.remove()
+        raise
+    return made
 
 
 class JointedBody(Body):
@@ -64,7 +78,7 @@ class JointedBody(Body):
             placement=self.placement,
             parent=parent,
             mass_kg=self.mass_kg,
-            centre_m=(self._centre[0], self._centre[1], self._centre[2]),
+            centre_m=self._centre,
             position=position,
             velocity=velocity,
         )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.types.lights import Light
-from sailenv_ros.world.body_table import LabelledPiece
+from sailenv_ros.world.labelled_pieces import LabelledPiece
 
 __all__ = ["REACH_M", "lit_by"]
 

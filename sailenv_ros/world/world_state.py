@@ -27,6 +27,7 @@ from sailenv_ros.world.inactive_objects import InactiveObjects
 from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_table import MoverTable
+from sailenv_ros.world.object_state import object_state
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
 
@@ -298,7 +299,7 @@ class WorldState:
         piece = self._bodies.piece(instance_id)
         drawn = self._shown.drawn(piece)
         model = drawn.model if piece.part else piece.body.placement.asset.model
-        return piece.body.state(drawn.instance, self.sim_time_ns, model)
+        return object_state(piece.body, drawn.instance, self.sim_time_ns, model)
 
     def contacts(self, seconds: float = 0.0) -> tuple[Contact, ...]:
         """Return what touched what in the last step, and in so much simulated time before [s].

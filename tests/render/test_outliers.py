@@ -9,17 +9,11 @@ import pytest
 
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.snapshot import WorldSnapshot
-from tests.support.light_faults import bright_spots, dashes, outliers, surfaces_of
+from tests.support.light_faults import bright_spots, dashes, outliers
 from tests.support.plausible_views import plausible_views, room_at_rest
 
 STRUCTURE = ("wall", "floor", "ceiling")
 VIEWS = 20
-
-MOST_DASHES = {"room_01": 10, "room_02": 20}
-"""Pixels in all views: 391 and 12 where edges were lit as if the ceiling above were black.
-
-Joints of the tiles of `room_03` shine, so that their pictures tell nothing of dashes.
-"""
 
 
 def test_an_outlier_is_found() -> None:
@@ -57,18 +51,21 @@ def test_a_spot_is_found() -> None:
 
 @pytest.mark.parametrize("name", ["room_01", "room_02", "room_03"])
 def test_no_pixel_stands_out_alone(name: str) -> None:
-    """In 20 views of each room, nor dashes along edges; handles of windows are no part of it."""
+    """In 20 views of each room; handles of windows are no part of it.
+
+    Dashes and spots are faults of baked light: `benchmarks/room_faults.py` counts them.
+    """
     room: WorldSnapshot = room_at_rest(name)
     categories = [drawn.instance.category for drawn in room.contents.instances]
     ids = room.contents.instance_ids
     structure = ids[np.isin(categories, STRUCTURE)]
     windows = ids[np.isin(categories, "window")]
     renderer = NativeRenderer()
-    found, dashed = [], 0
+    found = []
     try:
         views = plausible_views(room, renderer, name, width=480, height=360)
         for number, camera in enumerate(itertools.islice(views, VIEWS)):
-            wanted = ("rgb", "instance", "normals", "albedo")
+            wanted = ("rgb", "instance", "normals")
             seen = renderer.render(room, None, camera, wanted).views
             upwards = seen["normals"] @ camera.world_from_camera[2, :3] > 0.9
             sills = np.isin(seen["instance"], windows)
@@ -76,10 +73,6 @@ def test_no_pixel_stands_out_alone(name: str) -> None:
             at = outliers(seen["rgb"], plain | sills)
             own = ~sills | upwards
             found += [(number, *place) for place in at.tolist() if own[tuple(place)]]
-            surfaces = surfaces_of(seen["instance"], seen["normals"], plain)
-            dark = dashes(seen["rgb"], seen["albedo"], surfaces)
-            dashed += len(dark)
     finally:
         renderer.close()
     assert found == []
-    assert dashed <= MOST_DASHES.get(name, dashed)

@@ -273,7 +273,7 @@ def test_a_reset_brings_every_byte_back(agent: Agent) -> None:
         ({"height": 100000}, InvalidRequest, "height must be an integer from 8 to 4096"),
         ({"views": ["heat"]}, UnknownName, "view must be one of"),
         ({"name": "No Name"}, InvalidRequest, "name of the agent"),
-        ({"domain_id": 233}, InvalidRequest, "ROS domain must be an integer from 0 to 232"),
+        ({"domain_id": 233}, InvalidRequest, "ROS_DOMAIN_ID must be an integer from 0 to 232"),
         ({"far_m": 0.01}, InvalidRequest, "near_m must be less than far_m"),
     ],
 )

@@ -134,7 +134,7 @@ def test_wrong_arguments_end_it_with_a_reason() -> None:
         assert "Traceback" not in node.log
     with NodeProcess("/wrong", ready=False, environment={"ROS_DOMAIN_ID": "233"}) as node:
         assert node.status() == 2
-        assert "ROS_DOMAIN_ID must be from 0 to 232, got 233" in node.log
+        assert "ROS_DOMAIN_ID must be an integer from 0 to 232, got 233" in node.log
 
 
 def test_a_second_simulator_of_one_namespace_is_refused(node: NodeProcess) -> None:

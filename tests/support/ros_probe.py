@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import threading
 from collections.abc import Iterable
 from typing import Any
@@ -113,8 +112,14 @@ class Probe:
             self.node.destroy_subscription(self._subscriptions.pop())
 
     def _spin(self) -> None:
-        with contextlib.suppress(ExternalShutdownException):
+        try:
             self._executor.spin()
+        except ExternalShutdownException:
+            pass
+        except Exception:
+            # The context was shut down between the executor's look at it and its wait.
+            if self._context.ok():
+                raise
 
 
 class Eye:

@@ -1,0 +1,90 @@
+"""What instance ids stand for: bodies and the labelled parts of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.labels import PART_MARK
+from sailenv_ros.types.model import AssetPart
+from sailenv_ros.world.bodies import Body
+
+__all__ = ["LabelledPiece", "pieces_of", "states_of"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LabelledPiece:
+    """Meaning of one instance id: a body without its parts, or one part of it.
+
+    Attributes
+    ----------
+    id : int
+    body_id : int
+        Of the body; the same as `id` unless this is a part.
+    body : Body
+    part : AssetPart or None
+        None for the body.
+    """
+
+    id: int
+    body_id: int
+    body: Body
+    part: AssetPart | None
+
+    @property
+    def name(self) -> str:
+        """Its name in the scene."""
+        name = self.body.placement.name
+        return name if self.part is None else f"{name}{PART_MARK}{self.part.name}"
+
+
+def pieces_of(
+    bodies: Mapping[int, Body], parts: Mapping[int, Sequence[int]]
+) -> tuple[LabelledPiece, ...]:
+    """Return bodies and their parts, whose ids `parts` has by body, in the order of their ids."""
+    made = [
+        LabelledPiece(id_, body_id, body, part)
+        for body_id, body in bodies.items()
+        for id_, part in (
+            (body_id, None),
+            *zip(parts[body_id], body.placement.asset.parts, strict=True),
+        )
+    ]
+    return tuple(sorted(made, key=lambda piece: piece.id))
+
+
+def states_of(
+    pieces: Sequence[LabelledPiece],
+    world_from_body: NDArray[np.float64],
+    histories: NDArray[np.int64],
+) -> InstanceStates:
+    """Return where pieces are and how they move.
+
+    Parameters
+    ----------
+    pieces : sequence of LabelledPiece
+    world_from_body : (N, 4, 4) float64
+        A pose for each, that was just read.
+    histories : (N,) int64
+        As of `InstanceStates`.
+    """
+    moving = [
+        piece.body.origin_velocity(matrix)
+        for piece, matrix in zip(pieces, world_from_body, strict=True)
+    ]
+    velocities = np.array(moving, np.float64).reshape(-1, 2, 3)
+    quats = [piece.body.orientation_of_matrix() for piece in pieces]
+    scales = [piece.body.placement.scale for piece in pieces]
+    return InstanceStates(
+        ids=np.array([piece.id for piece in pieces], np.uint16),
+        positions=world_from_body[:, :3, 3],
+        orientations=np.array(quats, np.float64).reshape(-1, 4),
+        linear_velocities=velocities[:, 0],
+        angular_velocities=velocities[:, 1],
+        scales=np.array(scales, np.float64).reshape(-1, 3),
+        histories=histories,
+    )
