@@ -1,1 +1,1 @@
-"""Making scenes: generated rooms, imported scenes, rules for cameras."""
+"""Making scenes: generated rooms, rules for cameras."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from sailenv_content.scene_import.importers import IMPORTED_SUFFIXES, import_scene
 from sailenv_ros.assets.folders import own_pack_folder, pack_folders
-from sailenv_ros.authoring.scene_import.importers import IMPORTED_SUFFIXES, import_scene
 
 __all__ = ["add_arguments", "import_file"]
 

@@ -13,12 +13,12 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from sailenv_content.scene_import import imported
+from sailenv_content.scene_import.imported import Names
+from sailenv_content.scene_import.importers import import_scene
+from sailenv_content.scene_import.sweet_home import import_sweet_home
 from sailenv_ros import Simulation
 from sailenv_ros.assets.pack import PackEntry
-from sailenv_ros.authoring.scene_import import imported
-from sailenv_ros.authoring.scene_import.imported import Names
-from sailenv_ros.authoring.scene_import.importers import import_scene
-from sailenv_ros.authoring.scene_import.sweet_home import import_sweet_home
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import AssetError, InvalidRequest, SailenvError
 from tests.support.home_files import CUBE, FLAT, write_home

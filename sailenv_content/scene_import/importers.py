@@ -8,14 +8,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias
 
+from sailenv_content.scene_import.gltf_scene import import_gltf
+from sailenv_content.scene_import.imported import ImportedScene, Names
+from sailenv_content.scene_import.robot_scene import import_robot_scene
+from sailenv_content.scene_import.sweet_home import import_sweet_home
+from sailenv_content.scene_import.writing import write_scene
 from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
 from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack, PackEntry
-from sailenv_ros.authoring.scene_import.gltf_scene import import_gltf
-from sailenv_ros.authoring.scene_import.imported import ImportedScene, Names
-from sailenv_ros.authoring.scene_import.robot_scene import import_robot_scene
-from sailenv_ros.authoring.scene_import.sweet_home import import_sweet_home
-from sailenv_ros.authoring.scene_import.writing import write_scene
 from sailenv_ros.errors import AssetError, InvalidRequest
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 

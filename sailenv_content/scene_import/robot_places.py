@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.authoring.scene_import.imported import Entry
-from sailenv_ros.authoring.scene_import.robot_joints import (
+from sailenv_content.scene_import.imported import Entry
+from sailenv_content.scene_import.robot_joints import (
     FREE,
     moving_joint,
     pose_entry,

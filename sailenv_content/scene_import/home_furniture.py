@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_content.scene_import.categories_by_name import category_of_name
+from sailenv_content.scene_import.home_types import HomePiece, Paint
+from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
+from sailenv_content.scene_import.scene_parts import asset_of_parts
+from sailenv_content.scene_import.wavefront_colours import material_file, with_glass
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.assets.recipe import standard_recipe
-from sailenv_ros.authoring.scene_import.categories_by_name import category_of_name
-from sailenv_ros.authoring.scene_import.home_types import HomePiece, Paint
-from sailenv_ros.authoring.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
-from sailenv_ros.authoring.scene_import.scene_parts import asset_of_parts
-from sailenv_ros.authoring.scene_import.wavefront_colours import material_file, with_glass
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.colour import hex_from_linear
 from sailenv_ros.types.model import Material

@@ -12,11 +12,11 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from sailenv_content.scene_import import robot_scene
+from sailenv_content.scene_import.imported import Names
+from sailenv_content.scene_import.importers import import_scene
+from sailenv_content.scene_import.robot_scene import import_robot_scene
 from sailenv_ros import Simulation
-from sailenv_ros.authoring.scene_import import robot_scene
-from sailenv_ros.authoring.scene_import.imported import Names
-from sailenv_ros.authoring.scene_import.importers import import_scene
-from sailenv_ros.authoring.scene_import.robot_scene import import_robot_scene
 from sailenv_ros.errors import AssetError, SailenvError
 
 KITCHEN = """

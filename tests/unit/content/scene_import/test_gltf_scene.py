@@ -17,10 +17,10 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from sailenv_content.scene_import.gltf_scene import import_gltf
+from sailenv_content.scene_import.imported import Names
+from sailenv_content.scene_import.importers import import_scene
 from sailenv_ros import Simulation
-from sailenv_ros.authoring.scene_import.gltf_scene import import_gltf
-from sailenv_ros.authoring.scene_import.imported import Names
-from sailenv_ros.authoring.scene_import.importers import import_scene
 from sailenv_ros.errors import AssetError, SailenvError
 
 HALF = math.sqrt(0.5)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.authoring.scene_import.plan_walls import Opening, PlanWall
+from sailenv_content.scene_import.plan_walls import Opening, PlanWall
 
 __all__ = [
     "ARC_STEP",

@@ -1,6 +1,6 @@
 """The child process that reads URDF and MJCF files with MuJoCo; see `robot_scene`.
 
-    python -m sailenv_ros.authoring.scene_import.robot_reader FILE FOLDER MEMORY_BYTES
+    python -m sailenv_content.scene_import.robot_reader FILE FOLDER MEMORY_BYTES
 
 A compiler of others in C++ works on a stranger's file here: what it stumbles over ends this process
 and no other, and it has no more memory than it is given. Writes ``scene.json`` and ``arrays.npz``
@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.authoring.scene_import.safe_xml import read_xml
+from sailenv_content.scene_import.safe_xml import read_xml
 
 __all__ = ["main"]
 

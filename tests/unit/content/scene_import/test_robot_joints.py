@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import yaml
 
+from sailenv_content.scene_import.importers import import_scene
 from sailenv_ros import Simulation
-from sailenv_ros.authoring.scene_import.importers import import_scene
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.geometry import Pose
 

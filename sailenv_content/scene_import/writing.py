@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from sailenv_content.scene_import.imported import ImportedScene
 from sailenv_ros.assets.pack import PackContent
 from sailenv_ros.assets.pack_writer import packed, write_content
-from sailenv_ros.authoring.scene_import.imported import ImportedScene
 from sailenv_ros.errors import AssetError, InvalidRequest
 from sailenv_ros.scene.dumper import dump_scene
 from sailenv_ros.scene.spec import SceneSpec

@@ -20,13 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sailenv_content.scene_import.categories_by_name import category_of_name
+from sailenv_content.scene_import.default_light import add_daylight
+from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
+from sailenv_content.scene_import.scene_parts import asset_of_parts
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
-from sailenv_ros.authoring.scene_import.categories_by_name import category_of_name
-from sailenv_ros.authoring.scene_import.default_light import add_daylight
-from sailenv_ros.authoring.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
-from sailenv_ros.authoring.scene_import.scene_parts import asset_of_parts
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.geometry import Pose
 

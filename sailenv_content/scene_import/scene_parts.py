@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_content.scene_import.imported import ImportedAsset
 from sailenv_ros.assets.hulls import hulls_of_pieces, merged
 from sailenv_ros.assets.meshes import RawMesh, components, is_open, simplified, smooth_mesh
 from sailenv_ros.assets.model_files import RawPart
-from sailenv_ros.authoring.scene_import.imported import ImportedAsset
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.model import ConvexShape, Material, ModelPart
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sailenv_ros.authoring.scene_import.imported import Entry, ImportedScene
+from sailenv_content.scene_import.imported import Entry, ImportedScene
 
 __all__ = ["ENVIRONMENT", "SUN", "add_daylight"]
 

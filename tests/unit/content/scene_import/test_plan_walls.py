@@ -10,8 +10,8 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sailenv_ros.authoring.scene_import.plan_slabs import inside, slab
-from sailenv_ros.authoring.scene_import.plan_walls import Opening, PlanWall, WallSolid, wall_solid
+from sailenv_content.scene_import.plan_slabs import inside, slab
+from sailenv_content.scene_import.plan_walls import Opening, PlanWall, WallSolid, wall_solid
 
 
 def wall(

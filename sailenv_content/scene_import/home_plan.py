@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailenv_ros.authoring.scene_import.home_types import (
+from sailenv_content.scene_import.home_types import (
     ARC_STEP,
     FRONT_YAW_DEG,
     Doubles,
@@ -25,8 +25,8 @@ from sailenv_ros.authoring.scene_import.home_types import (
     Paint,
     Vector3,
 )
-from sailenv_ros.authoring.scene_import.plan_walls import PlanWall
-from sailenv_ros.authoring.scene_import.safe_xml import XmlNode
+from sailenv_content.scene_import.plan_walls import PlanWall
+from sailenv_content.scene_import.safe_xml import XmlNode
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.colour import linear_from_srgb
 

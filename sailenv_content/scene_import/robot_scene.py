@@ -20,16 +20,16 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from sailenv_content.scene_import.categories_by_name import category_of_name
+from sailenv_content.scene_import.default_light import add_daylight
+from sailenv_content.scene_import.imported import Entry, ImportedScene, Names
+from sailenv_content.scene_import.robot_joints import check_limits, pose_entry, pose_of_body
+from sailenv_content.scene_import.robot_places import RobotPlaces
+from sailenv_content.scene_import.safe_xml import XmlNode, read_xml
+from sailenv_content.scene_import.scene_parts import asset_of_parts
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
 from sailenv_ros.assets.pack import PackEntry
-from sailenv_ros.authoring.scene_import.categories_by_name import category_of_name
-from sailenv_ros.authoring.scene_import.default_light import add_daylight
-from sailenv_ros.authoring.scene_import.imported import Entry, ImportedScene, Names
-from sailenv_ros.authoring.scene_import.robot_joints import check_limits, pose_entry, pose_of_body
-from sailenv_ros.authoring.scene_import.robot_places import RobotPlaces
-from sailenv_ros.authoring.scene_import.safe_xml import XmlNode, read_xml
-from sailenv_ros.authoring.scene_import.scene_parts import asset_of_parts
 from sailenv_ros.errors import AssetError
 from sailenv_ros.extras import need
 from sailenv_ros.types.colour import linear_from_srgb
@@ -131,7 +131,7 @@ def _beside(home: Path, name: str) -> bool:
 def _read_apart(path: Path) -> tuple[dict[str, Any], dict[str, Doubles]]:
     with tempfile.TemporaryDirectory(prefix="sailenv-import-") as name:
         folder = Path(name)
-        command = [sys.executable, "-m", "sailenv_ros.authoring.scene_import.robot_reader"]
+        command = [sys.executable, "-m", "sailenv_content.scene_import.robot_reader"]
         command += [str(path.resolve()), str(folder), str(MEMORY_BYTES)]
         package = str(Path(__file__).resolve().parents[3])
         paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
