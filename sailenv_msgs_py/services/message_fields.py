@@ -26,8 +26,9 @@ from sailenv_msgs_py.transforms import (
     vector_to_msg,
     xyz_from_msg,
 )
+from sailenv_ros.errors import InvalidRequest
 
-__all__ = ["field_types", "read_fields", "write_field"]
+__all__ = ["field_types", "read_fields", "refuse_nul", "write_field"]
 
 RESPONSE_HEADER = ("success", "code", "message", "revision")
 """Fields that every response has."""
@@ -79,6 +80,27 @@ def read_fields(message: Any, types: Mapping[str, str]) -> dict[str, Any]:
         If a value cannot be what it is said to be, e.g. a quaternion of length 0.
     """
     return {name: _converter(type_, 1)(getattr(message, name)) for name, type_ in types.items()}
+
+
+def refuse_nul(service: str, message: Any) -> None:
+    """Refuse a text with a NUL in it: the messages' C code would cut it off there unseen.
+
+    Raises
+    ------
+    InvalidRequest
+    """
+    for name, kind in message.get_fields_and_field_types().items():
+        value = getattr(message, name)
+        if "string" in kind:
+            texts = [value] if isinstance(value, str) else value
+            if any("\0" in text for text in texts):
+                raise InvalidRequest(f"{name} of the request to {service}", value, "without a NUL")
+        elif hasattr(value, "get_fields_and_field_types"):
+            refuse_nul(service, value)
+        elif isinstance(value, list):
+            for part in value:
+                if hasattr(part, "get_fields_and_field_types"):
+                    refuse_nul(service, part)
 
 
 def _converter(type_: str, direction: int) -> Convert:

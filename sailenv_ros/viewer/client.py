@@ -23,9 +23,6 @@ from sailenv_ros.errors import (
     UnknownName,
 )
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.frame.pictures.codecs import encode_png
-from sailenv_ros.frame.pictures.colours import view_picture
-from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.types.scene_info import SceneInfo
@@ -34,7 +31,7 @@ from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
-from sailenv_ros.viewer.encoding import packed, view_png
+from sailenv_ros.viewer.encoding import packed, sheet_png, view_png
 from sailenv_ros.viewer.outbox import Outbox
 from sailenv_ros.viewer.request_arguments import Arguments, arguments_of_text
 from sailenv_ros.viewer.scene_json import scene_to_json
@@ -296,26 +293,11 @@ class Client:
         """Return the five views on one sheet, rendered together at the next instant."""
         last = self.frame(None)
         frame: Frame = await self.run(Operations.capture, FIVE_VIEWS, agent=last.agent)
-        data = await asyncio.to_thread(self._sheet_of, frame)
-        return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
-
-    def _sheet_of(self, frame: Frame) -> bytes:
-        table, depth_range_m = self.info.categories, self._range(frame)
-        near_m = frame.camera.intrinsics.near_m
-        return encode_png(
-            contact_sheet(
-                {
-                    view: view_picture(
-                        view,
-                        frame[view],
-                        table=table,
-                        near_m=near_m,
-                        depth_range_m=depth_range_m,
-                    )
-                    for view in FIVE_VIEWS
-                }
-            )
+        categories, range_m = self.info.categories, self._range(frame)
+        data = await asyncio.to_thread(
+            sheet_png, frame, FIVE_VIEWS, categories=categories, depth_range_m=range_m
         )
+        return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
 
     def _range(self, frame: Frame) -> float:
         ranges = (spec.depth_range_m for spec in self.info.agents if spec.name == frame.agent)

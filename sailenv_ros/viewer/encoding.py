@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.frame.pictures.colours import view_picture
+from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
 
-__all__ = ["FrameMessages", "outline", "packed", "view_png", "views_to_json"]
+__all__ = ["FrameMessages", "outline", "packed", "sheet_png", "view_png", "views_to_json"]
 
 JPEG_QUALITY = 85
 
@@ -155,6 +156,14 @@ def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:
 def view_png(frame: Frame, view: str, *, categories: CategoryTable, depth_range_m: float) -> bytes:
     """Return one view's picture as a PNG file."""
     return encode_png(_picture(frame, view, categories, depth_range_m))
+
+
+def sheet_png(
+    frame: Frame, views: Sequence[str], *, categories: CategoryTable, depth_range_m: float
+) -> bytes:
+    """Return several views' pictures on one sheet, labelled, as a PNG file."""
+    pictures = {view: _picture(frame, view, categories, depth_range_m) for view in views}
+    return encode_png(contact_sheet(pictures))
 
 
 def outline(instance: NDArray[np.uint16], number: int) -> list[list[int]]:

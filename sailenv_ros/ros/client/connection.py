@@ -26,6 +26,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sailenv_msgs.msg import SceneInfo as SceneInfoMsg
 from sailenv_msgs.srv import RegisterAgent
 from sailenv_msgs_py.scene_msgs import scene_info_from_msg
+from sailenv_msgs_py.services.message_fields import refuse_nul
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidRequest,
@@ -181,7 +182,7 @@ class Connection:
             If there was no answer in time.
         """
         self.check_process()
-        _refuse_nul(service, request)
+        refuse_nul(service, request)
         deadline = time.monotonic() + timeout_s
         client = self._client(srv_type, service)
         what = f"the service {self.namespace}/{service}"
@@ -348,19 +349,3 @@ class Connection:
         with contextlib.suppress(RuntimeError):  # the interpreter's end may have come before
             self._context.try_shutdown()
         self._lock.release()
-
-
-def _refuse_nul(service: str, message: Any) -> None:
-    """Refuse a text with a NUL in it: the messages' C code would cut it off there unseen."""
-    for name, kind in message.get_fields_and_field_types().items():
-        value = getattr(message, name)
-        if "string" in kind:
-            texts = [value] if isinstance(value, str) else value
-            if any("\0" in text for text in texts):
-                raise InvalidRequest(f"{name} of the request to {service}", value, "without a NUL")
-        elif hasattr(value, "get_fields_and_field_types"):
-            _refuse_nul(service, value)
-        elif isinstance(value, list):
-            for part in value:
-                if hasattr(part, "get_fields_and_field_types"):
-                    _refuse_nul(service, part)
