@@ -63,7 +63,7 @@ ASSETS = [
     "OpenEXR>=3.3",
 ]
 # What only baking light needs; light that was baked before is read without.
-BAKE = ["embreex>=4.4.0", "xatlas>=0.0.9"]
+BAKE = ["xatlas>=0.0.9"]
 # What only importing URDF and MJCF scenes needs.
 IMPORT = ["mujoco>=3.3"]
 # What the experiments compare with and draw with: `sailenv bench`, `report`, and `sailenv eval`.
@@ -83,6 +83,8 @@ DEV = [
     "mkdocstrings[python]>=0.26",
     "clang-format>=18",
     "colcon-common-extensions",
+    # Another ray tracer, which tests hold what is seen against.
+    "embreex>=4.4.0",
     "hypothesis",
     "import-linter",
     "jsonschema",

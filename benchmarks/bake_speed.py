@@ -29,8 +29,8 @@ import numpy as np
 from sailenv_ros.light.bake import light_files as files
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.pipeline import bake
-from sailenv_ros.light.bake.rays import RayScene
-from sailenv_ros.light.bake.static_geometry import static_geometry_of
+from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.rays.static_geometry import static_geometry_of
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.snapshot import WorldSnapshot
 

@@ -19,7 +19,6 @@ _EXTRA_OF = {
     "pyarrow": "dataset",
     "ray": "ray",
     "coacd": "assets",
-    "embreex": "bake",
     "matplotlib": "bench",
     "mujoco": "import",
     "onnxruntime": "eval",

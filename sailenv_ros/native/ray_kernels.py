@@ -1,11 +1,7 @@
-"""The kernels of rays: trees over the triangles of models, and what rays through instances meet.
-
-What they compute is defined in `tests.support.reference_rays`.
-"""
+"""The kernels of rays: trees of boxes, what rays meet exactly, and what rays of light meet."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,57 +9,77 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.library import Kernel, checked
+from sailenv_ros.native.ray_types import RAY_SHAPE, TREE_NODE, WIDTH
+from sailenv_ros.native.records import RecordKernel
 
-__all__ = ["RayHits", "RayModels", "TriangleTree", "build_tree", "cast_rays"]
-
-_BUILD = Kernel("build_tree", "array", "integer", "array", "array", "array", "array")
-_CAST = Kernel(
+__all__ = [
+    "BoxTree",
+    "LightHits",
+    "RayHits",
+    "build_tree",
     "cast_rays",
-    *("integer", "integer", "array", "array", "array", "integer", "array", "array"),
-    *("array", "array", "array", "array", "array", "array", "array"),
-    *("array", "array", "array", "array"),
+    "light_hits",
+    "light_share",
+]
+
+_BUILD = Kernel("build_tree", "integer", "integer", "array", "array", "array", "array")
+_CAST = RecordKernel(
+    "cast_rays",
+    nodes="array",
+    order="array",
+    model_from_world="array",
+    models="array",
+    shapes="array",
+    instances="integer",
+    origins="array",
+    directions="array",
+    nearest="array",
+    distance="array",
+    instance="array",
+    triangle="array",
+    weights="array",
+    count="integer",
+)
+_MEET = RecordKernel(
+    "meet_light_rays",
+    solid="array",
+    origins="array",
+    directions="array",
+    triangle="array",
+    distance="array",
+    second="array",
+    third="array",
+    count="integer",
+)
+_PASS = RecordKernel(
+    "pass_light_rays",
+    solid="array",
+    glass="array",
+    passes="array",
+    origins="array",
+    directions="array",
+    lengths="array",
+    share="array",
+    count="integer",
 )
 
+Doubles = NDArray[np.float64]
+Floats = NDArray[np.float32]
 
-class TriangleTree(NamedTuple):
-    """A tree of boxes over triangles.
+
+class BoxTree(NamedTuple):
+    """A tree of boxes.
 
     Attributes
     ----------
-    bounds : (K, 6) float64
-        Lowest and highest corner of each node's box.
-    children : (K, 2) int32
-        Number of a node's first child, which its second follows, and 0; of a leaf the number of
-        its first triangle in `order`, and how many there are.
-    order : (M,) int32
-        Triangles in the order of the leaves.
+    nodes : (N,) TREE_NODE
+        The first one holds all.
+    order : (L, leaf) int32
+        The things in each leaf; -1 for none.
     """
 
-    bounds: NDArray[np.float64]
-    children: NDArray[np.int32]
+    nodes: NDArray[np.void]
     order: NDArray[np.int32]
-
-
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class RayModels:
-    """The triangles of several models, one after another, and their trees.
-
-    Attributes
-    ----------
-    corners : (M, 3, 3) float64
-        In each model's own frame; finite.
-    two_sided : (M,) bool
-        Triangles that are met from behind, too.
-    first_triangle, first_node : (S + 1,) int64
-        Where each model begins in `corners` and in `tree`, and where the last one ends.
-    tree : TriangleTree
-    """
-
-    corners: NDArray[np.float64]
-    two_sided: NDArray[np.bool_]
-    first_triangle: NDArray[np.int64]
-    first_node: NDArray[np.int64]
-    tree: TriangleTree
 
 
 class RayHits(NamedTuple):
@@ -76,66 +92,86 @@ class RayHits(NamedTuple):
     instance : (R,) int32
         Row of the instance; -1 for none.
     triangle : (R,) int64
-        In `RayModels.corners`; -1 for none.
+        Counted on over the models; -1 for none.
     weights : (R, 2) float64
         Of the triangle's second and third corner.
     """
 
-    distance: NDArray[np.float64]
+    distance: Doubles
     instance: NDArray[np.int32]
     triangle: NDArray[np.int64]
-    weights: NDArray[np.float64]
+    weights: Doubles
 
 
-def build_tree(corners: NDArray[np.float64]) -> TriangleTree:
-    """Build the tree of one model.
+class LightHits(NamedTuple):
+    """What each ray of light meets first.
+
+    Attributes
+    ----------
+    triangle : (R,) int32
+        -1 for none.
+    distance : (R,) float32
+        In lengths of the direction; 1e30 where it meets nothing.
+    second, third : (R,) float32
+        Weights of the triangle's second and third corner.
+    """
+
+    triangle: NDArray[np.int32]
+    distance: Floats
+    second: Floats
+    third: Floats
+
+
+def build_tree(boxes: Doubles, leaf: int) -> BoxTree:
+    """Build a tree over boxes.
 
     Parameters
     ----------
-    corners : (M, 3, 3) float64
-        Finite; none gives a tree of one empty leaf.
+    boxes : (N, 6) float64
+        Lowest and highest corner of each thing; finite.
+    leaf : int
+        The most things in a leaf, 1 to 8.
 
     Raises
     ------
     InvalidRequest
         If the array has another type or shape.
     NativeLibraryError
-        If there is no library, or a corner is not finite.
+        If there is no library, or a number is not finite.
     """
-    checked("corners", corners, np.float64, (None, 3, 3))
-    count = len(corners)
-    if not count:
-        return TriangleTree(np.zeros((1, 6)), np.zeros((1, 2), np.int32), np.zeros(0, np.int32))
-    bounds, children = np.empty((2 * count, 6)), np.empty((2 * count, 2), np.int32)
-    order, nodes = np.empty(count, np.int32), np.zeros(1, np.int64)
-    _BUILD(corners, count, bounds, children, order, nodes)
-    used = int(nodes[0])
-    return TriangleTree(bounds[:used].copy(), children[:used].copy(), order)
+    checked("boxes", boxes, np.float64, (None, 6))
+    count = len(boxes)
+    nodes = np.empty(max(count, 1), TREE_NODE)
+    order, made = np.empty((count, leaf), np.int32), np.zeros(2, np.int64)
+    _BUILD(count, leaf, boxes, nodes, order, made)
+    return BoxTree(nodes[: int(made[0])].copy(), order[: int(made[1])].copy())
 
 
 def cast_rays(
-    models: RayModels,
-    model_from_world: NDArray[np.float64],
-    model_of_instance: NDArray[np.int32],
-    origins: NDArray[np.float64],
-    directions: NDArray[np.float64],
-    nearest: NDArray[np.float64],
+    shapes: NDArray[np.void],
+    instances: tuple[BoxTree, Doubles, NDArray[np.int32]],
+    origins: Doubles,
+    directions: Doubles,
+    nearest: Doubles,
     *,
     threads: int,
 ) -> RayHits:
-    """Find what rays meet first.
+    """Find what rays meet first, exactly: as without a tree, in double precision.
+
+    A triangle is met up to 1e-9 beside its edges, in its own coordinates, and from behind only if
+    it has two sides. Of equal distances the lower instance and the lower triangle win.
 
     Parameters
     ----------
-    models : RayModels
-    model_from_world : (I, 3, 4) float64
-        Of each instance; scale included.
-    model_of_instance : (I,) int32
-        Number of each instance's model.
+    shapes : (S,) RAY_SHAPE
+        Of the models, with triangles in float64.
+    instances : tuple
+        A tree over them with leaves of one, (I, 3, 4) float64 model_from_world of each, scale
+        included, and (I,) int32, the number of its model.
     origins, directions : (R, 3) float64
-        In the world; directions of any length.
+        In the world, up to 1e30; directions of any length.
     nearest : (R,) float64
-        Only what lies farther is met, in lengths of the direction.
+        Only what lies farther is met, in lengths of the direction; 0 or more.
     threads : int
         The result does not depend on it.
 
@@ -146,23 +182,18 @@ def cast_rays(
     NativeLibraryError
         If there is no library.
     """
-    rays, instances = len(origins), len(model_from_world)
+    (nodes, order), model_from_world, models = instances
+    rays, count = len(origins), len(model_from_world)
+    checked("shapes", shapes, RAY_SHAPE, (None,))
+    checked("nodes", nodes, TREE_NODE, (None,))
+    checked("order", order, np.int32, (count, 1))
     checked("model_from_world", model_from_world, np.float64, (None, 3, 4))
-    checked("model_of_instance", model_of_instance, np.int32, (instances,))
+    checked("models", models, np.int32, (count,))
     for name, array in (("origins", origins), ("directions", directions)):
         checked(name, array, np.float64, (rays, 3))
     checked("nearest", nearest, np.float64, (rays,))
-    checked("corners", models.corners, np.float64, (None, 3, 3))
-    count = len(models.corners)
-    checked("two_sided", models.two_sided, np.bool_, (count,))
-    checked("order", models.tree.order, np.int32, (count,))
-    checked("bounds", models.tree.bounds, np.float64, (None, 6))
-    checked("children", models.tree.children, np.int32, (len(models.tree.bounds), 2))
-    checked("first_triangle", models.first_triangle, np.int64, (None,))
-    checked("first_node", models.first_node, np.int64, models.first_triangle.shape)
-    known = (model_of_instance >= 0) & (model_of_instance < len(models.first_triangle) - 1)
-    if not known.all():
-        raise InvalidRequest("model_of_instance", model_of_instance, "numbers of models")
+    if not ((models >= 0) & (models < len(shapes))).all():
+        raise InvalidRequest("models", models, "numbers of models")
     hits = RayHits(
         distance=np.empty(rays),
         instance=np.empty(rays, np.int32),
@@ -170,10 +201,92 @@ def cast_rays(
         weights=np.empty((rays, 2)),
     )
     _CAST(
-        *(threads, rays, origins, directions, nearest, instances, model_from_world),
-        *(model_of_instance, models.first_node, models.first_triangle),
-        *(models.tree.bounds, models.tree.children, models.tree.order),
-        *(models.corners, models.two_sided),
-        *hits,
+        threads,
+        nodes=nodes,
+        order=order,
+        model_from_world=model_from_world,
+        models=models,
+        shapes=shapes,
+        instances=count,
+        origins=origins,
+        directions=directions,
+        nearest=nearest,
+        count=rays,
+        **hits._asdict(),
     )
     return hits
+
+
+def light_hits(
+    solid: NDArray[np.void], origins: Floats, directions: Floats, *, threads: int
+) -> LightHits:
+    """Find what rays of light meet first, from either side.
+
+    Parameters
+    ----------
+    solid : (1,) RAY_SHAPE
+        With triangles in float32.
+    origins, directions : (R, 3) float32
+        Directions of any length.
+    """
+    rays = len(origins)
+    checked("origins", origins, np.float32, (rays, 3))
+    checked("directions", directions, np.float32, (rays, 3))
+    hits = LightHits(
+        triangle=np.empty(rays, np.int32),
+        distance=np.empty(rays, np.float32),
+        second=np.empty(rays, np.float32),
+        third=np.empty(rays, np.float32),
+    )
+    _MEET(
+        threads,
+        solid=solid,
+        origins=origins,
+        directions=directions,
+        count=rays,
+        **hits._asdict(),
+    )
+    return hits
+
+
+def light_share(
+    solid: NDArray[np.void] | None,
+    glass: tuple[NDArray[np.void], Floats],
+    origins: Floats,
+    directions: Floats,
+    lengths: Floats,
+    *,
+    threads: int,
+) -> Floats:
+    """Return (R,) float32: how much of the light is let through on the length of each ray.
+
+    Of panes the nearest counts, once, however many faces it has.
+
+    Parameters
+    ----------
+    solid : (1,) RAY_SHAPE or None
+        What stops light; None where nothing solid is in the way.
+    glass : tuple
+        Panes, and (L, 8) float32, the share that each lets through in the order of the leaves.
+    origins, directions : (R, 3) float32
+    lengths : (R,) float32
+        In lengths of the direction.
+    """
+    rays = len(origins)
+    checked("origins", origins, np.float32, (rays, 3))
+    checked("directions", directions, np.float32, (rays, 3))
+    checked("lengths", lengths, np.float32, (rays,))
+    checked("shares of panes", glass[1], np.float32, (None, WIDTH))
+    share = np.empty(rays, np.float32)
+    _PASS(
+        threads,
+        solid=solid,
+        glass=glass[0],
+        passes=glass[1],
+        origins=origins,
+        directions=directions,
+        lengths=lengths,
+        share=share,
+        count=rays,
+    )
+    return share

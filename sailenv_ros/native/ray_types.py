@@ -9,7 +9,17 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["RAY_INSTANCE", "RAY_LIGHT", "RAY_SCENE", "RAY_SHAPE", "TREE_NODE"]
+__all__ = [
+    "RAY_INSTANCE",
+    "RAY_LIGHT",
+    "RAY_SCENE",
+    "RAY_SHAPE",
+    "TREE_NODE",
+    "WIDTH",
+]
+
+WIDTH = 8
+"""Children of a node, and the most triangles of a leaf."""
 
 _ADDRESS = "<u8"
 
@@ -18,14 +28,16 @@ def _structure(*fields: tuple[Any, ...]) -> np.dtype[np.void]:
     return np.dtype(list(fields), align=True)
 
 
-TREE_NODE = _structure(("low", "<f4", 3), ("first", "<i4"), ("high", "<f4", 3), ("count", "<i4"))
+TREE_NODE = _structure(("planes", "<f4", (6, WIDTH)), ("children", "<i4", WIDTH))
 
 RAY_SHAPE = _structure(
     ("nodes_at", _ADDRESS),
     ("triangles_at", _ADDRESS),
+    ("order_at", _ADDRESS),
     ("places_at", _ADDRESS),
     ("two_sided_at", _ADDRESS),
     ("count", "<i8"),
+    ("first_triangle", "<i8"),
 )
 
 RAY_INSTANCE = _structure(
@@ -45,7 +57,6 @@ RAY_SCENE = _structure(
     ("order_at", _ADDRESS),
     ("resting_at", _ADDRESS),
     ("changed_at", _ADDRESS),
-    ("glass_nodes_at", _ADDRESS),
     ("glass_at", _ADDRESS),
     ("passes_at", _ADDRESS),
     ("sky_at", _ADDRESS),
@@ -54,8 +65,7 @@ RAY_SCENE = _structure(
     ("after_at", _ADDRESS),
     ("changed_count", "<i8"),
     ("patch_count", "<i8"),
-    ("resting_count", "<i4"),
-    ("glass_count", "<i4"),
+    ("resting_count", "<i8"),
     ("sky_height", "<i4"),
     ("sky_width", "<i4"),
     ("height", "<i4"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import count
 
 from sailenv_ros.errors import UnknownName
-from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
+from sailenv_ros.rays.scene_geometry import SceneGeometry
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import Model

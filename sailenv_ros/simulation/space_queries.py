@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
+from sailenv_ros.rays.scene_geometry import SceneGeometry
 from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import Solid, solids_of

@@ -53,7 +53,7 @@ def test_every_optional_package_is_in_the_extra_that_its_error_names() -> None:
     for package, extra in _EXTRA_OF.items():
         assert package in extras[extra], package
     assert not set(OPTIONAL) & extras["requirements"]
-    assert len(OPTIONAL) == 4
+    assert len(OPTIONAL) == 3
 
 
 @pytest.mark.gl
@@ -100,7 +100,7 @@ print(len(parts), len(hulls))
 
 
 SENTENCES = {
-    "baking light needs embreex, which is not installed: pip install 'sailenv_ros[bake]'": """
+    "baking light needs xatlas, which is not installed: pip install 'sailenv_ros[bake]'": """
 from sailenv_ros.light.bake.pipeline import bake
 from tests.support.bake_scenes import ground, still
 from tests.support.tiny_scenes import Thing

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
+from sailenv_ros.rays.scene_geometry import SceneGeometry
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.labels import CategoryTable

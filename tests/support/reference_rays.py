@@ -1,16 +1,11 @@
-"""Reference implementation of the ray kernels in plain NumPy; see `reference_kernels`.
-
-Every ray is held against every triangle, without a tree: right, and slow.
-"""
+"""What rays meet, in plain NumPy: every ray is held against every triangle, without a tree."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree
-
-__all__ = ["build_tree", "cast_rays"]
+from sailenv_ros.native.ray_kernels import RayHits
 
 EDGE = 1e-9
 """Tolerance beside a triangle, in its own coordinates, within which a ray still hits its edge."""
@@ -18,27 +13,20 @@ EDGE = 1e-9
 Doubles = NDArray[np.float64]
 
 
-def build_tree(corners: Doubles) -> TriangleTree:
-    """Return one leaf of all triangles."""
-    count = len(corners)
-    flat = corners.reshape(-1, 3) if count else np.zeros((1, 3))
-    bounds = np.concatenate([flat.min(axis=0), flat.max(axis=0)])[None]
-    return TriangleTree(bounds, np.array([[0, count]], np.int32), np.arange(count, dtype=np.int32))
-
-
 def cast_rays(
-    models: RayModels,
+    models: list[tuple[Doubles, NDArray[np.bool_]]],
     model_from_world: Doubles,
     model_of_instance: NDArray[np.int32],
     origins: Doubles,
     directions: Doubles,
     nearest: Doubles,
-    *,
-    threads: int,
 ) -> RayHits:
-    """Find what rays meet first; see `native.ray_kernels`.
+    """Find what rays meet first; see `native.ray_kernels.cast_rays`.
 
-    Of equal distances the lower instance and the lower triangle win.
+    Parameters
+    ----------
+    models : list of tuple
+        (T, 3, 3) corners of each model's triangles, and which of them have two sides.
     """
     rays = len(origins)
     hits = RayHits(
@@ -47,18 +35,38 @@ def cast_rays(
         triangle=np.full(rays, -1, np.int64),
         weights=np.zeros((rays, 2)),
     )
+    firsts = np.concatenate([[0], np.cumsum([len(corners) for corners, _ in models])])
     for instance, m in enumerate(model_from_world):
         o = [r[0] * origins[:, 0] + r[1] * origins[:, 1] + r[2] * origins[:, 2] + r[3] for r in m]
         d = [r[0] * directions[:, 0] + r[1] * directions[:, 1] + r[2] * directions[:, 2] for r in m]
-        model = model_of_instance[instance]
-        for triangle in range(models.first_triangle[model], models.first_triangle[model + 1]):
-            both = bool(models.two_sided[triangle])
-            distance, second, third = _meet(o, d, models.corners[triangle], both)
+        corners, two_sided = models[model_of_instance[instance]]
+        for number, triangle in enumerate(corners):
+            distance, second, third = _meet(o, d, triangle, bool(two_sided[number]))
             met = (distance > nearest) & (distance < hits.distance)
             hits.distance[met] = distance[met]
-            hits.instance[met], hits.triangle[met] = instance, triangle
+            hits.instance[met] = instance
+            hits.triangle[met] = firsts[model_of_instance[instance]] + number
             hits.weights[met] = np.stack([second, third], axis=-1)[met]
     return hits
+
+
+def glazing_transmittance(cosine: NDArray[np.floating]) -> Doubles:
+    """Return how much light clear double glazing lets through: 0.85 of what meets it head-on.
+
+    Fresnel's equations for an index of 1.5, both polarisations alike, with all that goes to and
+    fro between the two faces of each of the two sheets.
+
+    Parameters
+    ----------
+    cosine : (R,) float
+        Of the angle between the ray and the pane's normal, 0 to 1.
+    """
+    c = np.asarray(cosine, np.float64)
+    inside = np.sqrt(1.0 - (1.0 - np.square(c)) / 1.5**2)
+    across = (c - 1.5 * inside) / (c + 1.5 * inside)
+    along = (1.5 * c - inside) / (1.5 * c + inside)
+    mirrored = 0.5 * (np.square(across) + np.square(along))
+    return np.asarray(np.square((1.0 - mirrored) / (1.0 + mirrored)))
 
 
 def _meet(

@@ -45,7 +45,7 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
 
 def test_importing_the_simulation_leaves_out_what_few_need() -> None:
     """Libraries of geometry, of models and of notebooks are imported where they are used."""
-    few = ("scipy", "trimesh", "numba", "moderngl", "xatlas", "embreex", "IPython", "aiohttp")
+    few = ("scipy", "trimesh", "numba", "moderngl", "xatlas", "IPython", "aiohttp")
     code = "import sys, sailenv_ros; sailenv_ros.Simulation; "
     assert run(code + f"print([m for m in {few!r} if m in sys.modules])") == "[]"
 

@@ -19,7 +19,7 @@ from sailenv_ros.frame.motion.frame_state import (
     frame_state_of,
     require_common_past,
 )
-from sailenv_ros.frame.motion.scene_geometry import SceneGeometry
+from sailenv_ros.rays.scene_geometry import SceneGeometry
 
 __all__ = ["ObjectPoints", "Tracks", "track"]
 

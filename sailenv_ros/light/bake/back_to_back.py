@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.static_geometry import StaticGeometry
+from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["BackToBack", "back_to_back_faces"]
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.static_geometry import StaticGeometry
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.native.texel_kernels import denoise_texels, dilate_texels, texel_stand_ins
+from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["denoised", "dilated", "stand_ins"]
 

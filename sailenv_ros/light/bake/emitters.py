@@ -12,8 +12,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.static_geometry import StaticGeometry
 from sailenv_ros.light.bake.texels import Texels
+from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["emitters_of"]
 

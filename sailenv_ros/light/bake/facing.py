@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
-from sailenv_ros.light.bake.rays import RayScene, in_chunks
-from sailenv_ros.light.bake.static_geometry import StaticGeometry
 from sailenv_ros.light.bake.texels import Texels
+from sailenv_ros.light.bake.worker_pool import in_chunks
+from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["facing_the_light"]
 

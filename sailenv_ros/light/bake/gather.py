@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from sailenv_ros.light.bake.back_to_back import BackToBack
 from sailenv_ros.light.bake.direct import Points
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
-from sailenv_ros.light.bake.rays import NEVER, Hits, RayScene
 from sailenv_ros.native.bake_types import Emitters, LitPoints, MappedTriangles, SkyWindows
 from sailenv_ros.native.gather_kernels import (
     emitter_rays,
@@ -26,7 +25,9 @@ from sailenv_ros.native.gather_kernels import (
     sky_by_choice,
     weights_within_cones,
 )
+from sailenv_ros.native.ray_kernels import LightHits
 from sailenv_ros.native.surface_light import add_radiance_met, mean_radiance_met, met_texels
+from sailenv_ros.rays.light_rays import NEVER, RayScene
 
 __all__ = ["BACK", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
 
@@ -83,15 +84,13 @@ class Surroundings:
         clear[out] = self.scene.transmittance(origins[out], directions[out], never)
         return clear
 
-    def texels_hit(self, hits: Hits, directions: Floats) -> NDArray[np.int32]:
+    def texels_hit(self, hits: LightHits, directions: Floats) -> NDArray[np.int32]:
         """Return (R,) int32: the texel that each ray met, `NOTHING` or `BACK`."""
         triangles = MappedTriangles(
             self.faces, self.two_sided, self.paired.other, self.paired.corner, self.places,
             self.index,
         )  # fmt: skip
-        triangle = np.ascontiguousarray(hits.triangle)
-        second, third = (np.ascontiguousarray(weight) for weight in (hits.second, hits.third))
-        return met_texels(triangles, triangle, second, third, directions)
+        return met_texels(triangles, hits.triangle, hits.second, hits.third, directions)
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

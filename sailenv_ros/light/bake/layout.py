@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.packing import packed
 from sailenv_ros.light.bake.settings import BakeSettings
-from sailenv_ros.light.bake.static_geometry import StaticGeometry, StaticInstance
 from sailenv_ros.light.bake.unwrap import Chart, unwrapped
+from sailenv_ros.rays.static_geometry import StaticGeometry, StaticInstance
 from sailenv_ros.types.baked_light import LightChart
 from sailenv_ros.types.model import Model
 

@@ -30,18 +30,18 @@ from sailenv_ros.light.bake.light_probes import (
     straight_light,
 )
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
-from sailenv_ros.light.bake.rays import NEVER, RayScene
 from sailenv_ros.light.bake.reflectance import albedo_of, emission_of, glow_of
 from sailenv_ros.light.bake.sampling import tile_shift
 from sailenv_ros.light.bake.settings import BakeSettings, drafted
 from sailenv_ros.light.bake.sky import panes
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.solving import Samples, SolvedLight, Solver, Stages
-from sailenv_ros.light.bake.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.light.bake.sun_edges import sun_edges
 from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
+from sailenv_ros.rays.light_rays import NEVER, RayScene
+from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
-from sailenv_ros.light.bake.static_geometry import StaticGeometry
 from sailenv_ros.light.bake.texels import Texels
+from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material
 

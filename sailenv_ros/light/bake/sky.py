@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.static_geometry import StaticGeometry, StaticInstance
+from sailenv_ros.rays.static_geometry import StaticGeometry, StaticInstance
 
 __all__ = ["panes"]
 

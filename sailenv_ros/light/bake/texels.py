@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.layout import Layout
-from sailenv_ros.light.bake.static_geometry import StaticGeometry
 from sailenv_ros.native.bake_types import TexelMap
 from sailenv_ros.native.texel_kernels import cover_texels
+from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["Texels", "off_the_edges", "rasterised"]
 

@@ -17,15 +17,16 @@ from sailenv_ros.light.bake.bounces import patches_of
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
-from sailenv_ros.light.bake.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.light.bake.texels import Texels, rasterised
-from sailenv_ros.light.relight.ray_shapes import Shape, shape_of, tree_over
+from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
+from sailenv_ros.rays.light_rays import glass_of
+from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
-__all__ = ["BakedScene", "Panes", "TexelPatches", "albedo_of_model"]
+__all__ = ["BakedScene", "TexelPatches", "albedo_of_model"]
 
 Floats = NDArray[np.float32]
 
@@ -68,15 +69,6 @@ class TexelPatches:
         return (sums / self.size).astype(np.float32)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Panes:
-    """Glass of what stands still, in the world frame: a tree, (G, 9) triangles, (G,) shares."""
-
-    nodes: NDArray[np.void]
-    triangles: Floats
-    passes: Floats
-
-
 class BakedScene:
     """Bake in the form that relighting needs; arrays are read-only by agreement.
 
@@ -106,7 +98,8 @@ class BakedScene:
     brightest : float
         Bounced light of all layers that nine patches of ten do not exceed.
     materials : tuple of Material
-    panes : Panes or None
+    panes : tuple
+        Glass of what stands still; see `glass_of`.
     sky : (H, 2 H, 3) float32
     """
 
@@ -122,7 +115,7 @@ class BakedScene:
         geometry = static_geometry_of(_as_baked(baked, contents, tuple(self.drawn.values())))
         self.materials = geometry.materials
         self._lay_out(geometry)
-        self.panes = _panes(geometry)
+        self.panes = glass_of(geometry)
         self.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
         with ThreadPoolExecutor(max(threads, 1)) as pool:
             list(pool.map(self.shape, self.drawn))
@@ -291,19 +284,3 @@ def _look(material: Material) -> tuple[Floats, Floats]:
     if texture is not None and emission.any():
         emission = (emission * pattern).astype(np.float32)
     return np.clip(albedo, 0.0, 0.95).astype(np.float32), emission
-
-
-def _panes(geometry: StaticGeometry) -> Panes | None:
-    glass = np.flatnonzero(~geometry.solid & (geometry.passes < 1.0))
-    if not len(glass):
-        return None
-    triangles = geometry.corners[glass]
-    nodes, order = tree_over(triangles)
-    triangles = triangles[order]
-    edges = np.concatenate(
-        [triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]],
-        axis=1,
-    )
-    return Panes(
-        nodes, np.ascontiguousarray(edges), np.ascontiguousarray(geometry.passes[glass][order])
-    )

@@ -18,7 +18,7 @@ from sailenv_ros.light.relight.scene_changes import (
     placed_instances,
     ray_instances,
 )
-from sailenv_ros.native.ray_tracing import build_box_tree
+from sailenv_ros.native.ray_kernels import build_tree
 from sailenv_ros.native.ray_types import RAY_SCENE
 from sailenv_ros.native.render_types import address, record
 
@@ -72,18 +72,17 @@ def ray_world(
         for thing in placed_instances(scene, change, radiance_of(change))
     ]
     rows, boxes = ray_instances(resting)
-    nodes, order = build_box_tree(boxes) if len(rows) else (None, None)
+    nodes, order = build_tree(boxes, 1)
     changed_rows, _ = ray_instances(changed)
-    panes = scene.panes
+    panes, passes = scene.panes
     made = record(
         RAY_SCENE,
         nodes_at=address(nodes),
         order_at=address(order),
         resting_at=address(rows),
         changed_at=address(changed_rows),
-        glass_nodes_at=address(None if panes is None else panes.nodes),
-        glass_at=address(None if panes is None else panes.triangles),
-        passes_at=address(None if panes is None else panes.passes),
+        glass_at=address(panes.record),
+        passes_at=address(passes),
         sky_at=address(scene.sky),
         patches_at=address(scene.patches.of_map),
         before_at=address(before),
@@ -91,11 +90,11 @@ def ray_world(
         changed_count=len(changed_rows),
         patch_count=len(before),
         resting_count=len(rows),
-        glass_count=0 if panes is None else len(panes.triangles),
         sky_height=scene.sky.shape[0],
         sky_width=scene.sky.shape[1],
         height=scene.side,
         width=scene.side,
         channels=before.shape[1],
     )
-    return RayWorld(made, changed, (resting, rows, nodes, order, changed_rows, before, after))
+    kept = (scene, resting, rows, nodes, order, changed_rows, before, after)
+    return RayWorld(made, changed, kept)

@@ -311,12 +311,10 @@ class _Relighting:
         """Return which points lie in the box of something that changes: nothing is known there."""
         inside = np.zeros(len(points), bool)
         for thing in self._world.changed:
-            if not thing.shape.kept:
-                continue
-            root = thing.shape.kept[0][0]
+            tree = thing.shape.tree
             inverse = invert(thing.pose)
             own = points @ inverse[:3, :3].T + inverse[:3, 3]
-            inside |= ((own > root["low"]) & (own < root["high"])).all(axis=1)
+            inside |= ((own > tree.low) & (own < tree.high)).all(axis=1)
         return inside
 
     def _of_probes(self, probes: Floats, points: Floats, normals: Floats) -> Floats:

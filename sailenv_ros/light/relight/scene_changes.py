@@ -68,13 +68,13 @@ def placed_instances(
     return things
 
 
-def ray_instances(things: list[PlacedInstance]) -> tuple[NDArray[np.void], NDArray[np.float32]]:
-    """Return (N,) RAY_INSTANCE, and (N, 6) float32 boxes around them; `things` keeps the memory."""
+def ray_instances(things: list[PlacedInstance]) -> tuple[NDArray[np.void], NDArray[np.float64]]:
+    """Return (N,) RAY_INSTANCE, and (N, 6) float64 boxes around them; `things` keeps the memory."""
     rows = np.zeros(len(things), RAY_INSTANCE)
-    boxes = np.zeros((len(things), 6), np.float32)
+    boxes = np.zeros((len(things), 6))
     for row, box, thing in zip(rows, boxes, things, strict=True):
         shape, pose = thing.shape, thing.pose
-        row["shape_at"] = address(shape.record)
+        row["shape_at"] = address(shape.tree.record)
         row["radiance_at"] = address(thing.radiance)
         row["body_from_world"] = invert(pose)[:3].reshape(-1)
         centre = pose[:3, :3] @ shape.centre + pose[:3, 3]
@@ -90,10 +90,6 @@ def ray_instances(things: list[PlacedInstance]) -> tuple[NDArray[np.void], NDArr
 def _box(
     shape: Shape, pose: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if not shape.kept:
-        return pose[:3, 3], pose[:3, 3]
-    root = shape.kept[0][0]
-    low, high = root["low"].astype(np.float64), root["high"].astype(np.float64)
-    middle = pose[:3, :3] @ ((low + high) / 2.0) + pose[:3, 3]
-    half = np.abs(pose[:3, :3]) @ ((high - low) / 2.0) + 1e-4
+    middle = pose[:3, :3] @ shape.centre + pose[:3, 3]
+    half = np.abs(pose[:3, :3]) @ ((shape.tree.high - shape.tree.low) / 2.0) + 1e-4
     return middle - half, middle + half

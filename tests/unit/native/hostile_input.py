@@ -30,11 +30,11 @@ from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points, transform_points
 from sailenv_ros.native.picture_kernels import make_picture
-from sailenv_ros.native.ray_kernels import RayModels, build_tree, cast_rays
-from sailenv_ros.native.ray_tracing import build_box_tree
+from sailenv_ros.native.ray_kernels import build_tree, cast_rays, light_hits, light_share
 from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.native.texel_kernels import cover_texels
+from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
@@ -124,24 +124,23 @@ def drive_rays() -> None:
     """Triangles without area, rays without direction, transforms that are no numbers."""
     rng = np.random.default_rng(3)
     huge = rng.choice(np.array((0.0, 1e300, -1e300, 1e-300, 1.0)), (5000, 3, 3))
-    for corners in (huge, huge[:1], np.zeros((9, 3, 3))):
-        tree = build_tree(corners)
-        models = RayModels(
-            corners=corners,
-            two_sided=np.ones(len(corners), np.bool_),
-            first_triangle=np.array([0, len(corners)]),
-            first_node=np.array([0, len(tree.bounds)]),
-            tree=tree,
-        )
-        wild = np.array(NUMBERS)
+    wild = np.array(NUMBERS)
+    for corners in (huge, huge[:1], np.zeros((9, 3, 3)), np.zeros((0, 3, 3))):
+        tree = triangle_tree(corners, np.ones(len(corners), np.bool_))
+        with np.errstate(over="ignore", invalid="ignore"):
+            solid = triangle_tree(np.clip(corners, -3e38, 3e38).astype(np.float32))
+        passes = in_leaves(np.ones(len(corners), np.float32), solid.order)
         for count in (0, 1, 500):
             rays = [rng.choice(wild, (count, 3)) for _ in range(2)]
             transforms = rng.choice(wild, (3, 3, 4))
-            cast_rays(
-                *(models, transforms, np.zeros(3, np.int32), *rays),
-                rng.choice(wild, count),
-                threads=THREADS[1],
-            )
+            over = build_tree(rng.choice((-1e300, 0.0, 1e300), (3, 6)), 1)
+            nearest = rng.choice(wild, count)
+            instances = over, transforms, np.zeros(3, np.int32)
+            cast_rays(tree.record, instances, *rays, nearest, threads=THREADS[1])
+            with np.errstate(over="ignore"):
+                floats = [np.asarray(array, np.float32) for array in (*rays, nearest)]
+            light_hits(solid.record, *floats[:2], threads=THREADS[1])
+            light_share(solid.record, (solid.record, passes), *floats, threads=THREADS[1])
 
 
 def drive_ambient_visibility() -> None:
@@ -232,7 +231,7 @@ def drive_sensor() -> None:
 def drive_relighting() -> None:
     """Things at places that are no places, triangles without area, lights within walls."""
     for boxes in (1, 5, 17, 300):
-        build_box_tree(np.zeros((boxes, 6), np.float32))
+        build_tree(np.zeros((boxes, 6)), 1)
     rng = np.random.default_rng(4)
     for side in (1, 8, 65):
         wild = rng.choice(np.array(NUMBERS, np.float32), (40, 3, 2))

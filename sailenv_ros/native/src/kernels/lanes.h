@@ -110,6 +110,20 @@ LANES_INLINE bool any(i8 mask) {
     return r != 0;
 #endif
 }
+// One bit for each lane of a mask.
+LANES_INLINE uint32_t lane_bits(i8 mask) {
+#if defined(__AVX__)
+    return static_cast<uint32_t>(_mm256_movemask_ps((__m256)mask));
+#elif defined(__SSE2__)
+    __m128 halves[2];
+    memcpy(halves, &mask, sizeof mask);
+    return static_cast<uint32_t>(_mm_movemask_ps(halves[0]) | _mm_movemask_ps(halves[1]) << 4);
+#else
+    uint32_t r = 0;
+    for (int k = 0; k < 8; k++) r |= static_cast<uint32_t>(mask[k] != 0) << k;
+    return r;
+#endif
+}
 LANES_INLINE f8 mix8(f8 a, f8 b, f8 share) { return a + (b - a) * share; }
 
 // Logarithm to base 2 of positive numbers, to 1e-4: the exponent and a quartic of the rest.

@@ -23,7 +23,7 @@ static inline float scatter(uint32_t x) {
 static inline bool meet_both(const RayScene& s, const Ray& r, Hit& before, Hit& after) {
     for (int64_t k = 0; k < s.changed_count; k++) {
         const RayInstance& i = s.changed[k];
-        if (!comes_near(i, r, ENDLESS)) continue;
+        if (!ray_passes_ball(i, r, ENDLESS)) continue;
         if (i.before) meet_instance(i, r, before);
         if (i.after) meet_instance(i, r, after);
     }
@@ -56,12 +56,12 @@ static inline Stopped stopped(const RayScene& s, const Ray& r, float length, boo
     for (int64_t k = 0; k < s.changed_count; k++) {
         const RayInstance& i = s.changed[k];
         if ((i.before ? by_before : true) && (i.after ? by_after : true)) continue;
-        if (!comes_near(i, r, length) || !stops_instance(i, r, length)) continue;
+        if (!ray_passes_ball(i, r, length) || !instance_occludes(i, r, length)) continue;
         by_before |= i.before != 0;
         by_after |= i.after != 0;
     }
     if (!whole && !by_before && !by_after) return {false, false, false};
-    const bool rest = (by_before && by_after) ? true : stops_resting(s, r, length);
+    const bool rest = (by_before && by_after) ? true : resting_occlude(s, r, length);
     return {by_before != by_after && !rest, by_before || rest, by_after || rest};
 }
 
@@ -78,7 +78,7 @@ static inline bool comes_between(const RayScene& s, const RayLight& l, const flo
     const Ray r = ray_of(p, towards);
     const float length = l.kind == LIGHT_DIRECTIONAL ? ENDLESS : 1.0f;
     for (int64_t k = 0; k < s.changed_count; k++) {
-        if (comes_near(s.changed[k], r, length, reach_of)) return true;
+        if (ray_passes_ball(s.changed[k], r, length, reach_of)) return true;
     }
     return false;
 }
@@ -113,7 +113,7 @@ static inline DirectLightDelta direct_light_delta(const RayScene& s, const RayLi
         result.touched |= way.touched;
         const float freed = static_cast<float>(way.before) - static_cast<float>(way.after);
         if (freed == 0.0f && (!whole || way.after)) continue;
-        const float clear = l.kind == LIGHT_DIRECTIONAL ? through_panes(s, r) : 1.0f;
+        const float clear = l.kind == LIGHT_DIRECTIONAL ? glass_transmittance(s, r) : 1.0f;
         result.change += freed * power * clear;
         result.share_change += freed * each * clear;
         if (!way.after) {

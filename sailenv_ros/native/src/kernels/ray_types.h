@@ -7,22 +7,25 @@
 
 namespace sailenv {
 
-// A box of a tree. An inner node has two children, `first` and the one behind it; a leaf has
-// `count` things from `first` on.
+constexpr int32_t WIDTH = 8;  // children of a node, and triangles of a leaf
+
+// A node of a tree: eight boxes in floats, rounded outward, and what is in each: the number of a
+// node, ~n for the n-th leaf, or 0 for nothing.
 struct TreeNode {
-    float low[3];
-    int32_t first;
-    float high[3];
-    int32_t count;
+    float planes[6][WIDTH];  // low x, y, z, high x, y, z
+    int32_t children[WIDTH];
 };
 
-// The opaque triangles of a model in its scaled body frame, in the order of the tree's leaves.
+// The opaque triangles of a model in its scaled body frame, in the order of the tree's leaves,
+// WIDTH to each leaf. Where a leaf has fewer, triangles without area stand.
 struct RayShape {
     const TreeNode* nodes;
-    const float* triangles;    // (T, 9): a corner, and the two edges from it
-    const float* places;       // (T, 6): of the corners in the model's chart, 0 to 1; or null
-    const uint8_t* two_sided;  // (T,)
+    const void* triangles;     // (leaves, 9, WIDTH) float or double: a corner, two edges from it
+    const int32_t* order;      // (leaves, WIDTH): which of the model's triangles; -1 for none
+    const float* places;       // (leaves, WIDTH, 6): of the corners in the model's chart; or null
+    const uint8_t* two_sided;  // (leaves, WIDTH)
     int64_t count;
+    int64_t first_triangle;  // of the model, where several models' are counted on
 };
 
 struct RayInstance {
@@ -38,19 +41,17 @@ struct RayInstance {
 
 // What rays may meet, before and after a change.
 struct RayScene {
-    const TreeNode* nodes;        // over `order`
-    const int32_t* order;         // into `resting`
-    const RayInstance* resting;   // stand there before and after
-    const RayInstance* changed;   // do not
-    const TreeNode* glass_nodes;  // or null
-    const float* glass;           // (G, 9), as `triangles`, world
-    const float* passes;          // (G,): share that each lets through
-    const float* sky;             // (sky_height, sky_width, 3)
-    const int32_t* patches;       // (height, width): of each texel, -1 for none
-    const float* before;          // (patches, channels): radiance
+    const TreeNode* nodes;       // over `order`
+    const int32_t* order;        // into `resting`
+    const RayInstance* resting;  // stand there before and after
+    const RayInstance* changed;  // do not
+    const RayShape* glass;       // world; or null
+    const float* passes;         // (leaves, WIDTH): share that each pane lets through
+    const float* sky;            // (sky_height, sky_width, 3)
+    const int32_t* patches;      // (height, width): of each texel, -1 for none
+    const float* before;         // (patches, channels): radiance
     const float* after;
-    int64_t changed_count, patch_count;
-    int32_t resting_count, glass_count;
+    int64_t changed_count, patch_count, resting_count;
     int32_t sky_height, sky_width;
     int32_t height, width;
     int32_t channels, padding;

@@ -18,7 +18,7 @@ constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* table, float weight,
               float* sum) {
     if (hit.triangle < 0) {
-        const float share = weight * through_panes(s, r);
+        const float share = weight * glass_transmittance(s, r);
         double sky[3];
         picture_radiance(s.sky, s.sky_height, s.sky_width, r.d, sky);
         for (int c = 0; c < 3; c++) sum[c] += share * static_cast<float>(sky[c]);

@@ -132,8 +132,8 @@ void light_from_bake(const Shading& s, Chunk& c) {
                                               place.x, place.y, place.near);
                 past = mapped ? share : light.main_clear * standing;
             }
-            arrives = past * lit_share(light.shadow.inverse_depth, light.shadow_size, place.x, place.y,
-                                       place.near);
+            arrives = past * lit_share(light.shadow.inverse_depth, light.shadow_size, place.x,
+                                       place.y, place.near);
         }
         store(c.arrives + i, arrives);
     }

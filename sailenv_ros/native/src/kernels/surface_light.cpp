@@ -60,8 +60,8 @@ void mean_of_sources(const int32_t* sources, int64_t rays, int64_t patches, cons
 }  // namespace
 }  // namespace sailenv
 
-// Which texel each ray met, NOTHING or BACK. triangle, second, third: (rays,), as in bake/rays.py;
-// directions: (rays, 3). Result: found: (rays,).
+// Which texel each ray met, NOTHING or BACK. triangle, second, third: (rays,), as in
+// rays/light_rays.py; directions: (rays, 3). Result: found: (rays,).
 SAILENV_KERNEL(met_texels)
 (const sailenv::MappedTriangles* map, int64_t rays, const int32_t* triangle, const float* second,
  const float* third, const float* directions, int32_t* found) {

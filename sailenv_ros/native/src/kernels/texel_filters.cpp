@@ -54,7 +54,8 @@ bool for_neighbours(const TexelMap& map, int64_t count, const int32_t* unknown,
 }  // namespace sailenv
 
 // Averages over tiles of 4 by 4 texels, twice; over less where other things are near. values:
-// (count, channels); valid, inverse_depth: (count,). Result: result, (count, channels), of valid texels.
+// (count, channels); valid, inverse_depth: (count,). Result: result, (count, channels), of valid
+// texels.
 SAILENV_KERNEL(denoise_texels)
 (int64_t threads, const sailenv::TexelMap* texels, int64_t channels, const float* values,
  const uint8_t* valid, const float* inverse_depth, float* result) {

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros.light.bake.pipeline import bake
-from sailenv_ros.light.bake.rays import through_glass
 from sailenv_ros.light.bake.returned_light import BELOW, GLOSS, returned
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light, SkyMap
 from tests.support.bake_scenes import COARSE, DARK, ground, hollow, read, still
+from tests.support.reference_rays import glazing_transmittance
 from tests.support.tiny_scenes import Thing, box_mesh, mesh_of, model_of, wall_mesh
 
 
@@ -251,7 +251,7 @@ def test_a_window_gives_its_form_factor() -> None:
     spots = np.stack(np.meshgrid([h], grid, grid), axis=-1).reshape(-1, 3)
     offset = spots[None] - points[floor][:, None]
     d2 = (offset**2).sum(axis=2)
-    clear = through_glass(offset[..., 0] / np.sqrt(d2))
+    clear = glazing_transmittance(offset[..., 0] / np.sqrt(d2))
     factors = (clear * offset[..., 2] * offset[..., 0] / d2**2).mean(axis=1)
     expected = 0.9 * factors * (2 * w) ** 2 / math.pi
     np.testing.assert_allclose(bounced[floor][:, 0], expected, rtol=0.06, atol=1e-3)
@@ -263,7 +263,7 @@ def test_what_moves_is_told_how_much_glass_lets_through() -> None:
         Light(name=f"sun {x}", type="directional", direction=(x, 0.0, -0.2)) for x in (-1.0, 1.0)
     ]
     baked = bake(still(with_a_window(1.0, 0.4), lights=suns), settings=COARSE)
-    passes = 0.9 * float(through_glass(np.float32([1.0 / math.hypot(1.0, 0.2)]))[0])
+    passes = 0.9 * float(glazing_transmittance(np.float32([1.0 / math.hypot(1.0, 0.2)]))[0])
     assert [layer.clear for layer in baked.layers] == pytest.approx([1.0, passes, 1.0], abs=1e-4)
 
 

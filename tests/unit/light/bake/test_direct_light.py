@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros.light.bake.pipeline import bake
-from sailenv_ros.light.bake.rays import through_glass
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from tests.support.bake_scenes import COARSE, ground, read, still
+from tests.support.reference_rays import glazing_transmittance
 from tests.support.tiny_scenes import Thing, box_mesh, model_of
 
 FLOOR = Thing(ground(4.0))
@@ -156,12 +156,14 @@ def _floor_places(baked: BakedLight, side: int) -> tuple[np.ndarray, np.ndarray]
 def test_double_glazing_mirrors_what_the_equations_say() -> None:
     """Four faces of 4 % head-on, with what goes to and fro; nothing passes along the pane."""
     sheet = (1.0 - 0.04) / (1.0 + 0.04)
-    assert through_glass(np.float32([1.0, 0.0])) == pytest.approx([sheet**2, 0.0], abs=1e-6)
+    assert glazing_transmittance(np.float32([1.0, 0.0])) == pytest.approx([sheet**2, 0.0], abs=1e-6)
     # At Brewster's angle one polarisation is not mirrored at all, the other by cos²(2 angle).
     brewster = math.atan(1.5)
     mirrored = 0.5 * math.cos(2 * brewster) ** 2
     sheet = (1.0 - mirrored) / (1.0 + mirrored)
-    assert through_glass(np.float32([math.cos(brewster)])) == pytest.approx([sheet**2], abs=1e-5)
+    assert glazing_transmittance(np.float32([math.cos(brewster)])) == pytest.approx(
+        [sheet**2], abs=1e-5
+    )
 
 
 @pytest.mark.parametrize(("alpha", "share"), [("blend", 0.75), ("opaque", 0.0)])
@@ -173,7 +175,7 @@ def test_glass_lets_light_pass(alpha: str, share: float) -> None:
     points, direct = direct_on_floor(sun, things=(pane,))
     behind = points[:, 0] < 1.9
     cosine = math.sqrt(0.5)
-    share *= float(through_glass(np.float32([cosine]))[0])
+    share *= float(glazing_transmittance(np.float32([cosine]))[0])
     np.testing.assert_allclose(direct[behind], share * cosine / math.pi, atol=2e-3)
 
 

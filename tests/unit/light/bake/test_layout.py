@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.layout import laid_out
 from sailenv_ros.light.bake.packing import packed
-from sailenv_ros.light.bake.static_geometry import static_geometry_of
 from sailenv_ros.light.bake.texels import rasterised
 from sailenv_ros.light.bake.unwrap import unwrapped
+from sailenv_ros.rays.static_geometry import static_geometry_of
 from sailenv_ros.types.geometry import Pose
 from tests.support.bake_scenes import COARSE, ground, still
 from tests.support.tiny_scenes import Thing, box_mesh, mesh_of, model_of, wall_mesh

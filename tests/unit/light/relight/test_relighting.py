@@ -12,7 +12,6 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.native.ray_tracing import build_box_tree
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
@@ -182,23 +181,6 @@ def test_a_thing_moved_before_a_panel_gets_all_its_light(scene: BakedScene) -> N
     direct = got.layers[2].direct.reshape(-1)[scene.places[facing]]
     assert direct.size > 10
     np.testing.assert_allclose(direct.astype(float), 1.0, atol=0.05)
-
-
-def test_a_tree_holds_every_box_once() -> None:
-    """Also of boxes in one place; each box lies in its leaf and all above it."""
-    rng = np.random.default_rng(0)
-    low = rng.uniform(-1, 1, (500, 3))
-    boxes = np.concatenate([low, low + rng.uniform(0, 0.2, (500, 3))], axis=1).astype(np.float32)
-    boxes[100:300] = boxes[100]
-    nodes, order = build_box_tree(boxes)
-    assert sorted(order) == list(range(500))
-    held = np.zeros(500, int)
-    for node in nodes[nodes["count"] > 0]:
-        chosen = order[node["first"] : node["first"] + node["count"]]
-        held[chosen] += 1
-        assert (boxes[chosen, :3] >= node["low"]).all()
-        assert (boxes[chosen, 3:] <= node["high"]).all()
-    assert (held == 1).all()
 
 
 BLUE = Thing(hollow((6.0, 6.0, 3.0), base_colour=(0.15, 0.35, 0.7, 1.0)), ROOM.pose)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.masks import is_mostly_there
-from sailenv_ros.types.model import Material, Mesh, Model
+from sailenv_ros.rays.model_triangles import ModelTriangles, joined, triangles_of
+from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["StaticGeometry", "StaticInstance", "static_geometry_of"]
@@ -95,72 +95,51 @@ class StaticGeometry:
 
 def static_geometry_of(snapshot: WorldSnapshot) -> StaticGeometry:
     """Gather what stands still in a snapshot."""
+    gathered: dict[int, ModelTriangles] = {}
     instances: list[StaticInstance] = []
+    pieces: list[ModelTriangles] = []
+    corners, normals, material = [], [], []
     materials: list[Material] = []
-    pieces: list[_Piece] = []
     count = 0
     for drawn, pose in zip(snapshot.contents.instances, snapshot.world_from_body, strict=True):
-        if not drawn.is_baked or not drawn.model.triangle_count:
+        model = drawn.model
+        if not drawn.is_baked or not model.triangle_count:
             continue
-        instance = StaticInstance(
-            id=drawn.instance.id,
-            model=drawn.model,
-            scale=drawn.scale,
-            world_from_body=pose,
-            first_triangle=count,
+        if id(model) not in gathered:
+            gathered[id(model)] = triangles_of(model)
+        own = gathered[id(model)]
+        scale, rotation = np.asarray(drawn.scale, np.float64), pose[:3, :3]
+        corners.append((own.corners * scale) @ rotation.T + pose[:3, 3])
+        turned = (own.normals / scale) @ rotation.T
+        length = np.linalg.norm(turned, axis=2, keepdims=True)
+        normals.append(turned / np.maximum(length, 1e-12))
+        material.append(own.part + len(materials))
+        materials += own.materials
+        pieces.append(own)
+        instances.append(
+            StaticInstance(
+                id=drawn.instance.id,
+                model=model,
+                scale=drawn.scale,
+                world_from_body=pose,
+                first_triangle=count,
+            )
         )
-        for part in drawn.model.parts:
-            pieces.append(_Piece(instance, part.mesh, len(instances), len(materials)))
-            materials.append(part.material)
-            count += len(part.mesh.triangles)
-        instances.append(instance)
-    return _joined(tuple(instances), tuple(materials), pieces)
-
-
-class _Piece:
-    """One part of one instance in the world frame."""
-
-    def __init__(self, instance: StaticInstance, mesh: Mesh, owner: int, material: int) -> None:
-        scale = np.asarray(instance.scale, dtype=np.float64)
-        rotation = instance.world_from_body[:3, :3]
-        points = (mesh.positions * scale) @ rotation.T + instance.world_from_body[:3, 3]
-        normals = (mesh.normals / scale) @ rotation.T
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        self.corners = points[mesh.triangles].astype(np.float32)
-        self.normals = (normals / np.maximum(length, 1e-12))[mesh.triangles].astype(np.float32)
-        self.uvs = mesh.uvs[mesh.triangles]
-        self.owner, self.material = owner, material
-
-
-def _joined(
-    instances: tuple[StaticInstance, ...], materials: tuple[Material, ...], pieces: list[_Piece]
-) -> StaticGeometry:
-    def join(name: str, shape: tuple[int, ...]) -> NDArray[np.float32]:
-        arrays = [getattr(piece, name) for piece in pieces]
-        return np.concatenate([np.zeros((0, *shape), np.float32), *arrays]).astype(np.float32)
-
-    corners = join("corners", (3, 3))
-    counts = [len(piece.corners) for piece in pieces]
-    faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        count += len(own.corners)
+    world = joined(corners, (3, 3))
+    faces = np.cross(world[:, 1] - world[:, 0], world[:, 2] - world[:, 0])
     faces /= np.maximum(np.linalg.norm(faces, axis=1, keepdims=True), 1e-20)
-    material = np.repeat([piece.material for piece in pieces], counts).astype(np.int32)
-    uvs = join("uvs", (3, 2))
-    passes = np.zeros(len(corners), dtype=np.float32)
-    for place, look in enumerate(materials):
-        if look.alpha == "blend":
-            passes[material == place] = 1.0 - look.base_colour[3]
-        elif look.alpha == "mask":
-            chosen = material == place
-            passes[chosen] = ~is_mostly_there(look, uvs[chosen])
+    passes = joined([piece.passes for piece in pieces], ())
+    owner = np.repeat(np.arange(len(pieces)), [len(piece.corners) for piece in pieces])
     return StaticGeometry(
-        instances=instances,
-        materials=materials,
-        corners=corners,
-        normals=join("normals", (3, 3)),
-        uvs=uvs,
+        instances=tuple(instances),
+        materials=tuple(materials),
+        corners=world,
+        normals=joined(normals, (3, 3)),
+        uvs=joined([piece.uvs for piece in pieces], (3, 2)),
         faces=faces.astype(np.float32),
-        owner=np.repeat([piece.owner for piece in pieces], counts).astype(np.int32),
-        material=material,
+        owner=owner.astype(np.int32),
+        material=np.concatenate([np.zeros(0, np.int32), *material]).astype(np.int32),
         solid=passes == 0.0,
         passes=passes,
     )

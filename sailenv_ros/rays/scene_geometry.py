@@ -18,7 +18,11 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.native.ray_kernels import RayHits, RayModels, TriangleTree, build_tree, cast_rays
+from sailenv_ros.native.ray_kernels import BoxTree, RayHits, build_tree, cast_rays
+from sailenv_ros.native.ray_types import RAY_SHAPE
+from sailenv_ros.rays.cutouts import surface_at
+from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.triangle_tree import TriangleTree, triangle_tree
 from sailenv_ros.space import RayCast
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.model import Material, Model
@@ -27,6 +31,7 @@ from sailenv_ros.types.snapshot import SceneContents
 __all__ = ["SceneGeometry", "SurfaceHits"]
 
 Doubles = NDArray[np.float64]
+_Placed = tuple[BoxTree, Doubles, NDArray[np.int32]]
 
 MOST_HOLES = 64
 """Surfaces with holes that one ray may pass."""
@@ -48,21 +53,25 @@ class SurfaceHits(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Triangles:
-    """One model's triangles with all that rays need.
+class _OpaqueModel:
+    """One model's triangles but those of glass, as rays meet them.
 
-    `skin` is the number in `masked` of each triangle's material, -1 for what has no holes.
+    `material` is the place in `materials` of each triangle's.
     """
 
     corners: Doubles
-    two_sided: NDArray[np.bool_]
     uvs: NDArray[np.float32]
-    skin: NDArray[np.int32]
-    masked: tuple[Material, ...]
+    material: NDArray[np.int32]
+    materials: tuple[Material, ...]
     tree: TriangleTree
 
+    @property
+    def masked(self) -> list[int]:
+        """Places in `materials` of what has holes."""
+        return [place for place, look in enumerate(self.materials) if look.alpha == "mask"]
 
-_kept: WeakKeyDictionary[Model, _Triangles] = WeakKeyDictionary()
+
+_kept: WeakKeyDictionary[Model, _OpaqueModel] = WeakKeyDictionary()
 
 
 class SceneGeometry:
@@ -128,9 +137,9 @@ class SceneGeometry:
         met = hits.instance >= 0
         normals = np.zeros((len(hits.distance), 3))
         # An instance's own axes to the world's: normals take the transpose of the way back.
-        corners = self._ray_models.corners[hits.triangle[met]]
+        corners = self._corners[hits.triangle[met]]
         own = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        turned = np.einsum("nji,nj->ni", placed[0][hits.instance[met], :, :3], own)
+        turned = np.einsum("nji,nj->ni", placed[1][hits.instance[met], :, :3], own)
         normals[met] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
         away = np.einsum("ni,ni->n", normals, directions) > 0.0
         normals[away] *= -1.0
@@ -145,23 +154,21 @@ class SceneGeometry:
 
     # -- inside ----------------------------------------------------------------------------
 
-    def _met(
-        self, placed: tuple[Doubles, NDArray[np.int32]], origins: Doubles, directions: Doubles
-    ) -> RayHits:
+    def _met(self, placed: _Placed, origins: Doubles, directions: Doubles) -> RayHits:
         """Return what rays meet first, holes passed; -1 is no instance."""
-        models, threads = self._ray_models, thread_count()
+        threads = thread_count()
         origins, directions = (
             np.ascontiguousarray(array, np.float64).reshape(-1, 3)
             for array in (origins, directions)
         )
         nearest = np.zeros(len(origins))
-        hits = cast_rays(models, *placed, origins, directions, nearest, threads=threads)
+        hits = cast_rays(self._shapes, placed, origins, directions, nearest, threads=threads)
         for _ in range(MOST_HOLES):
             open_ = np.flatnonzero(self._in_hole(hits))
             if not len(open_):
                 break
             again = cast_rays(
-                *(models, *placed, origins[open_], directions[open_]),
+                *(self._shapes, placed, origins[open_], directions[open_]),
                 hits.distance[open_],
                 threads=threads,
             )
@@ -169,107 +176,84 @@ class SceneGeometry:
             hits.instance[open_], hits.triangle[open_] = again.instance, again.triangle
         return hits
 
-    def _placed(self, states: InstanceStates) -> tuple[Doubles, NDArray[np.int32]]:
-        """Return model_from_world and the models' numbers."""
+    def _placed(self, states: InstanceStates) -> _Placed:
+        """Return a tree over the instances, model_from_world and the models' numbers."""
         unknown = [number for number in states.ids.tolist() if number not in self._model_of_id]
         if unknown:
             accepted = "among those of the geometry: take it from the scene as it is in the frames"
             raise InvalidRequest("instance id", unknown[0], accepted)
         numbers = np.array([self._model_of_id[key] for key in states.ids.tolist()], np.int32)
         result = np.empty((len(states), 3, 4))
-        rotation_t = np.swapaxes(states.matrices[:, :3, :3], 1, 2)
-        result[..., :3] = rotation_t / states.scales[..., None]
+        rotations, scales = states.matrices[:, :3, :3], states.scales
+        rotation_t = np.swapaxes(rotations, 1, 2)
+        result[..., :3] = rotation_t / scales[..., None]
         moved = np.einsum("nij,nj->ni", rotation_t, states.positions)
-        result[..., 3] = -moved / states.scales
-        return result, numbers
+        result[..., 3] = -moved / scales
+        low, high = self._bounds[numbers, 0], self._bounds[numbers, 1]
+        linear = rotations * scales[:, None, :]
+        middle = np.einsum("nij,nj->ni", linear, (low + high) / 2.0) + states.positions
+        half = np.einsum("nij,nj->ni", np.abs(linear), (high - low) / 2.0) * (1.0 + 1e-6)
+        boxes = np.concatenate([middle - half, middle + half], axis=1)
+        return build_tree(np.ascontiguousarray(boxes), 1), result, numbers
 
     @cached_property
-    def _parts(self) -> list[_Triangles]:
-        return [_triangles_of(model) for model in self._models]
+    def _opaque(self) -> list[_OpaqueModel]:
+        return [_opaque_model(model) for model in self._models]
 
     @cached_property
-    def _ray_models(self) -> RayModels:
-        parts = self._parts
-        corners = [part.corners for part in parts]
-        trees = [part.tree for part in parts]
-        return RayModels(
-            corners=np.concatenate([np.zeros((0, 3, 3)), *corners]),
-            two_sided=np.concatenate([np.zeros(0, bool), *(part.two_sided for part in parts)]),
-            first_triangle=np.array([0, *accumulate(map(len, corners))], np.int64),
-            first_node=np.array([0, *accumulate(len(t.bounds) for t in trees)], np.int64),
-            tree=TriangleTree(
-                np.concatenate([np.zeros((0, 6)), *(t.bounds for t in trees)]),
-                np.concatenate([np.zeros((0, 2), np.int32), *(t.children for t in trees)]),
-                np.concatenate([np.zeros(0, np.int32), *(t.order for t in trees)]),
-            ),
+    def _corners(self) -> Doubles:
+        return np.concatenate([np.zeros((0, 3, 3)), *(model.corners for model in self._opaque)])
+
+    @cached_property
+    def _firsts(self) -> NDArray[np.int64]:
+        """(S + 1,) where each model's triangles begin, and where the last one's end."""
+        return np.array([0, *accumulate(len(model.corners) for model in self._opaque)], np.int64)
+
+    @cached_property
+    def _shapes(self) -> NDArray[np.void]:
+        shapes = np.concatenate(
+            [np.zeros(0, RAY_SHAPE), *(model.tree.record for model in self._opaque)]
         )
+        shapes["first_triangle"] = self._firsts[:-1]
+        return shapes
 
     @cached_property
-    def _has_holes(self) -> bool:
-        return any(part.masked for part in self._parts)
+    def _bounds(self) -> Doubles:
+        """(S, 2, 3): corners of boxes around the models."""
+        bounds = [(model.tree.low, model.tree.high) for model in self._opaque]
+        return np.array(bounds, np.float64).reshape(-1, 2, 3)
 
     def _in_hole(self, hits: RayHits) -> NDArray[np.bool_]:
         """Return which rays met a masked surface where there is none of it."""
         found = np.zeros(len(hits.distance), np.bool_)
-        if not self._has_holes:
-            return found
-        firsts = self._ray_models.first_triangle
-        for number, part in enumerate(self._parts):
-            if not part.masked:
+        for number, model in enumerate(self._opaque):
+            if not model.masked:
                 continue
-            own = (hits.triangle >= firsts[number]) & (hits.triangle < firsts[number + 1])
-            rows = np.flatnonzero(own)
-            local = hits.triangle[rows] - firsts[number]
-            for place, material in enumerate(part.masked):
-                chosen = part.skin[local] == place
+            first, end = self._firsts[number : number + 2]
+            rows = np.flatnonzero((hits.triangle >= first) & (hits.triangle < end))
+            local = hits.triangle[rows] - first
+            for place in model.masked:
+                chosen = model.material[local] == place
                 if chosen.any():
                     at, of = rows[chosen], local[chosen]
                     second, third = hits.weights[at].T[:, :, None]
-                    uvs = part.uvs[of].astype(np.float64)
+                    uvs = model.uvs[of].astype(np.float64)
                     uv = uvs[:, 0] * (1.0 - second - third) + uvs[:, 1] * second
-                    found[at] = _alpha(material, uv + uvs[:, 2] * third) < material.alpha_cutoff
+                    found[at] = ~surface_at(model.materials[place], uv + uvs[:, 2] * third)
         return found
 
 
-def _triangles_of(model: Model) -> _Triangles:
+def _opaque_model(model: Model) -> _OpaqueModel:
     """Return what rays need of a model; the same object each time."""
     if model not in _kept:
-        parts = [part for part in model.parts if part.material.alpha != "blend"]
-        masked = tuple(part.material for part in parts if part.material.alpha == "mask")
-        counts = [len(part.mesh.triangles) for part in parts]
-        skins = [
-            masked.index(part.material) if part.material.alpha == "mask" else -1 for part in parts
-        ]
-        corners = np.concatenate(
-            [
-                np.zeros((0, 3, 3)),
-                *(part.mesh.positions[part.mesh.triangles].astype(np.float64) for part in parts),
-            ]
-        )
-        sides = np.array([part.material.double_sided for part in parts], np.bool_)
-        _kept[model] = _Triangles(
+        every = triangles_of(model)
+        chosen = ~every.chosen_by("blend")
+        corners = every.corners[chosen].astype(np.float64)
+        _kept[model] = _OpaqueModel(
             corners=corners,
-            two_sided=np.repeat(sides, counts),
-            uvs=np.concatenate(
-                [
-                    np.zeros((0, 3, 2), np.float32),
-                    *(part.mesh.uvs[part.mesh.triangles] for part in parts),
-                ]
-            ),
-            skin=np.repeat(np.array(skins, np.int32), counts),
-            masked=masked,
-            tree=build_tree(corners),
+            uvs=every.uvs[chosen],
+            material=every.part[chosen],
+            materials=every.materials,
+            tree=triangle_tree(corners, every.two_sided[chosen]),
         )
     return _kept[model]
-
-
-def _alpha(material: Material, uv: Doubles) -> Doubles:
-    """Return the alpha of a material at (R, 2) texture coordinates: that of the nearest texel."""
-    alpha = np.full(len(uv), material.base_colour[3])
-    texture = material.base_colour_texture
-    if texture is not None:
-        height, width = texture.shape[:2]
-        column = np.floor(uv[:, 0] * width).astype(np.int64) % width
-        row = np.floor((1.0 - uv[:, 1]) * height).astype(np.int64) % height
-        alpha *= texture[row, column, 3] / 255.0
-    return alpha
