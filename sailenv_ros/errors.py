@@ -115,7 +115,6 @@ class InvalidEntry(InvalidRequest):
     what : str
         What was described, e.g. ``"object 'chair_1'"``.
     got : object
-        The description.
     diagnostics : iterable of (str, str)
         The name of each value that is wrong, with what is wrong and what is accepted.
     """

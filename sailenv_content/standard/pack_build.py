@@ -332,7 +332,8 @@ def _fingerprint() -> str:
     digest = hashlib.sha256()
     for recipe in recipe_files():
         digest.update(recipe.read_bytes())
-    own = sorted(Path(__file__).parents[1].rglob("*.py"))
+    content = Path(__file__).parents[1]
+    own = sorted(p for room in ("procedural", "standard") for p in (content / room).rglob("*.py"))
     assets = Path(asset_meshes.__file__).parent
     for source in (*own, *(assets / f"{name}.py" for name in _TOOLS)):
         digest.update(source.read_bytes())

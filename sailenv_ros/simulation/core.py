@@ -325,8 +325,6 @@ class SimulationCore:
         self.world.close()
         self.frames.close()
 
-    # -- inside ----------------------------------------------------------------------------
-
     def _frustum_planes(self, agent: str, distance_m: float) -> NDArray[np.float64]:
         """Return the planes of an agent's view; none while there is no such agent."""
         for record in self.agents:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError, UnknownName
+from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
@@ -19,7 +19,7 @@ from sailenv_ros.world.inactive_objects import InactiveObjects
 from sailenv_ros.world.instance_ids import InstanceIds
 from sailenv_ros.world.joint_table import JointTable
 from sailenv_ros.world.jointed_bodies import make_bodies, make_body
-from sailenv_ros.world.labelled_pieces import LabelledPiece, pieces_of, states_of
+from sailenv_ros.world.labelled_pieces import LabelledPiece, find_piece, pieces_of, states_of
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["BodyTable"]
@@ -97,10 +97,7 @@ class BodyTable:
         InvalidRequest
             If no instance has that id now.
         """
-        for piece in self.pieces:
-            if piece.id == instance_id:
-                return piece
-        raise InvalidRequest("instance id", instance_id, "the id of an object in the scene")
+        return find_piece(self.pieces, instance_id)
 
     def items(self) -> Iterable[tuple[int, Body]]:
         """Return ids and bodies."""
@@ -127,18 +124,9 @@ class BodyTable:
         UnknownName, InvalidRequest
             If there is no such object now.
         """
-        if is_integer(obj):
-            self.waiting.refuse(int(obj))
-            return self.piece(int(obj)).id
-        if not isinstance(obj, str):
-            raise InvalidRequest("object", obj, "an instance id, or the name of an object")
-        self.waiting.refuse(obj)
-        ids = {piece.name: piece.id for piece in self.pieces}
-        if obj in ids:
-            return ids[obj]
-        if obj.isdecimal() and int(obj) in ids.values():
-            return int(obj)  # scripts of the SAILenv client hold ids as texts
-        raise UnknownName("object", obj, ids)
+        if is_integer(obj) or isinstance(obj, str):
+            self.waiting.refuse(obj if isinstance(obj, str) else int(obj))
+        return find_piece(self.pieces, obj).id
 
     def id_of_name(self, name: str) -> int:
         """Return the instance id of the object of that name; 0 if there is none."""

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import AssetPart
+from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 
-__all__ = ["LabelledPiece", "pieces_of", "states_of"]
+__all__ = ["LabelledPiece", "find_piece", "pieces_of", "states_of"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -55,6 +57,31 @@ def pieces_of(
         )
     ]
     return tuple(sorted(made, key=lambda piece: piece.id))
+
+
+def find_piece(pieces: Sequence[LabelledPiece], obj: object) -> LabelledPiece:
+    """Find what is named by its id, also as a text, or by its name.
+
+    Raises
+    ------
+    UnknownName, InvalidRequest
+        If there is no such object now.
+    """
+    if is_integer(obj):
+        for piece in pieces:
+            if piece.id == obj:
+                return piece
+        raise InvalidRequest("instance id", obj, "the id of an object in the scene")
+    if not isinstance(obj, str):
+        raise InvalidRequest("object", obj, "an instance id, or the name of an object")
+    named = {piece.name: piece for piece in pieces}
+    if obj in named:
+        return named[obj]
+    if obj.isdecimal():  # scripts of the SAILenv client hold ids as texts
+        for piece in pieces:
+            if piece.id == int(obj):
+                return piece
+    raise UnknownName("object", obj, named)
 
 
 def states_of(

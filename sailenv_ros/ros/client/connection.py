@@ -111,10 +111,6 @@ class Connection:
         """Return whether there is a simulator that takes requests now."""
         return bool(self._client(RegisterAgent, "register_agent").service_is_ready())
 
-    def simulator_is_here(self) -> bool:
-        """Return whether a simulator of this name runs on this host."""
-        return self.simulator_here() is not None
-
     def simulator_here(self) -> int | None:
         """Return the process id of the simulator of this name on this host, if there is one."""
         return present_simulator(self.domain_id, self.namespace)

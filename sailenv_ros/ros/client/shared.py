@@ -107,14 +107,14 @@ def _connect(
     link = Link(Connection(domain_id, namespace))
     connection = link.connection
     try:
-        if not connection.simulator_is_here() and not _answers_soon(connection):
+        if connection.simulator_here() is None and not _answers_soon(connection):
             link.process = SimulatorProcess(domain_id, namespace, parameters)
             connection.watch(link.process.is_alive)
         try:
             _await_answer(connection, timeout_s)
         except SimulatorLost:
             assert link.process is not None
-            if not connection.simulator_is_here():
+            if connection.simulator_here() is None:
                 raise link.process.failure() from None
         if link.process is not None and connection.simulator_here() != link.process.pid:
             # Another program started one at the same time, and ours gives way to it.
