@@ -18,7 +18,7 @@ from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntri
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
-__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
+__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec", "intrinsics_key"]
 
 _Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
 _Clip: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["near_m"])]
@@ -28,6 +28,11 @@ Controller = Literal["waypoint", "rigidbody"]
 
 _DEFAULTS = CameraIntrinsics()
 _START = (0.0, 0.0, 1.0)
+
+
+def intrinsics_key(name: str) -> str:
+    """Return the key of an attribute of `CameraIntrinsics` in a scene file: without its unit."""
+    return name.removesuffix("_deg").removesuffix("_px").removesuffix("_m")
 
 
 class WaypointSpec(Aimed):
@@ -139,11 +144,7 @@ class AgentSpecModel(Turned):
         return AgentSpec(
             name=self.name,
             intrinsics=CameraIntrinsics(
-                width=self.width,
-                height=self.height,
-                vertical_fov_deg=self.vertical_fov,
-                near_m=self.near,
-                far_m=self.far,
+                **{name: getattr(self, intrinsics_key(name)) for name in INTRINSICS_LIMITS}
             ),
             depth_range_m=self.depth_range,
             rate_hz=self.rate,

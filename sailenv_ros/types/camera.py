@@ -11,6 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,7 +85,12 @@ class CameraIntrinsics:
     @property
     def fy(self) -> float:
         """Focal length [px]: (H / 2) / tan(vertical field of view / 2)."""
-        return 0.5 * self.height / math.tan(0.5 * math.radians(self.vertical_fov_deg))
+        return 0.5 * self.height / self.half_height
+
+    @property
+    def half_height(self) -> float:
+        """Half of what the picture shows from top to bottom at depth 1 m [m]."""
+        return math.tan(0.5 * math.radians(self.vertical_fov_deg))
 
     @property
     def cx(self) -> float:
@@ -109,6 +115,19 @@ class CameraIntrinsics:
         record.flags.writeable = False
         return record
 
+    def lens_of_window(self, rows: slice, columns: slice) -> NDArray[np.void]:
+        """Return (1,) `native.lens.LENS`: the lens of a part of the picture.
+
+        Parameters
+        ----------
+        rows, columns : slice
+            The part, which need not lie in the picture. Its first pixel is (0, 0).
+        """
+        record = self.lens_record.copy()
+        record["cx"] -= columns.start
+        record["cy"] -= rows.start
+        return record
+
     def clip_from_optical(self) -> NDArray[np.float64]:
         """Return the (4, 4) OpenGL projection of points in the optical frame.
 
@@ -122,6 +141,26 @@ class CameraIntrinsics:
         result[2, 3] = -2.0 * far * near / (far - near)
         result[3, 2] = 1.0
         return result
+
+    def numbers(self) -> dict[str, float]:
+        """Return the attributes by name: ``CameraIntrinsics(**numbers)`` is equal to this."""
+        return {name: getattr(self, name) for name in INTRINSICS_LIMITS}
+
+    def resized(self, width: int, height: int) -> CameraIntrinsics:
+        """Return the lens of a picture of another size that shows the same from top to bottom."""
+        return replace(self, width=width, height=height)
+
+    def mirrored(self) -> CameraIntrinsics:
+        """Return the lens whose picture is this one's with left and right exchanged."""
+        return self
+
+    def border(self) -> NDArray[np.float64]:
+        """Return (2, 2): x and y of the rays at depth 1 m through the picture's corners.
+
+        Top left and bottom right; half a pixel beyond the centres of the outermost pixels.
+        """
+        corners = [(-0.5, -0.5), (self.width - 0.5, self.height - 0.5)]
+        return self.rays_through(corners)[:, :2]
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:
         """Project points of the optical frame into the picture.
@@ -141,6 +180,12 @@ class CameraIntrinsics:
         u = self.fx * p[..., 0] / z + self.cx
         v = self.fy * p[..., 1] / z + self.cy
         return np.stack([u, v], axis=-1)
+
+    def places_of_rays(
+        self, x: NDArray[np.floating[Any]], y: NDArray[np.floating[Any]]
+    ) -> tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]:
+        """Return the columns and rows [px] of rays (x, y, 1), in their own precision."""
+        return x * self.fx + self.cx, y * self.fy + self.cy
 
     def rays(self, rows: slice = slice(None), columns: slice = slice(None)) -> NDArray[np.float64]:
         """Return the point at depth 1 m that each pixel's centre sees.
@@ -239,7 +284,7 @@ class Camera:
         times, lens = self.picture.supersampling, self.intrinsics
         return replace(
             self,
-            intrinsics=replace(lens, width=times * lens.width, height=times * lens.height),
+            intrinsics=lens.resized(times * lens.width, times * lens.height),
             picture=replace(self.picture, supersampling=1, smooth_edges=False),
         )
 
