@@ -9,7 +9,13 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
-from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_where_placed
+from sailenv_ros.scene.rules import (
+    below,
+    distinct_values,
+    few_samples,
+    turned_where_placed,
+    within_half,
+)
 from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
 from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
@@ -22,6 +28,7 @@ __all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec", "intrinsics_key"]
 
 _Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
 _Clip: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["near_m"])]
+_Offset: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["cx_offset_px"])]
 _ViewName: TypeAlias = Annotated[str, Choice(RENDERED_VIEWS)]
 
 Controller = Literal["waypoint", "rigidbody"]
@@ -98,6 +105,8 @@ class AgentSpecModel(Turned):
         below("near", "depth_range", {"near": _DEFAULTS.near_m, "depth_range": 10.0}),
         distinct_values("views"),
         few_samples(MAX_SIZE_PX, {"width": _DEFAULTS.width, "height": _DEFAULTS.height}),
+        within_half("cx_offset", "width", _DEFAULTS.width),
+        within_half("cy_offset", "height", _DEFAULTS.height),
     )
 
     name: Annotated[
@@ -114,6 +123,14 @@ class AgentSpecModel(Turned):
     )
     near: _Clip = Field(default=_DEFAULTS.near_m, description="nearest depth that is seen [m]")
     far: _Clip = Field(default=_DEFAULTS.far_m, description="farthest depth that is seen [m]")
+    cx_offset: _Offset = Field(
+        default=_DEFAULTS.cx_offset_px,
+        description="from the picture's centre to the optical axis, to the right [px]",
+    )
+    cy_offset: _Offset = Field(
+        default=_DEFAULTS.cy_offset_px,
+        description="from the picture's centre to the optical axis, down [px]",
+    )
     depth_range: _Clip = Field(
         default=10.0, description="depth that the 8-bit depth picture shows as black [m]"
     )
