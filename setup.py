@@ -192,8 +192,8 @@ setup(
     packages=find_packages(include=[name for each in PACKAGES for name in (each, f"{each}.*")]),
     package_data={
         "sailenv_ros.dataset": ["preview/*"],
-        # The law of light, which shaders include.
-        "sailenv_ros.native": ["src/kernels/light_law.h"],
+        # The lens and the law of light, which shaders include.
+        "sailenv_ros.native": ["src/kernels/lens.h", "src/kernels/light_law.h"],
         "sailenv_ros.render.gl": ["shaders/*"],
         "sailenv_ros.viewer": ["page/*"],
         **{name: ["py.typed"] for name in PACKAGES},

@@ -10,7 +10,7 @@ from sailenv_msgs.msg import AgentInfo
 from sailenv_msgs_py.mover_msgs import look_at_from_msg, look_at_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
 from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS
 
@@ -19,14 +19,12 @@ __all__ = ["agent_spec_from_msg", "agent_spec_to_msg"]
 
 def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
     """Make the message of an agent, less its start pose."""
-    camera = spec.intrinsics
     return AgentInfo(
         name=spec.name,
-        width=camera.width,
-        height=camera.height,
-        vertical_fov_deg=float(camera.vertical_fov_deg),
-        near_m=float(camera.near_m),
-        far_m=float(camera.far_m),
+        **{
+            name: number if INTRINSICS_LIMITS[name].whole else float(number)
+            for name, number in spec.intrinsics.numbers().items()
+        },
         depth_range_m=float(spec.depth_range_m),
         rate_hz=float(spec.rate_hz),
         views=list(spec.views),
@@ -45,13 +43,7 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
     InvalidRequest
         If a name, size, angle, distance, rate, view or setting is out of its range.
     """
-    intrinsics = CameraIntrinsics(
-        width=msg.width,
-        height=msg.height,
-        vertical_fov_deg=msg.vertical_fov_deg,
-        near_m=msg.near_m,
-        far_m=msg.far_m,
-    )
+    intrinsics = CameraIntrinsics(**{name: getattr(msg, name) for name in INTRINSICS_LIMITS})
     return AgentSpec(
         name=msg.name,
         intrinsics=intrinsics,

@@ -1,7 +1,8 @@
 """Intrinsics of a pin-hole camera to and from `sensor_msgs/CameraInfo`.
 
-Integer pixels are pixel centres, so the optical axis meets the picture at ((W - 1)/2, (H - 1)/2),
-as `image_geometry` and `depth_image_proc` read it. The near and far plane have no place there.
+Integer pixels are pixel centres, so a central optical axis meets the picture at ((W - 1)/2,
+(H - 1)/2), as `image_geometry` and `depth_image_proc` read it. The near and far plane have no place
+there.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def intrinsics_from_camera_info(
     Raises
     ------
     InvalidRequest
-        If the camera is distorted, its pixels are not square or its axis is not central: this
+        If the camera is distorted, its pixels are not square or its axis is out of bounds: this
         package has no such cameras.
     """
     fx, fy, cx, cy = msg.k[0], msg.k[4], msg.k[2], msg.k[5]
@@ -50,9 +51,6 @@ def intrinsics_from_camera_info(
         raise InvalidRequest("distortion", list(msg.d), "none")
     if not fy > 0.0 or not math.isclose(fx, fy, rel_tol=1e-9):
         raise InvalidRequest("focal lengths fx, fy", (fx, fy), "equal and above 0 [px]")
-    centre = (0.5 * (msg.width - 1), 0.5 * (msg.height - 1))
-    if not np.allclose((cx, cy), centre, rtol=0.0, atol=1e-6):
-        raise InvalidRequest("cx, cy", (cx, cy), f"the picture's centre {centre} [px]")
     return CameraIntrinsics(
         width=msg.width,
         height=msg.height,
@@ -60,4 +58,7 @@ def intrinsics_from_camera_info(
         vertical_fov_deg=round(math.degrees(2.0 * math.atan(0.5 * msg.height / fy)), 12),
         near_m=near_m,
         far_m=far_m,
+        # As above: an axis in the centre stays there.
+        cx_offset_px=round(cx - 0.5 * (msg.width - 1), 6),
+        cy_offset_px=round(cy - 0.5 * (msg.height - 1), 6),
     )

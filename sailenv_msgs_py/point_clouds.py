@@ -47,12 +47,11 @@ def point_cloud_to_msg(frame: Frame, header: Header) -> PointCloud2:
     UnknownName
         If the frame has no depth.
     """
-    lens, depth = frame.camera.intrinsics, frame["depth"]
+    rays, depth = frame.camera.intrinsics.rays(), frame["depth"]
     height, width = depth.shape
     table = np.zeros((height, width), POINT)
     z = np.where(np.isfinite(depth), depth, np.nan).astype(np.float64)
-    table["x"] = z * ((np.arange(width) - lens.cx) / lens.fx)
-    table["y"] = z * ((np.arange(height) - lens.cy) / lens.fy)[:, None]
+    table["x"], table["y"] = z * rays[..., 0], z * rays[..., 1]
     table["z"] = z
     if "rgb" in frame.views:
         for channel, name in enumerate("rgb"):

@@ -42,7 +42,7 @@ from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.simulation.operations.argument_checks import pose_of
 from sailenv_ros.types.agents import AgentPose
-from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.picture_settings import NAMES
@@ -238,14 +238,11 @@ def _read_background(given: Arguments) -> Arguments:
 
 def _write_intrinsics(given: Arguments) -> Arguments:
     camera: CameraIntrinsics = given["intrinsics"]
-    return {name: getattr(camera, name) for name in _LENS}
+    return dict(camera.numbers())
 
 
 def _read_intrinsics(given: Arguments) -> Arguments:
-    return {"intrinsics": CameraIntrinsics(**{name: given[name] for name in _LENS})}
-
-
-_LENS = ("width", "height", "vertical_fov_deg", "near_m", "far_m")
+    return {"intrinsics": CameraIntrinsics(**{name: given[name] for name in INTRINSICS_LIMITS})}
 
 
 def _write_random_pose(given: Arguments) -> Arguments:

@@ -12,7 +12,7 @@ from sailenv_ros.errors import InvalidEntry
 from sailenv_ros.scene.field_types import Choice, Number, Text, Vector
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.placing import Aimed
-from sailenv_ros.scene.rules import at_most_one, few_samples
+from sailenv_ros.scene.rules import at_most_one, few_samples, within_half
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
 from sailenv_ros.types.validation import is_finite_number
@@ -32,6 +32,7 @@ __all__ = [
 Range: TypeAlias = tuple[float, float]
 
 _Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
+_Offset: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["cx_offset_px"])]
 _Metres: TypeAlias = Annotated[float, Number(least=0.0, most=1e3, unit="m")]
 _Degrees: TypeAlias = Annotated[float, Number(least=-90.0, most=90.0, unit="deg")]
 _Turn: TypeAlias = Annotated[float, Number(least=-720.0, most=720.0, unit="deg/s")]
@@ -59,6 +60,8 @@ class CameraModel(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         few_samples(MAX_SIZE_PX, {"width": _LENS.width, "height": _LENS.height}),
+        within_half("cx_offset", "width", _LENS.width),
+        within_half("cy_offset", "height", _LENS.height),
     )
 
     name: Annotated[
@@ -73,6 +76,14 @@ class CameraModel(SceneModel):
     vertical_fov: Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])] = Field(
         default=_LENS.vertical_fov_deg, description="full vertical angle of view [deg]"
     )
+    cx_offset: _Offset = Field(
+        default=_LENS.cx_offset_px,
+        description="from the picture's centre to the optical axis, to the right [px]",
+    )
+    cy_offset: _Offset = Field(
+        default=_LENS.cy_offset_px,
+        description="from the picture's centre to the optical axis, down [px]",
+    )
     picture: PictureSpec = Field(
         default_factory=PictureSpec, description="exposure, tone curve, noise of its pictures"
     )
@@ -81,7 +92,11 @@ class CameraModel(SceneModel):
     def intrinsics(self) -> CameraIntrinsics:
         """Of its pictures."""
         return CameraIntrinsics(
-            width=self.width, height=self.height, vertical_fov_deg=self.vertical_fov
+            width=self.width,
+            height=self.height,
+            vertical_fov_deg=self.vertical_fov,
+            cx_offset_px=self.cx_offset,
+            cy_offset_px=self.cy_offset,
         )
 
 

@@ -18,7 +18,7 @@ _MAKE = Kernel("make_amodal_scratch", "array")
 _FREE = Kernel("free_amodal_scratch", "array")
 _DRAW = Kernel(
     "draw_amodal",
-    *("integer", "array", "array", "array", "array", "array", "integer", "number", "array"),
+    *("integer", "array", "array", "array", "array", "array", "integer", "array"),
 )
 _COPY = Kernel("copy_amodal", "array", "integer", "array")
 
@@ -47,7 +47,6 @@ class AmodalDrawing:
     def draw(
         self,
         view: NDArray[np.void],
-        near_m: float,
         instances: NDArray[np.void],
         parts: NDArray[np.void],
         starts: NDArray[np.int64],
@@ -57,8 +56,6 @@ class AmodalDrawing:
         Parameters
         ----------
         view : (1,) VIEW
-        near_m : float
-            What is nearer has no depth [m].
         instances : (1,) INSTANCES
         parts : (P,) PART
         starts : (N + 1,) int64
@@ -82,7 +79,7 @@ class AmodalDrawing:
         listed = record(DRAW_LIST, parts_at=address(parts), count=len(parts))
         _DRAW(
             *(self._threads, self._handle, view, instances, listed),
-            *(starts, count, near_m, results),
+            *(starts, count, results),
         )
         boxes = results[results[:, 1] > 0, 6:]
         size = int(((boxes[:, 2] - boxes[:, 0] + 1) * (boxes[:, 3] - boxes[:, 1] + 1)).sum())

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.lens import LENS
+
 __all__ = [
     "CLUSTER",
     "DRAW_LIST",
@@ -148,10 +150,7 @@ LIGHT = _structure(
 VIEW = _structure(
     ("camera_from_world", "<f8", 16),
     ("world_from_camera", "<f8", 16),
-    ("focal", "<f8"),
-    ("cx", "<f8"),
-    ("cy", "<f8"),
-    ("far_m", "<f8"),
+    ("lens", LENS),
     ("width", "<i8"),
     ("height", "<i8"),
     ("smooth_edges", "<i8"),

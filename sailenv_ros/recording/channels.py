@@ -82,8 +82,8 @@ _LITTLE_ENDIAN_CDR = b"\x00\x01"
 _NEWER_FIELD = "string lesson"
 """The newest field of `FrameInfo`; version 0.2.0 lacked it and the field before it."""
 
-_NEWER_PART_OF_SCENES = "sailenv_msgs/RigidBody"
-"""The newest type within the parts of `SceneInfo`; version 0.2.0 lacked it."""
+_NEWER_PART_OF_SCENES = "float64 cx_offset_px"
+"""The newest field within the parts of `SceneInfo`; version 0.2.0 lacked it."""
 
 _LONGEST_APPENDIX = 64
 """Bytes that all newer fields take where they are empty, and more [B]."""

@@ -33,6 +33,7 @@ __all__ = [
     "turned_where_placed",
     "unit_quaternion",
     "walls_need_a_room",
+    "within_half",
     "without_zero_length",
 ]
 
@@ -89,6 +90,23 @@ def few_samples(most: int, defaults: Mapping[str, int]) -> Rule:
                     f"{shown_number(size)} px, got {shown_number(times)}",
                 )
                 return
+
+    return rule
+
+
+def within_half(key: str, size_key: str, default: int) -> Rule:
+    """Make the rule that a number is at most half of a size, to both sides."""
+
+    def rule(entry: Entry) -> Faults:
+        offset, size = entry.get(key, 0.0), entry.get(size_key, default)
+        if not (is_finite_number(offset) and is_finite_number(size)):
+            return
+        if abs(offset) > 0.5 * size:
+            yield (
+                (key,),
+                f"is refused: it must be within half of {size_key}, {shown_number(0.5 * size)}, "
+                f"got {shown_number(offset)}",
+            )
 
     return rule
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.scene.fields import SceneModel
-from sailenv_ros.scene.spec_cameras import AgentSpecModel
+from sailenv_ros.scene.spec_cameras import AgentSpecModel, intrinsics_key
 from sailenv_ros.scene.spec_surroundings import (
     AreaLightSpec,
     DirectionalLightSpec,
@@ -116,13 +116,8 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
     pose : Pose or None
         Where it stands; None for one that starts at its mover.
     """
-    lens = spec.intrinsics
     values = {
-        "width": lens.width,
-        "height": lens.height,
-        "vertical_fov": lens.vertical_fov_deg,
-        "near": lens.near_m,
-        "far": lens.far_m,
+        **{intrinsics_key(name): value for name, value in spec.intrinsics.numbers().items()},
         "depth_range": spec.depth_range_m,
         "rate": spec.rate_hz,
         "views": spec.views,

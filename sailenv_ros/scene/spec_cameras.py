@@ -9,7 +9,13 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
-from sailenv_ros.scene.rules import below, distinct_values, few_samples, turned_where_placed
+from sailenv_ros.scene.rules import (
+    below,
+    distinct_values,
+    few_samples,
+    turned_where_placed,
+    within_half,
+)
 from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
 from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
@@ -18,16 +24,22 @@ from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntri
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
-__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
+__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec", "intrinsics_key"]
 
 _Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
 _Clip: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["near_m"])]
+_Offset: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["cx_offset_px"])]
 _ViewName: TypeAlias = Annotated[str, Choice(RENDERED_VIEWS)]
 
 Controller = Literal["waypoint", "rigidbody"]
 
 _DEFAULTS = CameraIntrinsics()
 _START = (0.0, 0.0, 1.0)
+
+
+def intrinsics_key(name: str) -> str:
+    """Return the key of an attribute of `CameraIntrinsics` in a scene file: without its unit."""
+    return name.removesuffix("_deg").removesuffix("_px").removesuffix("_m")
 
 
 class WaypointSpec(Aimed):
@@ -93,6 +105,8 @@ class AgentSpecModel(Turned):
         below("near", "depth_range", {"near": _DEFAULTS.near_m, "depth_range": 10.0}),
         distinct_values("views"),
         few_samples(MAX_SIZE_PX, {"width": _DEFAULTS.width, "height": _DEFAULTS.height}),
+        within_half("cx_offset", "width", _DEFAULTS.width),
+        within_half("cy_offset", "height", _DEFAULTS.height),
     )
 
     name: Annotated[
@@ -109,6 +123,14 @@ class AgentSpecModel(Turned):
     )
     near: _Clip = Field(default=_DEFAULTS.near_m, description="nearest depth that is seen [m]")
     far: _Clip = Field(default=_DEFAULTS.far_m, description="farthest depth that is seen [m]")
+    cx_offset: _Offset = Field(
+        default=_DEFAULTS.cx_offset_px,
+        description="from the picture's centre to the optical axis, to the right [px]",
+    )
+    cy_offset: _Offset = Field(
+        default=_DEFAULTS.cy_offset_px,
+        description="from the picture's centre to the optical axis, down [px]",
+    )
     depth_range: _Clip = Field(
         default=10.0, description="depth that the 8-bit depth picture shows as black [m]"
     )
@@ -139,11 +161,7 @@ class AgentSpecModel(Turned):
         return AgentSpec(
             name=self.name,
             intrinsics=CameraIntrinsics(
-                width=self.width,
-                height=self.height,
-                vertical_fov_deg=self.vertical_fov,
-                near_m=self.near,
-                far_m=self.far,
+                **{name: getattr(self, intrinsics_key(name)) for name in INTRINSICS_LIMITS}
             ),
             depth_range_m=self.depth_range,
             rate_hz=self.rate,

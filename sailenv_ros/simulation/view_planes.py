@@ -5,8 +5,6 @@ A `Camera` in, planes out; knows no simulation.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,19 +29,19 @@ def view_planes(camera: Camera, distance_m: float) -> NDArray[np.float64]:
         a x + b y + c z + d > 0 for all; (a, b, c) is a unit vector.
     """
     intrinsics = camera.intrinsics
-    up = math.radians(intrinsics.vertical_fov_deg) / 2.0
-    side = math.atan(math.tan(up) * intrinsics.width / intrinsics.height)
-    body = np.array(
+    (left, top), (right, bottom) = intrinsics.border()
+    optical = np.array(
         [
-            (math.sin(side), -math.cos(side), 0.0),
-            (math.sin(side), math.cos(side), 0.0),
-            (math.sin(up), 0.0, -math.cos(up)),
-            (math.sin(up), 0.0, math.cos(up)),
-            (1.0, 0.0, 0.0),
-            (-1.0, 0.0, 0.0),
+            (1.0, 0.0, -left),
+            (-1.0, 0.0, right),
+            (0.0, 1.0, -top),
+            (0.0, -1.0, bottom),
+            (0.0, 0.0, 1.0),
+            (0.0, 0.0, -1.0),
         ]
     )
-    normals = body @ camera.pose.matrix()[:3, :3].T
+    optical /= np.linalg.norm(optical, axis=1, keepdims=True)
+    normals = optical @ camera.world_from_camera[:3, :3].T
     offsets = -normals @ np.asarray(camera.pose.position_m)
     offsets[4] -= intrinsics.near_m
     offsets[5] += distance_m

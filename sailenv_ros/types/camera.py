@@ -1,8 +1,9 @@
 """The pin-hole camera: sizes, field of view, matrices, projection.
 
 Integer pixel coordinates are pixel centres: (0, 0) is the centre of the top-left pixel, so
-cx = (W - 1) / 2 and cy = (H - 1) / 2. Points are in the camera optical frame (x right, y down,
-z forward) [m]. OpenGL's clip axes appear in `clip_from_optical` alone.
+cx = (W - 1) / 2 and cy = (H - 1) / 2 unless the optical axis is off the picture's centre. Points
+are in the camera optical frame (x right, y down, z forward) [m]. OpenGL's clip axes appear in
+`clip_from_optical` alone.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,6 +37,7 @@ MAX_SIZE_PX = 4096
 
 _SIZE = Bounds(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
 _CLIP = Bounds(least=1e-3, most=1e4, unit="m")
+_OFFSET = Bounds(least=-MAX_SIZE_PX / 2, most=MAX_SIZE_PX / 2, unit="px")
 
 INTRINSICS_LIMITS: Mapping[str, Bounds] = {
     "width": _SIZE,
@@ -42,6 +45,8 @@ INTRINSICS_LIMITS: Mapping[str, Bounds] = {
     "vertical_fov_deg": Bounds(least=1.0, most=170.0, unit="deg"),
     "near_m": _CLIP,
     "far_m": _CLIP,
+    "cx_offset_px": _OFFSET,
+    "cy_offset_px": _OFFSET,
 }
 """Bounds of each number of `CameraIntrinsics`."""
 
@@ -58,6 +63,9 @@ class CameraIntrinsics:
         Full vertical angle of view [deg], 1 to 170.
     near_m, far_m : float
         Clip distances along the optical axis [m], 0.001 ≤ near < far ≤ 10000.
+    cx_offset_px, cy_offset_px : float
+        From the picture's centre to the optical axis, to the right and down [px]; at most half the
+        picture. What the picture shows moves with the axis; the focal length stays.
 
     Raises
     ------
@@ -70,9 +78,15 @@ class CameraIntrinsics:
     vertical_fov_deg: float = 60.0
     near_m: float = 0.05
     far_m: float = 100.0
+    cx_offset_px: float = 0.0
+    cy_offset_px: float = 0.0
 
     def __post_init__(self) -> None:
         check_bounds(self, INTRINSICS_LIMITS)
+        for name, size in (("cx_offset_px", self.width), ("cy_offset_px", self.height)):
+            offset = getattr(self, name)
+            if abs(offset) > 0.5 * size:
+                raise InvalidRequest(name, offset, f"within half the picture, {0.5 * size:g} [px]")
         if self.near_m >= self.far_m:
             raise InvalidRequest("near_m", self.near_m, f"less than far_m = {self.far_m:g} [m]")
 
@@ -84,17 +98,22 @@ class CameraIntrinsics:
     @property
     def fy(self) -> float:
         """Focal length [px]: (H / 2) / tan(vertical field of view / 2)."""
-        return 0.5 * self.height / math.tan(0.5 * math.radians(self.vertical_fov_deg))
+        return 0.5 * self.height / self.half_height
+
+    @property
+    def half_height(self) -> float:
+        """Half of what the picture shows from top to bottom at depth 1 m [m]."""
+        return math.tan(0.5 * math.radians(self.vertical_fov_deg))
 
     @property
     def cx(self) -> float:
-        """Column of the optical axis [px]: (W - 1) / 2."""
-        return 0.5 * (self.width - 1)
+        """Column of the optical axis [px]: (W - 1) / 2 unless it is off the centre."""
+        return 0.5 * (self.width - 1) + self.cx_offset_px
 
     @property
     def cy(self) -> float:
-        """Row of the optical axis [px]: (H - 1) / 2."""
-        return 0.5 * (self.height - 1)
+        """Row of the optical axis [px]: (H - 1) / 2 unless it is off the centre."""
+        return 0.5 * (self.height - 1) + self.cy_offset_px
 
     @property
     def K(self) -> NDArray[np.float64]:
@@ -109,6 +128,19 @@ class CameraIntrinsics:
         record.flags.writeable = False
         return record
 
+    def lens_of_window(self, rows: slice, columns: slice) -> NDArray[np.void]:
+        """Return (1,) `native.lens.LENS`: the lens of a part of the picture.
+
+        Parameters
+        ----------
+        rows, columns : slice
+            The part, which need not lie in the picture. Its first pixel is (0, 0).
+        """
+        record = self.lens_record.copy()
+        record["cx"] -= columns.start
+        record["cy"] -= rows.start
+        return record
+
     def clip_from_optical(self) -> NDArray[np.float64]:
         """Return the (4, 4) OpenGL projection of points in the optical frame.
 
@@ -118,10 +150,44 @@ class CameraIntrinsics:
         result = np.zeros((4, 4))
         result[0, 0] = 2.0 * self.fx / self.width
         result[1, 1] = -2.0 * self.fy / self.height
+        result[0, 2] = 2.0 * (self.cx + 0.5) / self.width - 1.0
+        result[1, 2] = 1.0 - 2.0 * (self.cy + 0.5) / self.height
         result[2, 2] = (far + near) / (far - near)
         result[2, 3] = -2.0 * far * near / (far - near)
         result[3, 2] = 1.0
         return result
+
+    def numbers(self) -> dict[str, float]:
+        """Return the attributes by name: ``CameraIntrinsics(**numbers)`` is equal to this.
+
+        In the order of `INTRINSICS_LIMITS`; where the axis is in the centre, without the offsets.
+        """
+        is_centred = self.cx_offset_px == self.cy_offset_px == 0.0
+        left_out = ("cx_offset_px", "cy_offset_px") if is_centred else ()
+        return {name: getattr(self, name) for name in INTRINSICS_LIMITS if name not in left_out}
+
+    def resized(self, width: int, height: int) -> CameraIntrinsics:
+        """Return the lens of a picture of another size that shows the same from top to bottom."""
+        scale, x, y = height / self.height, 0.5 * width, 0.5 * height
+        return replace(
+            self,
+            width=width,
+            height=height,
+            cx_offset_px=min(max(scale * self.cx_offset_px, -x), x),
+            cy_offset_px=min(max(scale * self.cy_offset_px, -y), y),
+        )
+
+    def mirrored(self) -> CameraIntrinsics:
+        """Return the lens whose picture is this one's with left and right exchanged."""
+        return replace(self, cx_offset_px=-self.cx_offset_px)
+
+    def border(self) -> NDArray[np.float64]:
+        """Return (2, 2): x and y of the rays at depth 1 m through the picture's corners.
+
+        Top left and bottom right; half a pixel beyond the centres of the outermost pixels.
+        """
+        corners = [(-0.5, -0.5), (self.width - 0.5, self.height - 0.5)]
+        return self.rays_through(corners)[:, :2]
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:
         """Project points of the optical frame into the picture.
@@ -141,6 +207,12 @@ class CameraIntrinsics:
         u = self.fx * p[..., 0] / z + self.cx
         v = self.fy * p[..., 1] / z + self.cy
         return np.stack([u, v], axis=-1)
+
+    def places_of_rays(
+        self, x: NDArray[np.floating[Any]], y: NDArray[np.floating[Any]]
+    ) -> tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]:
+        """Return the columns and rows [px] of rays (x, y, 1), in their own precision."""
+        return x * self.fx + self.cx, y * self.fy + self.cy
 
     def rays(self, rows: slice = slice(None), columns: slice = slice(None)) -> NDArray[np.float64]:
         """Return the point at depth 1 m that each pixel's centre sees.
@@ -239,7 +311,7 @@ class Camera:
         times, lens = self.picture.supersampling, self.intrinsics
         return replace(
             self,
-            intrinsics=replace(lens, width=times * lens.width, height=times * lens.height),
+            intrinsics=lens.resized(times * lens.width, times * lens.height),
             picture=replace(self.picture, supersampling=1, smooth_edges=False),
         )
 
@@ -256,6 +328,8 @@ class Camera:
             vertical_fov_deg=2.0 * math.degrees(math.atan2(0.5 * height, 2.0 * lens.fy)),
             near_m=lens.near_m,
             far_m=lens.far_m,
+            cx_offset_px=2.0 * lens.cx_offset_px,
+            cy_offset_px=2.0 * lens.cy_offset_px,
         )
         return replace(self, intrinsics=samples)
 

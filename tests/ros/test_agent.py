@@ -368,7 +368,8 @@ from sensor_msgs.msg import CameraInfo
 from sailenv_ros import Agent
 rclpy.init()
 node = rclpy.create_node("mine")
-with Agent(width=64, height=48, namespace="/tested", name="beside") as agent:
+lens = dict(width=64, height=48, cx_offset_px=8.0, cy_offset_px=-5.0)
+with Agent(**lens, namespace="/tested", name="beside") as agent:
     got = []
     node.create_subscription(CameraInfo, "/tested/beside/camera_info", got.append, 3)
     for _ in range(100):
@@ -377,6 +378,8 @@ with Agent(width=64, height=48, namespace="/tested", name="beside") as agent:
         if got:
             break
     assert got and got[0].width == 64
+    assert (got[0].k[2], got[0].k[5]) == (got[0].p[2], got[0].p[6]) == (31.5 + 8.0, 23.5 - 5.0)
+    assert tuple(frame["K"].ravel()) == tuple(got[0].k)
 assert rclpy.ok()
 node.create_publisher(CameraInfo, "still_works", 1).publish(CameraInfo())
 node.destroy_node()

@@ -45,7 +45,10 @@ def program(env: Operations) -> Iterator[Any]:
     env.set_gravity((0.0, 0.5, -5.0))
     yield env.get_gravity()
     env.set_picture(bloom=0.125)
-    env.set_intrinsics(CameraIntrinsics(width=48, height=40, vertical_fov_deg=75.0))
+    off_centre = {"cx_offset_px": 6.0, "cy_offset_px": -3.5}
+    lens = CameraIntrinsics(width=48, height=40, vertical_fov_deg=75.0, **off_centre)
+    env.set_intrinsics(lens)
+    np.testing.assert_array_equal(env.get_frame()["K"], lens.K)
     yield env.get_object("block").pose, env.lights_names, env.get_light_color("lamp")
     yield env.get_frame()
     env.set_waypoints([((0, 0, 1), (0, 0, 0)), ((1, 0, 1), (0, 0, 90))], total_time_s=4.0)

@@ -136,13 +136,12 @@ def cameras(
     target: Target, rule: Rule, lens: CameraIntrinsics, random: np.random.Generator
 ) -> Iterator[tuple[float, Camera, float]]:
     """Yield azimuth [deg], camera and distance [m]: as many as the rule's attempts."""
-    spread = math.tan(0.5 * math.radians(lens.vertical_fov_deg))
     for _ in range(rule.attempts):
         azimuth_deg = float(random.uniform(0.0, 360.0))
         elevation_deg = float(random.uniform(*rule.elevation_deg))
         # The share of the picture that a ball around the object would fill, which it seldom does.
         filled = math.exp(random.uniform(math.log(rule.cover[0] * 3.0), math.log(1.6)))
-        distance_m = max(0.12, 0.5 * target.size_m / (spread * math.sqrt(filled)))
+        distance_m = max(0.12, 0.5 * target.size_m / (lens.half_height * math.sqrt(filled)))
         a, e = math.radians(azimuth_deg), math.radians(elevation_deg)
         towards = np.array([math.cos(a) * math.cos(e), math.sin(a) * math.cos(e), math.sin(e)])
         pose = look_at(target.middle + distance_m * towards, target.middle)

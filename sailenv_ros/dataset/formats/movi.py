@@ -18,7 +18,7 @@ from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Sample, Wr
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import motion, object_coordinates
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.instance_states import InstanceStates
 
@@ -33,8 +33,6 @@ _NAMES = {
     "category": "category",
 }
 """MOVi's names of the views."""
-
-_LENS = ("width", "height", "vertical_fov_deg", "near_m", "far_m")
 
 
 class MoviExport(DatasetFormat):
@@ -93,8 +91,12 @@ def load_movi_frame(path: str | Path) -> Frame:
     try:
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as stored:
             arrays = dict(stored)
-        lens = dict(zip(_LENS, arrays["lens"].tolist(), strict=True))
-        lens |= {name: int(lens[name]) for name in ("width", "height")}
+        lens = {
+            name: int(number) if limits.whole else number
+            for (name, limits), number in zip(
+                INTRINSICS_LIMITS.items(), arrays["lens"].tolist(), strict=False
+            )
+        }
         position, quat = arrays["camera_position"], arrays["camera_quaternion"]
         w, x, y, z = (float(value) for value in quat)
         return Frame(
@@ -148,7 +150,7 @@ def _of_camera(frame: Frame) -> dict[str, Any]:
         "world_from_camera": frame.camera.world_from_camera,
         "camera_position": np.array(frame.camera.pose.position_m),
         "camera_quaternion": np.array([w, x, y, z]),
-        "lens": np.array([getattr(lens, name) for name in _LENS], np.float64),
+        "lens": np.array([*lens.numbers().values()], np.float64),
         "stamp_ns": np.int64(frame.stamp_ns),
         "dt_ns": np.int64(frame.dt_ns),
         "epoch": np.int64(frame.epoch),

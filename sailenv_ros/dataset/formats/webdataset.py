@@ -12,7 +12,6 @@ import io
 import json
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -57,7 +56,7 @@ class WebDatasetExport(DatasetFormat):
             "agent": frame.agent,
             "epoch": frame.epoch,
             "depth_range_m": frame.depth_range_m,
-            "lens": asdict(lens),
+            "lens": lens.numbers(),
             "position": list(pose.position_m),
             "orientation_xyzw": list(pose.orientation_xyzw),
         }

@@ -62,7 +62,7 @@ class AmodalRenderer:
         order = np.argsort(ids, kind="stable")
         lens = camera.intrinsics
         results, depths = self._drawing.draw(
-            native_view(camera), lens.near_m, self._table.instances(poses, None), parts, starts
+            native_view(camera), self._table.instances(poses, None), parts, starts
         )
         crops = []
         at = 0

@@ -16,7 +16,7 @@ import numpy as np
 from sailenv_ros.render.gl.draw_list import ROWS, Batch, DrawList
 from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.gl.materials import BatchKind, MaterialBuffers
-from sailenv_ros.render.gl.programs import ProgramCache, set_uniform, shader_source
+from sailenv_ros.render.gl.programs import ProgramCache, set_lens, shader_source
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.views import views_of
 
@@ -167,8 +167,7 @@ class GeometryPass:
                 if not any(lies[part][1] for part in batch.chosen):
                     continue
                 program = self._program(batch.kind, targets, half_pixels)
-                set_uniform(program, "far_m", intrinsics.far_m)
-                set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, 0.0))
+                set_lens(program, intrinsics)
                 materials.bind(program, batch.kind.maps)
                 if batch.kind.double_sided:
                     context.disable(moderngl.CULL_FACE)

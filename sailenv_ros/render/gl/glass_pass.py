@@ -22,7 +22,7 @@ from sailenv_ros.render.gl.geometry_pass import (
 )
 from sailenv_ros.render.gl.lighting_pass import Illumination, set_camera
 from sailenv_ros.render.gl.materials import MaterialBuffers
-from sailenv_ros.render.gl.programs import ProgramCache, set_uniform
+from sailenv_ros.render.gl.programs import ProgramCache
 from sailenv_ros.render.scene.reflection_points import MOST
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
@@ -116,7 +116,6 @@ class GlassPass:
         assert self._draws is not None
         program = self._program(batch, illumination, half_pixels)
         set_camera(program, camera, illumination.environment)
-        set_uniform(program, "far_m", camera.intrinsics.far_m)
         materials.bind(program, batch.kind.maps)
         if illumination.baked is not None:
             illumination.baked.bind(program)

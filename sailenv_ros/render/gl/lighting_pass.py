@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.render.gl.baked_textures import BakedTextures
 from sailenv_ros.render.gl.geometry_pass import Targets
-from sailenv_ros.render.gl.programs import ProgramCache, set_uniform
+from sailenv_ros.render.gl.programs import ProgramCache, set_lens, set_uniform
 from sailenv_ros.render.gl.reflection_texture import ReflectionTexture
 from sailenv_ros.render.gl.shadow_pass import ShadowPass
 from sailenv_ros.render.scene.lamps import MAX_LIGHTS, strongest_lamps
@@ -215,9 +215,8 @@ def _set_textures(program: moderngl.Program, targets: Targets, illumination: Ill
 
 def set_camera(program: moderngl.Program, camera: Camera, environment: Environment) -> None:
     """Set in a program of `picture.glsl` where it looks from, and what lies around."""
-    intrinsics = camera.intrinsics
-    exposure = 2.0**environment.exposure
-    set_uniform(program, "lens", (intrinsics.fx, intrinsics.cx, intrinsics.cy, exposure))
+    set_lens(program, camera.intrinsics)
+    set_uniform(program, "exposure", 2.0**environment.exposure)
     set_uniform(program, "eye", tuple(camera.world_from_camera[:3, 3]))
     set_uniform(program, "world_from_optical", _columns(camera.world_from_camera[:3, :3]))
     set_uniform(program, "ambient", environment.ambient)

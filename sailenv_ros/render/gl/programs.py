@@ -10,8 +10,10 @@ from typing import Any
 import moderngl
 
 from sailenv_ros.errors import RenderError
+from sailenv_ros.native.lens import LENS
+from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["ProgramCache", "shader_source"]
+__all__ = ["ProgramCache", "set_lens", "set_uniform", "shader_source"]
 
 _INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
 
@@ -78,3 +80,10 @@ def set_uniform(program: moderngl.Program, name: str, value: Any) -> None:
     member = program.get(name, None)
     if isinstance(member, moderngl.Uniform):
         member.value = value
+
+
+def set_lens(program: moderngl.Program, intrinsics: CameraIntrinsics) -> None:
+    """Set the numbers of `Lens` (src/kernels/lens.h) that a program reads."""
+    assert LENS.names is not None
+    for name, number in zip(LENS.names, intrinsics.lens_record[0].item(), strict=True):
+        set_uniform(program, f"lens.{name}", number)

@@ -228,4 +228,4 @@ def _behind(camera: Camera, normal: NDArray[np.float64], point: NDArray[np.float
     mirror[:3, 3] = 2.0 * float(normal @ point) * normal
     world_from_camera = mirror @ camera.world_from_camera @ np.diag([-1.0, 1.0, 1.0, 1.0])
     pose = Pose.from_matrix(world_from_camera @ np.linalg.inv(BODY_FROM_OPTICAL))
-    return replace(camera, pose=pose)
+    return replace(camera, pose=pose, intrinsics=camera.intrinsics.mirrored())

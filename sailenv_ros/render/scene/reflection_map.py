@@ -104,9 +104,7 @@ def flattened(
             directions @ camera.world_from_camera[:3, :3].astype(np.float32), -1, 0
         )
         ahead = np.maximum(z, 1e-3)
-        intrinsics = camera.intrinsics
-        u = (x / ahead * intrinsics.fx + intrinsics.cx).astype(np.float32)
-        v = (y / ahead * intrinsics.fy + intrinsics.cy).astype(np.float32)
+        u, v = camera.intrinsics.places_of_rays(x / ahead, y / ahead)
         seen = cv2.remap(picture, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         mine = z > nearest
         result[mine], nearest[mine] = seen[mine], z[mine]

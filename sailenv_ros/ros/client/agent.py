@@ -55,6 +55,8 @@ depth_frame_active : bool
         Full vertical angle of view [deg].
     near_m, far_m : float
         Nearest and farthest depth that is seen [m].
+    cx_offset_px, cy_offset_px : float
+        From the picture's centre to the optical axis, to the right and down [px].
     depth_range_m : float
         Depth that the 8-bit depth picture shows as black [m].
     following : bool
@@ -95,6 +97,8 @@ depth_frame_active : bool
         vertical_fov_deg: float = 60.0,
         near_m: float = 0.05,
         far_m: float = 100.0,
+        cx_offset_px: float = 0.0,
+        cy_offset_px: float = 0.0,
         depth_range_m: float = 10.0,
         following: bool = True,
         picture: PictureSettings | None = None,
@@ -121,6 +125,8 @@ depth_frame_active : bool
                 vertical_fov_deg=vertical_fov_deg,
                 near_m=near_m,
                 far_m=far_m,
+                cx_offset_px=cx_offset_px,
+                cy_offset_px=cy_offset_px,
             ),
             depth_range_m=depth_range_m,
             rate_hz=0.0,

@@ -176,6 +176,14 @@ PARAMETERS: dict[str, Parameter] = {
     "agent.vertical_fov_deg": Parameter(
         60.0, "Full vertical angle of view [deg].", INTRINSICS_LIMITS["vertical_fov_deg"]
     ),
+    "agent.cx_offset_px": Parameter(
+        0.0, "From the picture's centre to the optical axis, to the right [px].",
+        INTRINSICS_LIMITS["cx_offset_px"],
+    ),
+    "agent.cy_offset_px": Parameter(
+        0.0, "From the picture's centre to the optical axis, down [px].",
+        INTRINSICS_LIMITS["cy_offset_px"],
+    ),
     "agent.near_m": Parameter(0.05, "Nearest depth that is seen [m].", INTRINSICS_LIMITS["near_m"]),
     "agent.far_m": Parameter(100.0, "Farthest depth that is seen [m].", INTRINSICS_LIMITS["far_m"]),
     "agent.depth_range_m": Parameter(
@@ -224,11 +232,7 @@ def _agent(values: Mapping[str, Any]) -> AgentSpec | None:
     return AgentSpec(
         name=values["agent.name"],
         intrinsics=CameraIntrinsics(
-            width=values["agent.width"],
-            height=values["agent.height"],
-            vertical_fov_deg=values["agent.vertical_fov_deg"],
-            near_m=values["agent.near_m"],
-            far_m=values["agent.far_m"],
+            **{name: values[f"agent.{name}"] for name in INTRINSICS_LIMITS}
         ),
         depth_range_m=values["agent.depth_range_m"],
         rate_hz=values["agent.rate_hz"],

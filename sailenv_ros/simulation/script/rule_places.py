@@ -65,9 +65,6 @@ def placed_by_rules(
 def _small(lens: CameraIntrinsics, fov_deg: float | None) -> CameraIntrinsics:
     """Return a lens of the same angles with few pixels."""
     share = min(1.0, LOOK_PX / max(lens.width, lens.height))
-    return replace(
-        lens,
-        width=max(16, round(share * lens.width)),
-        height=max(16, round(share * lens.height)),
-        vertical_fov_deg=lens.vertical_fov_deg if fov_deg is None else fov_deg,
-    )
+    width, height = (max(16, round(share * size)) for size in (lens.width, lens.height))
+    small = lens.resized(width, height)
+    return small if fov_deg is None else replace(small, vertical_fov_deg=fov_deg)

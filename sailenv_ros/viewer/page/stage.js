@@ -1,6 +1,7 @@
 // The pictures: tiles of views, what is drawn over them, and which pixel a pointer is on.
 
 import { $, el } from "./dom.js";
+import { placeOf } from "./lens.js";
 
 const GAP = 6;
 
@@ -205,12 +206,11 @@ export class Stage {
 
   #project([x, y, z]) {
     const m = this.head.camera_from_world;
-    const [fx, fy, cx, cy] = this.head.lens;
     const depth = m[8] * x + m[9] * y + m[10] * z + m[11];
     if (depth < 0.05) return null;
     const across = m[0] * x + m[1] * y + m[2] * z + m[3];
     const down = m[4] * x + m[5] * y + m[6] * z + m[7];
-    return [(fx * across) / depth + cx, (fy * down) / depth + cy];
+    return placeOf(this.head.lens, across, down, depth);
   }
 
   #waypoints(pen, head, line) {

@@ -172,6 +172,8 @@ INTRINSICS = st.builds(
     vertical_fov_deg=st.floats(1.0, 170.0),
     near_m=st.floats(1e-3, 1.0),
     far_m=st.floats(2.0, 1e4),
+    cx_offset_px=st.floats(-4.0, 4.0),
+    cy_offset_px=st.floats(-4.0, 4.0),
 )
 AGENTS = st.builds(
     AgentSpec,

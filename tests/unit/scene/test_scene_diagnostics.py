@@ -258,6 +258,10 @@ ENTRIES = {
         "version: 1\nagents: [{name: a, near: 0.5, far: 0.2}]\n",
         "2:26: agents[0].near: is refused: near must be less than far, got 0.5 and 0.2",
     ),
+    "an axis beside the picture": (
+        "version: 1\nagents: [{name: a, width: 100, cx_offset: -50.5}]\n",
+        "2:43: agents[0].cx_offset: is refused: it must be within half of width, 50, got -50.5",
+    ),
     "an agent turned nowhere": (
         "version: 1\nagents: [{name: a, rotation: [0, 0, 9]}]\n",
         "2:30: agents[0].rotation: needs a position beside it",

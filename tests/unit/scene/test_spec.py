@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from sailenv_ros.scene.serialisation import agent_entry
 from sailenv_ros.scene.spec import (
     AgentSpecModel,
     BehaviourSpec,
@@ -150,6 +151,8 @@ def test_every_field_of_an_agent_arrives() -> None:
         vertical_fov=45.0,
         near=0.1,
         far=50.0,
+        cx_offset=-12.5,
+        cy_offset=7.0,
         depth_range=8.0,
         rate=0.0,
         views=("depth", "rgb"),
@@ -161,7 +164,13 @@ def test_every_field_of_an_agent_arrives() -> None:
     assert spec.to_agent_spec() == AgentSpec(
         name="eye",
         intrinsics=CameraIntrinsics(
-            width=320, height=240, vertical_fov_deg=45.0, near_m=0.1, far_m=50.0
+            width=320,
+            height=240,
+            vertical_fov_deg=45.0,
+            near_m=0.1,
+            far_m=50.0,
+            cx_offset_px=-12.5,
+            cy_offset_px=7.0,
         ),
         depth_range_m=8.0,
         rate_hz=0.0,
@@ -170,6 +179,17 @@ def test_every_field_of_an_agent_arrives() -> None:
         mover="rail",
         pose=Pose.from_rpy_deg((1.0, 2.0, 3.0), (0.0, 10.0, 0.0)),
     )
+
+
+def test_an_axis_off_the_centre_is_written_and_read_again() -> None:
+    """And where it is in the centre an entry says nothing of it."""
+    lens = CameraIntrinsics(width=320, cx_offset_px=-12.5, cy_offset_px=7.25)
+    given = AgentSpec(name="eye", intrinsics=lens)
+    entry = agent_entry(given, None)
+    assert entry == {"name": "eye", "width": 320, "cx_offset": -12.5, "cy_offset": 7.25}
+    assert AgentSpecModel(**entry).to_agent_spec() == given
+    centred = AgentSpec(name="eye", intrinsics=CameraIntrinsics(width=320))
+    assert agent_entry(centred, None) == {"name": "eye", "width": 320}
 
 
 def test_a_category_keeps_its_colour_byte_for_byte() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,14 +11,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.picture_settings import PictureSettings
 
+SIZE_AND_ANGLE = {
+    "width": st.integers(8, 400),
+    "height": st.integers(8, 400),
+    "vertical_fov_deg": st.floats(5.0, 150.0),
+}
+CENTRED = st.builds(CameraIntrinsics, **SIZE_AND_ANGLE)
 LENSES = st.builds(
     CameraIntrinsics,
-    width=st.integers(8, 400),
-    height=st.integers(8, 400),
-    vertical_fov_deg=st.floats(5.0, 150.0),
+    **SIZE_AND_ANGLE,
+    cx_offset_px=st.floats(-4.0, 4.0),
+    cy_offset_px=st.floats(-4.0, 4.0),
 )
 
 
@@ -28,7 +36,7 @@ def test_the_optical_axis_meets_the_middle_of_the_pixel_grid() -> None:
     np.testing.assert_allclose(lens.K[:2], expected)
 
 
-@given(LENSES)
+@given(CENTRED)
 def test_the_field_of_view_ends_at_the_outer_edges_of_the_pixels(lens: CameraIntrinsics) -> None:
     """Half the angle up leads to half a pixel above the first row's centre."""
     top = math.tan(math.radians(lens.vertical_fov_deg) / 2)
@@ -77,6 +85,53 @@ def test_the_opengl_matrix_says_the_same_as_the_projection(lens: CameraIntrinsic
     assert clip[3] == point[2]
 
 
+def test_an_axis_off_the_centre_moves_the_whole_picture() -> None:
+    """By as much to the right and down; the focal length stays."""
+    centred = CameraIntrinsics(width=100, height=80, vertical_fov_deg=60.0)
+    off = replace(centred, cx_offset_px=12.5, cy_offset_px=-7.0)
+    assert (off.fx, off.fy) == (centred.fx, centred.fy)
+    assert (off.cx, off.cy) == (49.5 + 12.5, 39.5 - 7.0)
+    x, y, z = 0.3, -0.4, 2.0
+    f = 40.0 / math.tan(math.radians(30.0))
+    np.testing.assert_allclose(off.project([x, y, z]), [62.0 + f * x / z, 32.5 + f * y / z])
+    assert off.K[0, 2] == off.cx
+    assert off.K[1, 2] == off.cy
+    (left, top), (right, bottom) = off.border()
+    np.testing.assert_allclose([left, right], [-62.5 / f, 37.5 / f])
+    np.testing.assert_allclose([top, bottom], [-33.0 / f, 47.0 / f])
+
+
+@given(LENSES, st.integers(2, 4))
+def test_samples_lie_in_their_pixels(lens: CameraIntrinsics, times: int) -> None:
+    """With supersampling and half a pixel apart: one ray is at one place of the picture."""
+    rays = lens.rays_through([(0.0, 0.0), (lens.width - 1.0, lens.height - 1.0), (2.25, 3.5)])
+    places = lens.project(rays)
+    middle = 0.5 * (times - 1)
+    camera = Camera(intrinsics=lens, picture=PictureSettings(supersampling=times))
+    finer = camera.of_samples().intrinsics
+    np.testing.assert_allclose(finer.project(rays), times * places + middle, atol=1e-5)
+    halves = camera.of_half_pixels().intrinsics
+    np.testing.assert_allclose(halves.project(rays), 2.0 * places + 1.0, atol=1e-5)
+
+
+@given(LENSES)
+def test_a_mirrored_picture_has_left_and_right_exchanged(lens: CameraIntrinsics) -> None:
+    """A point with the other x is as far from the other side."""
+    u, v = lens.project([0.3, 0.2, 1.5])
+    mirrored = lens.mirrored().project([-0.3, 0.2, 1.5])
+    np.testing.assert_allclose(mirrored, [lens.width - 1 - u, v], atol=1e-9)
+
+
+@given(LENSES)
+def test_numbers_make_the_lens_again(lens: CameraIntrinsics) -> None:
+    """All of them in one order, but those that an axis in the centre does not need."""
+    assert CameraIntrinsics(**lens.numbers()) == lens  # type: ignore[arg-type]  # sizes are whole
+    downwards = replace(lens, cx_offset_px=0.0, cy_offset_px=1.0)
+    assert [*downwards.numbers()] == [*INTRINSICS_LIMITS]
+    centred = replace(lens, cx_offset_px=0.0, cy_offset_px=0.0)
+    assert [*centred.numbers()] == ["width", "height", "vertical_fov_deg", "near_m", "far_m"]
+
+
 def test_near_and_far_are_the_ends_of_clip_space() -> None:
     """Depth near is -1, far is 1."""
     lens = CameraIntrinsics(near_m=0.2, far_m=30.0)
@@ -107,6 +162,15 @@ BAD = [
     ({"vertical_fov_deg": 180}, "vertical_fov_deg must be a number from 1 to 170 [deg], got 180"),
     ({"vertical_fov_deg": math.nan}, "vertical_fov_deg must be a number from 1 to 170 [deg]"),
     ({"near_m": 5.0, "far_m": 5.0}, "near_m must be less than far_m = 5 [m], got 5.0"),
+    (
+        {"width": 64, "cx_offset_px": 32.5},
+        "cx_offset_px must be within half the picture, 32 [px], got 32.5",
+    ),
+    (
+        {"height": 48, "cy_offset_px": -25},
+        "cy_offset_px must be within half the picture, 24 [px], got -25",
+    ),
+    ({"cx_offset_px": math.inf}, "cx_offset_px must be a number from -2048 to 2048 [px], got inf"),
     ({"near_m": 0}, "near_m must be a number from 0.001 to 10000 [m], got 0"),
 ]
 

@@ -148,7 +148,7 @@ SAILENV_KERNEL(free_amodal_scratch)(sailenv::AmodalScratch** made) {
 SAILENV_KERNEL(draw_amodal)
 (int64_t threads, sailenv::AmodalScratch** handle, const sailenv::View* view,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, const int64_t* starts,
- int64_t count, double near_m, int64_t* results) {
+ int64_t count, int64_t* results) {
     using namespace sailenv;
     if (view->width <= 0 || view->height <= 0 || view->width > 8192 || view->height > 8192 ||
         count < 0 || threads < 1) {
@@ -159,19 +159,11 @@ SAILENV_KERNEL(draw_amodal)
             return STATUS_INVALID_ARGUMENT;
         }
     }
-    Projection canvas{};
-    canvas.perspective = true;
-    canvas.focal = view->focal;
-    canvas.cx = view->cx;
-    canvas.cy = view->cy;
-    canvas.width = static_cast<int32_t>(view->width);
-    canvas.height = static_cast<int32_t>(view->height);
+    Projection canvas = projection_of(*view);
     canvas.x0 = -canvas.width;
     canvas.y0 = -canvas.height;
     canvas.x1 = 2 * canvas.width - 1;
     canvas.y1 = 2 * canvas.height - 1;
-    canvas.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view->far_m), 0.0f);
-    canvas.greatest_inverse_depth = 3e38f;
     try {
         AmodalScratch& scratch = **handle;
         scratch.shared.band_rows = ONE_BAND;
@@ -184,8 +176,9 @@ SAILENV_KERNEL(draw_amodal)
         parallel_for(threads, count, 1, [&](int64_t k, int64_t, int64_t slot) {
             const DrawList own{parts->parts + starts[k], starts[k + 1] - starts[k]};
             try {
-                draw_object(canvas, scratch.shared, *instances, own, rounded_down(view->far_m),
-                            -rounded_down(-near_m), scratch.threads[static_cast<size_t>(slot)],
+                draw_object(canvas, scratch.shared, *instances, own, rounded_down(view->lens.far_m),
+                            -rounded_down(-view->lens.near_m),
+                            scratch.threads[static_cast<size_t>(slot)],
                             scratch.crops[static_cast<size_t>(k)], results + NUMBERS * k);
             } catch (const std::bad_alloc&) {
                 __atomic_store_n(&lacks_memory, true, __ATOMIC_RELAXED);

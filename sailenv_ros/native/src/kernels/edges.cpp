@@ -45,13 +45,12 @@ LANES_INLINE f8 every_second(const float* p) {
 // The plane of a triangle; `normal` has any length. 1 / depth is the ray's share along the plane's
 // normal, so its slopes are the normal.
 struct Plane {
-    float normal[3], square;
+    vec3 normal;
+    float square;
 };
 LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
-    const float* n = t.inverse_depth;
-    Plane p = {{n[0] * s.focal, n[1] * s.focal, n[0] * s.cx + n[1] * s.cy + n[2]}, 0.0f};
-    for (const float along : p.normal) p.square += along * along;
-    return p;
+    const vec3 normal = s.lens.direction(t.inverse_depth);
+    return {normal, dot(normal, normal)};
 }
 
 // Tells if two triangles belong to one smooth surface around a place.
@@ -62,9 +61,8 @@ LANES_INLINE bool are_alike(const Triangle& a, const Plane& p, const Triangle& b
     const float off =
         a.inverse_depth[0] * x + (a.inverse_depth[1] * y + a.inverse_depth[2]) - there;
     if (__builtin_fabsf(off) > SAME_INVERSE_DEPTH * there) return false;
-    const float dot =
-        p.normal[0] * q.normal[0] + p.normal[1] * q.normal[1] + p.normal[2] * q.normal[2];
-    return dot > 0.0f && dot * dot >= LEAST_COSINE * LEAST_COSINE * (p.square * q.square);
+    const float along = dot(p.normal, q.normal);
+    return along > 0.0f && along * along >= LEAST_COSINE * LEAST_COSINE * (p.square * q.square);
 }
 
 // A surface that samples of a pixel see: its first one, and the weight of all.
@@ -208,7 +206,7 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
 LANES_INLINE i8 bent(const Shading& s, const float* corner, int64_t stride) {
     const float* middle = corner + stride + 1;
     const f8 own = every_second(middle);
-    const f8 least = own * (LEAST_BEND / s.focal);
+    const f8 least = own * (ray_length(s.lens, LEAST_BEND));
     i8 found{};
     for (const int64_t step : {int64_t{1}, stride - 1, stride, stride + 1}) {
         const f8 both = every_second(middle - step) + every_second(middle + step);

@@ -90,8 +90,7 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const f8 u = attribute(3), v = attribute(4);
     const Base8 base = base_colour(part, p, t, depth, u, v, wanted);
     const Vec3x8 colour = base.colour * base.colour;
-    const Vec3x8 ray =
-        ray_at(s.world_from_camera, (at - s.cx) * (1.0f / s.focal), (row - s.cy) / s.focal);
+    const Vec3x8 ray = ray_through(s.lens, s.world_from_camera, at, row);
     const Vec3x8 view = ray * -inverse_length(ray);
     const float (*n)[8] = s.frames[part.instance].normal_columns;
     Vec3x8 normal = vec3(n[0][0], n[0][1], n[0][2]) * attribute(0) +

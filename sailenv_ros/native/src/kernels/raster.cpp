@@ -38,12 +38,14 @@ void set_sides(InstanceFrame& frame, const Projection& p) {
     const double* m = frame.eye_from_object;
     double wide[4];
     if (p.perspective) {
-        // Symmetric about the axis, a hundredth wider than what is drawn.
-        const double left = p.cx + 0.5 - pixel_of(p, p.x0), right = pixel_of(p, p.x1) + 0.5 - p.cx;
-        const double up = p.cy + 0.5 - pixel_of(p, p.y0), low = pixel_of(p, p.y1) + 0.5 - p.cy;
-        const double across = left > right ? left : right, down = up > low ? up : low;
-        wide[0] = wide[1] = (1.0 + CULL_MARGIN) * across / p.focal;
-        wide[2] = wide[3] = (1.0 + CULL_MARGIN) * down / p.focal;
+        // A hundredth of the farther side's width beyond what is drawn.
+        wide[0] = -ray_x(p.lens, pixel_of(p, p.x0) - 0.5);
+        wide[1] = ray_x(p.lens, pixel_of(p, p.x1) + 0.5);
+        wide[2] = -ray_y(p.lens, pixel_of(p, p.y0) - 0.5);
+        wide[3] = ray_y(p.lens, pixel_of(p, p.y1) + 0.5);
+        const double across = CULL_MARGIN * std::max(wide[0], wide[1]);
+        const double down = CULL_MARGIN * std::max(wide[2], wide[3]);
+        for (int s = 0; s < 4; s++) wide[s] += s < 2 ? across : down;
     }
     for (int s = 0; s < 4; s++) {
         const double sign = s % 2 ? -1.0 : 1.0;
@@ -100,7 +102,7 @@ struct ClusterRows {
 // snapped to a grid.
 template <bool PERSPECTIVE>
 void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
-    const double inverse_focal = 1.0 / p.focal;
+    const Lens lens = p.lens;
     for (int32_t k = 0; k < count; k += 4) {
         const d4 one = {1.0, 1.0, 1.0, 1.0};
         const d4 ax = load_double(r.corner[0] + k), ay = load_double(r.corner[1] + k);
@@ -122,10 +124,9 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
         // Without extent, or not a number: back is 2, nothing sees that.
         const l4 state = (size > 1e-30) & (inverse < 1e30) ? back : l4{2, 2, 2, 2};
         for (int j = 0; j < 4; j++) r.back[k + j] = static_cast<int32_t>(state[j]);
-        const d4 turn = sign * inverse_focal;
-        const d4 a0 = turn * e0x, b0 = turn * e0y, c0 = sign * e0z - a0 * p.cx - b0 * p.cy;
-        const d4 a1 = turn * e1x, b1 = turn * e1y, c1 = sign * e1z - a1 * p.cx - b1 * p.cy;
-        const d4 a2 = turn * e2x, b2 = turn * e2y, c2 = sign * e2z - a2 * p.cx - b2 * p.cy;
+        const auto [a0, b0, c0] = share_along(lens, sign, e0x, e0y, e0z);
+        const auto [a1, b1, c1] = share_along(lens, sign, e1x, e1y, e1z);
+        const auto [a2, b2, c2] = share_along(lens, sign, e2x, e2y, e2z);
         store_double(r.edge[0] + k, a0);
         store_double(r.edge[1] + k, b0);
         store_double(r.edge[2] + k, c0);
@@ -160,10 +161,7 @@ template <bool PERSPECTIVE>
 void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
     const float left = static_cast<float>(p.x0), right = static_cast<float>(p.x1);
     const float top = static_cast<float>(p.y0), bottom = static_cast<float>(p.y1);
-    const float finer = p.fine ? 2.0f : 1.0f, first = p.fine ? 1.0f : 0.0f;
-    const float focal = finer * static_cast<float>(p.focal),
-                cx = finer * static_cast<float>(p.cx) + first,
-                cy = finer * static_cast<float>(p.cy) + first;
+    const FastLens lens(p.fine ? of_half_pixels(p.lens) : p.lens);
     for (int32_t k = 0; k < count; k += 8) {
         f8 x[3], y[3], depth[3];
         for (int j = 0; j < 3; j++) {
@@ -171,9 +169,7 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
             y[j] = load(r.corner[3 * j + 1] + k);
             depth[j] = load(r.corner[3 * j + 2] + k);
             if (PERSPECTIVE) {
-                const f8 scale = focal / depth[j];
-                x[j] = cx + x[j] * scale;
-                y[j] = cy + y[j] * scale;
+                project(lens, depth[j], x[j], y[j]);
             }
         }
         f8 x0 = min8(x[0], min8(x[1], x[2])) - 0.01f, x1 = max8(x[0], max8(x[1], x[2])) + 0.01f;
@@ -440,6 +436,20 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
 }
 
 }  // namespace
+
+Projection projection_of(const View& view) {
+    Projection p{};
+    p.perspective = true;
+    p.lens = view.lens;
+    p.width = static_cast<int32_t>(view.width);
+    p.height = static_cast<int32_t>(view.height);
+    p.x1 = p.width - 1;
+    p.y1 = p.height - 1;
+    // A little less: annotations compare depths with the far distance exactly.
+    p.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view.lens.far_m), 0.0f);
+    p.greatest_inverse_depth = 3e38f;
+    return p;
+}
 
 void set_frames(Scratch& scratch, const Instances& instances, const double* eye_from_world,
                 const Projection& projection) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lanes.h"
+#include "lens.h"
 #include "render_types.h"
 
 namespace sailenv {
@@ -46,9 +47,11 @@ struct InstanceFrame {
     alignas(32) float normal_columns[3][8];  // world normal from object normal; beyond are 0
 };
 
+// Onto the picture's pixels. Triangles have straight edges there: the rasteriser draws through no
+// lens that bends lines.
 struct Projection {
     bool perspective;
-    double focal, cx, cy;    // 1, 0, 0 in a shadow map
+    Lens lens;               // 1, 1, 0, 0 in a shadow map
     int32_t width, height;   // pixels
     int32_t x0, y0, x1, y1;  // first and last samples that are drawn; may lie beside the picture
     // Samples are the centres of pixels. Fine ones are half a pixel apart: sample k lies at pixel
@@ -57,6 +60,7 @@ struct Projection {
     float least_inverse_depth;  // what is not nearer is not drawn
     float greatest_inverse_depth;
 };
+Projection projection_of(const View& view);
 
 enum Facing : int32_t { FACING_BOTH = 0, FACING_FRONT = 1, FACING_BACK = 2 };
 

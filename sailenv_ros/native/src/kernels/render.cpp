@@ -89,18 +89,7 @@ Mat3 turn_of(const double* m) {
 void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
                   const Instances& instances, const DrawList& parts, const DrawList& glass,
                   const Light* light, const Outputs& outputs) {
-    Projection projection{};
-    projection.perspective = true;
-    projection.focal = view.focal;
-    projection.cx = view.cx;
-    projection.cy = view.cy;
-    projection.width = static_cast<int32_t>(view.width);
-    projection.height = static_cast<int32_t>(view.height);
-    projection.x1 = projection.width - 1;
-    projection.y1 = projection.height - 1;
-    // A little less: annotations compare depths with the far distance exactly.
-    projection.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view.far_m), 0.0f);
-    projection.greatest_inverse_depth = 3e38f;
+    const Projection projection = projection_of(view);
     const bool shaded = outputs.radiance != nullptr;
     const bool smoothed = shaded && view.smooth_edges != 0;
     Projection sampled = projection;
@@ -131,9 +120,7 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     shading.width = view.width;
     shading.stride = scratch.stride;
     shading.visible = scratch.visible.data();
-    shading.focal = static_cast<float>(view.focal);
-    shading.cx = static_cast<float>(view.cx);
-    shading.cy = static_cast<float>(view.cy);
+    shading.lens = FastLens(view.lens);
     shading.world_from_camera = turn_of(view.world_from_camera);
     shading.camera_from_world = turn_of(view.camera_from_world);
     const double* m = view.world_from_camera;
@@ -214,7 +201,7 @@ SAILENV_KERNEL(draw_shadow_map)
     try {
         Scratch& scratch = **handle;
         Projection projection{};
-        projection.focal = 1.0;
+        projection.lens.fx = projection.lens.fy = 1.0;
         projection.width = projection.height = static_cast<int32_t>(size);
         projection.x1 = projection.y1 = projection.width - 1;
         projection.greatest_inverse_depth = 1.0f;

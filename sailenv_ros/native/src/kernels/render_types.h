@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "lens.h"
 #include "light_law.h"
 
 namespace sailenv {
@@ -129,7 +130,7 @@ struct Light {
 
 struct View {
     double camera_from_world[16], world_from_camera[16];
-    double focal, cx, cy, far_m;
+    Lens lens;
     int64_t width, height;
     int64_t smooth_edges;  // 1: edges of surfaces are smoothed, see kernels/edges.cpp
 };

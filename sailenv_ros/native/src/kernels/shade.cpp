@@ -10,10 +10,8 @@ namespace sailenv {
 namespace {
 
 void set_rays(const Shading& s, Chunk& c) {
-    const float inverse = 1.0f / s.focal;
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const f8 x = (load(c.at_x + i) - s.cx) * inverse, y = (load(c.at_y + i) - s.cy) / s.focal;
-        c.ray.set(i, ray_at(s.world_from_camera, x, y));
+        c.ray.set(i, ray_through(s.lens, s.world_from_camera, load(c.at_x + i), load(c.at_y + i)));
         const Vec3x8 normal = c.normal.at(i);
         c.normal.set(i, normal * inverse_length(normal));
     }

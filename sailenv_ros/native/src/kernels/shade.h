@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lanes.h"
+#include "lens.h"
 #include "raster.h"
 #include "render_types.h"
 
@@ -17,7 +18,7 @@ struct Shading {
     const Outputs* outputs;
     int64_t width, stride;
     const uint32_t* visible;
-    float focal, cx, cy;
+    FastLens lens;
     Mat3 world_from_camera, camera_from_world;
     vec3 eye;
 };

@@ -123,9 +123,7 @@ void apply_detail_maps(const Shading& s, Chunk& c) {
         const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.5f);
         store_taps(taps, i, texture_taps(load(c.u + i), load(c.v + i), size, truncated(level)));
     }
-    const float inverse = 1.0f / s.focal;
-    const vec3 right = s.world_from_camera.column(0) * inverse;
-    const vec3 down = s.world_from_camera.column(1) * inverse;
+    const auto [right, down] = ray_steps(s.lens, s.world_from_camera);
     alignas(32) float texels[4 * 8];
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 relief = load(c.relief + i), finish = load(c.finish + i);

@@ -6,7 +6,8 @@ layout(location = 0) out vec2 out_surface;  // depth along the optical axis [m],
 #ifdef SHADED
 #include "textures.glsl"
 
-uniform vec4 lens;  // focal length, cx, cy [px], unused
+#include "lens.h"
+uniform Lens lens;
 
 in vec3 optical_normal;
 in vec2 uv;
@@ -60,7 +61,7 @@ void main() {
 #ifndef UNLIT
     vec4 packed_texel = packed_map(uv);
 #ifdef NORMAL_MAP
-    vec3 point = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0) / gl_FragCoord.w;
+    vec3 point = ray_through(lens, gl_FragCoord.xy - 0.5) / gl_FragCoord.w;
     normal = mapped_normal(packed_texel.xy, uv, normal, point);
 #endif
     vec2 rough_metal = roughness_metallic(MATERIAL_FINISH.xy, packed_texel);

@@ -9,7 +9,8 @@ out vec2 light_uv;
 
 #include "draw.glsl"
 
-uniform float far_m;
+#include "lens.h"
+uniform Lens lens;
 
 #ifdef SHADED
 out vec3 optical_normal;
@@ -21,7 +22,7 @@ out float gl_ClipDistance[1];
 void main() {
     gl_Position = CLIP_FROM_OBJECT * vec4(in_position, 1.0);
     // Depth clamp lets surfaces nearer than near through; it must not let those beyond far.
-    gl_ClipDistance[0] = far_m - gl_Position.w;
+    gl_ClipDistance[0] = lens.far_m - gl_Position.w;
 #ifdef SHADED
     optical_normal = OPTICAL_NORMAL_FROM_OBJECT * in_normal;
     uv = in_uv;

@@ -40,7 +40,7 @@ vec3 mirrored_light(vec3 point, vec3 direction, float roughness) {
 void main() {
     vec4 base = base_colour(uv);
     base.rgb *= base.rgb;
-    vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
+    vec3 ray = ray_through(lens, gl_FragCoord.xy - 0.5);
     vec3 view = -normalize(ray);
     vec3 normal = normalize(optical_normal);
     if (dot(normal, view) < 0.0) normal = -normal;

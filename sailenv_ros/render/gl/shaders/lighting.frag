@@ -110,7 +110,7 @@ vec2 environment_term(float nv, float roughness) {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float z = texelFetch(surface, pixel, 0).x;
-    vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
+    vec3 ray = ray_through(lens, gl_FragCoord.xy - 0.5);
     vec4 s = texelFetch(shape, pixel, 0);
     vec4 a = texelFetch(albedo, pixel, 0);
     vec3 base = a.rgb * a.rgb;

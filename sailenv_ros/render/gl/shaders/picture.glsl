@@ -4,10 +4,13 @@ uniform vec3 sky_horizon;
 uniform vec3 sky_ground;
 uniform vec3 ambient;
 uniform float sky_share;         // of the sky's light that reaches the objects
-uniform vec4 lens;               // focal length, cx, cy [px], exposure factor
+uniform float exposure;          // factor
 uniform mat3 world_from_optical;
 
+#include "lens.h"
 #include "light_law.h"
+
+uniform Lens lens;
 
 vec3 sky(vec3 world_direction) {
     return sky_radiance(world_direction.z, sky_zenith, sky_horizon, sky_ground);
@@ -24,5 +27,5 @@ vec3 light_of_sky(vec3 world_normal) {
 vec4 finished(vec3 radiance, vec3 from_around) {
     float share = luminance(from_around) / max(luminance(radiance), 1e-6);
     // Half precision ends at 65504.
-    return vec4(min(radiance * lens.w, vec3(6e4)), min(share, 1.0));
+    return vec4(min(radiance * exposure, vec3(6e4)), min(share, 1.0));
 }

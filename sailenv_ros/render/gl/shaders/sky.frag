@@ -17,7 +17,7 @@ vec3 mapped_sky(vec3 d) {
 #endif
 
 void main() {
-    vec3 ray = vec3((gl_FragCoord.xy - 0.5 - lens.yz) / lens.x, 1.0);
+    vec3 ray = ray_through(lens, gl_FragCoord.xy - 0.5);
     vec3 seen = background.a > 0.5 ? background.rgb : mapped_sky(normalize(world_from_optical * ray));
     out_colour = finished(seen, vec3(0.0));
 }
