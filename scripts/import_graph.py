@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Counts rooms, arrows between them, long modules and circles of imports.
 
-    scripts/import_graph.py [ROOT]           prints the figures; 1 if modules import in a circle
-    scripts/import_graph.py --check [ROOT]   prints the circles alone
+    scripts/import_graph.py [ROOT]           prints the figures
+    scripts/import_graph.py --check [ROOT]   prints what is beyond the limits alone
+
+Returns 1 if modules import in a circle, or a limit below is passed.
 
 Every import counts: at the top, inside functions, and under TYPE_CHECKING. A room is a package or
 a module at the top of `sailenv_ros`; `sailenv_msgs_py` is one room.
@@ -18,6 +20,8 @@ from pathlib import Path
 
 PACKAGES = ("sailenv_ros", "sailenv_msgs_py")
 MAX_LINES = 350
+MAX_ROOMS = 30
+MAX_ARROWS = 210
 
 Graph = Mapping[str, set[str]]
 
@@ -130,37 +134,42 @@ def within(graph: Graph, circle: Iterable[str]) -> list[str]:
 
 
 def main() -> int:
-    """Print the figures; return 1 if modules import in a circle."""
+    """Print the figures; return 1 if there is a circle, or a limit is passed."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("root", nargs="?", type=Path, default=Path(__file__).resolve().parents[1])
-    parser.add_argument("--check", action="store_true", help="print circles between modules alone")
+    parser.add_argument(
+        "--check", action="store_true", help="print what is beyond the limits alone"
+    )
     options = parser.parse_args()
     modules = modules_of(options.root)
     graph = imports_of(modules)
     rooms = rooms_graph(graph)
     found = circles(graph)
-    if not options.check:
-        lengths = {
-            name: len(file.read_text(encoding="utf-8").splitlines())
-            for name, file in modules.items()
-        }
-        long = {name: count for name, count in lengths.items() if count > MAX_LINES}
+    between = circles(rooms)
+    lengths = {
+        name: len(file.read_text(encoding="utf-8").splitlines()) for name, file in modules.items()
+    }
+    long = {name: count for name, count in lengths.items() if count > MAX_LINES}
+    passed = len(rooms) > MAX_ROOMS or arrows(rooms) > MAX_ARROWS
+    if passed or not options.check:
         print(f"modules: {len(modules)}, lines: {sum(lengths.values())}")
-        print(f"rooms: {len(rooms)}")
-        print(f"arrows between rooms: {arrows(rooms)}")
+        print(f"rooms: {len(rooms)} (at most {MAX_ROOMS})")
+        print(f"arrows between rooms: {arrows(rooms)} (at most {MAX_ARROWS})")
+    if long or not options.check:
         print(f"modules of more than {MAX_LINES} lines: {len(long)}")
-        for name, count in sorted(long.items(), key=lambda item: -item[1]):
-            print(f"  {count:4d} {name}")
-        between = circles(rooms)
+    for name, count in sorted(long.items(), key=lambda item: -item[1]):
+        print(f"  {count:4d} {name}")
+    if between or not options.check:
         print(f"circles between rooms: {len(between)}")
-        for circle in between:
-            print(f"  {len(circle)} rooms: {', '.join(circle)}")
+    for circle in between:
+        print(f"  {len(circle)} rooms: {', '.join(circle)}")
+    if found or not options.check:
         print(f"circles between modules: {len(found)}")
     for circle in found:
         print(f"  {len(circle)} modules:", *within(graph, circle), sep="\n    ")
-    return 1 if found else 0
+    return 1 if found or long or passed else 0
 
 
 if __name__ == "__main__":

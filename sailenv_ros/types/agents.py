@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.types.camera import CameraIntrinsics, require_drawable
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
@@ -89,7 +89,7 @@ class AgentSpec:
                 "depth_range_m", self.depth_range_m, f"a number above near_m = {near:g} [m]"
             )
         PictureSettings.checked("picture", self.picture)
-        require_drawable(self.intrinsics, self.picture)
+        self.picture.require_drawable(self.intrinsics.width, self.intrinsics.height)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

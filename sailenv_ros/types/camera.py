@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.lens import LENS
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
-from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.picture_settings import MAX_SIZE_PX, PictureSettings
 from sailenv_ros.types.validation import Bounds, check_bounds
 
 __all__ = [
@@ -29,11 +29,9 @@ __all__ = [
     "MIN_SIZE_PX",
     "Camera",
     "CameraIntrinsics",
-    "require_drawable",
 ]
 
 MIN_SIZE_PX = 8
-MAX_SIZE_PX = 4096
 
 _SIZE = Bounds(least=MIN_SIZE_PX, most=MAX_SIZE_PX, unit="px", whole=True)
 _CLIP = Bounds(least=1e-3, most=1e4, unit="m")
@@ -304,7 +302,7 @@ class Camera:
     name: str = ""
 
     def __post_init__(self) -> None:
-        require_drawable(self.intrinsics, self.picture)
+        self.picture.require_drawable(self.intrinsics.width, self.intrinsics.height)
 
     def of_samples(self) -> Camera:
         """Return the camera whose pixels are the samples of this one's picture."""
@@ -346,20 +344,3 @@ class Camera:
         matrix = invert(self.world_from_camera)
         matrix.flags.writeable = False
         return matrix
-
-
-def require_drawable(intrinsics: CameraIntrinsics, picture: PictureSettings) -> None:
-    """Refuse a picture whose samples would be more than `MAX_SIZE_PX` a side.
-
-    Raises
-    ------
-    InvalidRequest
-        Naming what would be accepted for a picture of that size.
-    """
-    width, height, times = intrinsics.width, intrinsics.height, picture.supersampling
-    most = max(MAX_SIZE_PX // max(width, height), 1)
-    if times > most:
-        accepted = (
-            f"at most {most} for {width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
-        )
-        raise InvalidRequest("supersampling", times, accepted)

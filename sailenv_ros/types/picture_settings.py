@@ -14,7 +14,10 @@ from typing_extensions import TypedDict
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag
 
-__all__ = ["LIMITS", "NAMES", "PictureChanges", "PictureSettings", "ToneCurve"]
+__all__ = ["LIMITS", "MAX_SIZE_PX", "NAMES", "PictureChanges", "PictureSettings", "ToneCurve"]
+
+MAX_SIZE_PX = 4096
+"""Most pixels, or samples, along a side of a picture."""
 
 ToneCurve = Literal["filmic", "linear"]
 
@@ -100,6 +103,19 @@ class PictureSettings:
             if name not in NAMES:
                 raise UnknownName("setting of a picture", str(name), NAMES)
         return replace(self, **changes)
+
+    def require_drawable(self, width: int, height: int) -> None:
+        """Refuse a picture of so many pixels with more than `MAX_SIZE_PX` samples along a side.
+
+        Raises
+        ------
+        InvalidRequest
+            Naming what would be accepted for a picture of that size.
+        """
+        most = max(MAX_SIZE_PX // max(width, height), 1)
+        if self.supersampling > most:
+            size = f"{width} x {height} px (no side has over {MAX_SIZE_PX} samples)"
+            raise InvalidRequest("supersampling", self.supersampling, f"at most {most} for {size}")
 
 
 class PictureChanges(TypedDict, total=False):

@@ -1,0 +1,228 @@
+"""An agent in a simulator that runs as a node: registered, asked for operations, removed.
+
+Raises typed errors and never prints; every wait has a deadline.
+"""
+
+from __future__ import annotations
+
+import atexit
+import inspect
+import threading
+from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from typing import Any, TypeVar
+
+from sailenv_msgs_py.services import SERVICES
+from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
+from sailenv_ros.frame.html import scene_html
+from sailenv_ros.ros.client.frame_client import FrameClient
+from sailenv_ros.ros.client.remote import RemoteSimulator
+from sailenv_ros.simulation.operations import Operation, Operations
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.scene_info import SceneInfo
+
+__all__ = ["RegisteredAgent"]
+
+ORDINARY_S = 30.0
+"""An operation whose own deadline is longer takes long by nature [s]."""
+
+END_S = 2.0
+"""Time that the simulator may take to notice the end of an Agent [s]."""
+
+A = TypeVar("A", bound="RegisteredAgent")
+
+
+class RegisteredAgent(Operations):
+    """An agent that exists in the simulator as long as this does; a context manager.
+
+    Parameters
+    ----------
+    spec : AgentSpec
+    timeout_s, namespace, domain_id, simulator, start_timeout_s
+        As of `Agent`.
+    """
+
+    def __init__(
+        self,
+        spec: AgentSpec,
+        *,
+        timeout_s: float,
+        namespace: str,
+        domain_id: int | None,
+        simulator: Mapping[str, object] | None,
+        start_timeout_s: float,
+    ) -> None:
+        self._spec = spec
+        self._timeout_s = timeout_s
+        self._lock = threading.RLock()
+        self._frames: FrameClient | None = None
+        self._worker: ThreadPoolExecutor | None = None
+        self._closed = False
+        self._recaptured = 0
+        self._remote = RemoteSimulator(
+            namespace=namespace,
+            domain_id=domain_id,
+            simulator=simulator,
+            start_timeout_s=start_timeout_s,
+        )
+        atexit.register(self.close)
+        try:
+            self.register()
+        except BaseException:
+            self.close()
+            raise
+
+    # -- life ------------------------------------------------------------------------------
+
+    @property
+    def id(self) -> str:
+        """Name of this agent in the simulator, and of its topics."""
+        return self._spec.name
+
+    @property
+    def own_agent(self) -> str:
+        """Name of this agent: the one that operations mean if none is named."""
+        return self._spec.name
+
+    @property
+    def simulator_pid(self) -> int | None:
+        """Process id of the simulator if it was started here, else None."""
+        return self._remote.process_id
+
+    def register(self) -> None:
+        """Make the agent known to the simulator; done on construction, needed after `delete`."""
+        with self._lock:
+            if self._frames is not None:
+                return
+            frames = FrameClient(self._remote, self._spec)
+            try:
+                self._spec = self.register_agent(self._spec)
+                frames.begin(self._spec, self._timeout_s)
+            except BaseException:
+                frames.close()
+                raise
+            self._frames = frames
+
+    def delete(self) -> None:
+        """Remove the agent from the simulator; a second call does nothing."""
+        with self._lock:
+            if self._frames is None:
+                return
+            frames, self._frames = self._frames, None
+            self._recaptured += frames.recaptured
+            try:
+                # Before its subscriptions: an agent whose client is gone is removed as it is.
+                self.delete_agent(self.id)
+            finally:
+                frames.close()
+                self._remote.connection.forget_services(self.id)
+
+    def rejoin(self) -> None:
+        """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.
+
+        The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
+        """
+        self._remote.connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            # Where the old simulator lives after all, it shall not keep the name.
+            with suppress(SailenvError):
+                self.delete()
+            self._remote.reconnect()
+            self.register()
+
+    def close(self) -> None:
+        """Remove the agent and disconnect; a second call does nothing.
+
+        A simulator that was started for this agent ends with the last one that uses it.
+        """
+        if self._remote.connection.is_inherited:
+            return  # it is the parent's, who goes on with it
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            atexit.unregister(self.close)
+            self._timeout_s = min(self._timeout_s, END_S)
+            if self._worker is not None:
+                self._worker.shutdown(wait=False, cancel_futures=True)
+            try:
+                self.delete()
+            except SailenvError:
+                pass  # the simulator is gone, and with it the agent
+            finally:
+                self._remote.close()
+
+    def _repr_html_(self) -> str:
+        """Return a table of what is simulated, for notebooks."""
+        return scene_html(f"Agent {self.id}", self.info)
+
+    def __enter__(self: A) -> A:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    # -- operations ------------------------------------------------------------------------
+
+    @property
+    def info(self) -> SceneInfo:
+        """The scene as the simulator announced it last; never blocks."""
+        return self._remote.info
+
+    def submit_operation(
+        self, operation: Operation[..., Any], arguments: inspect.BoundArguments
+    ) -> Future[Any]:
+        """Begin an operation in a thread of its own; one is done after the other."""
+        self._remote.connection.check_process()
+        with self._lock:
+            if self._closed:
+                raise SimulationClosed("the Agent was closed")
+            if self._worker is None:
+                self._worker = ThreadPoolExecutor(1, thread_name_prefix=f"{self.id}-operations")
+            return self._worker.submit(self.call_operation, operation, arguments, None)
+
+    def call_operation(
+        self,
+        operation: Operation[..., Any],
+        arguments: inspect.BoundArguments,
+        timeout_s: float | None,
+    ) -> Any:
+        """Carry an operation out in the simulator and return its result."""
+        self._remote.connection.check_process()
+        limit_s = self._deadline_s(operation) if timeout_s is None else timeout_s
+        service = SERVICES[operation.name]
+        if service.of_agent and arguments.arguments["agent"] == self.id:
+            frames = self._own_frames
+            if operation is Operations.capture:
+                with self._lock:
+                    return frames.capture(arguments.arguments.get("views"), limit_s)
+        elif operation is Operations.capture:
+            accepted = f"{self.id!r}: an Agent receives its own frames alone"
+            raise InvalidRequest("agent", arguments.arguments["agent"], accepted)
+        return self._remote.call(service, arguments, limit_s)
+
+    @property
+    def picture(self) -> PictureSettings:
+        """The present picture settings, asked from the simulator."""
+        return self.get_picture()
+
+    @property
+    def recaptured(self) -> int:
+        """Number of frames requested again because images did not arrive."""
+        return self._recaptured + (0 if self._frames is None else self._frames.recaptured)
+
+    # -- inside ----------------------------------------------------------------------------
+
+    @property
+    def _own_frames(self) -> FrameClient:
+        if self._frames is None:
+            raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
+        return self._frames
+
+    def _deadline_s(self, operation: Operation[..., Any]) -> float:
+        takes_long = operation.deadline_s > ORDINARY_S
+        return max(self._timeout_s, operation.deadline_s) if takes_long else self._timeout_s
