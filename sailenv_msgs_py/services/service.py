@@ -42,7 +42,7 @@ class Service:
         ``read(arguments)`` after they were read from one; for messages of another form.
     fill, result : callable or None
         ``fill(response, result, info)`` writes a response, ``result(response)`` reads one; None
-        means that the response has one field for the result, or none.
+        means that the response has one field for the result, one for each of several, or none.
     """
 
     def __init__(
@@ -115,8 +115,8 @@ class Service:
             raise error_from_response(response)
         if self._result is not None:
             return self._result(response)
-        values = list(read_fields(response, self._response_types).values())
-        return values[0] if values else None
+        values = tuple(read_fields(response, self._response_types).values())
+        return values if len(values) > 1 else next(iter(values), None)
 
     def _write_request(self, request: Any, parameter: str, field: str, value: Any) -> None:
         type_ = self._request_types[field]
@@ -163,8 +163,9 @@ class Service:
         if self._fill is not None:
             self._fill(response, result, info)
             return
-        for field, type_ in self._response_types.items():
-            write_field(response, field, type_, result)
+        results = result if len(self._response_types) > 1 else (result,)
+        for (field, type_), value in zip(self._response_types.items(), results, strict=False):
+            write_field(response, field, type_, value)
 
 
 def _is_mover(obj: object, info: SceneInfo) -> bool:
