@@ -182,6 +182,7 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
     ),
     Service(Operations.get_mover_pose, srv.GetMoverPose),
     # space
+    Service(Operations.scene_bounds, srv.GetSceneBounds, name="get_scene_bounds"),
     Service(
         Operations.free_space,
         srv.GetFreeSpace,

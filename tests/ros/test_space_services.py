@@ -47,6 +47,12 @@ def test_the_map_is_the_same_over_ros(both: tuple[Agent, Simulation]) -> None:
     assert agent.free_space().body == BodySize()
 
 
+def test_the_bounds_are_the_same_over_ros(both: tuple[Agent, Simulation]) -> None:
+    """Both corners of the box around everything."""
+    agent, simulation = both
+    assert agent.scene_bounds() == simulation.scene_bounds()
+
+
 def test_poses_and_ways_are_the_same_over_ros(both: tuple[Agent, Simulation]) -> None:
     """To the bit, for the seed of the scene and for another."""
     agent, _ = both

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sailenv_ros.authoring.viewpoints.object_targets import boxes_of
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
-from sailenv_ros.simulation.operations.targets import HasSpace
+from sailenv_ros.simulation.operations.targets import HasSpace, HasWorld
 from sailenv_ros.space import FreeSpace, RayCast
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import vector
 
 __all__ = ["SpaceOperations"]
+
+Point: TypeAlias = tuple[float, float, float]
 
 MOST_RAYS = 1_000_000
 
@@ -71,6 +74,28 @@ class SpaceOperations(Caller):
     the floor by no more than `step_m` is stepped over. Collision shapes decide, so curtains and
     other things that nothing collides with are free space. Lengths are in metres.
     """
+
+    @operation()
+    @staticmethod
+    def scene_bounds(core: HasWorld) -> tuple[Point, Point]:
+        """Return the lowest and the highest corner of the box around everything that is drawn.
+
+        Returns
+        -------
+        low, high : (3,) tuples of float
+            World frame [m]; the box has the world's axes, and the boxes of all objects in it.
+            Both are (0, 0, 0) in a scene without objects.
+        """
+        snapshot = core.world.snapshot()
+        if not len(snapshot.contents.instances):
+            return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        ends = boxes_of(snapshot)
+        middles = np.append(ends.mean(axis=1), np.ones((len(ends), 1)), axis=1)
+        centres = np.einsum("nij,nj->ni", snapshot.world_from_body, middles)[:, :3]
+        halves = np.ptp(ends, axis=1) / 2.0
+        reaches = np.einsum("nij,nj->ni", np.abs(snapshot.world_from_body[:, :3, :3]), halves)
+        low, high = (centres - reaches).min(axis=0), (centres + reaches).max(axis=0)
+        return vector("low", low), vector("high", high)
 
     @operation(**_BODY)
     @staticmethod

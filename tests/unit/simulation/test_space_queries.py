@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -43,6 +44,23 @@ def test_the_map_follows_what_moves(simulation: Simulation) -> None:
     after = simulation.free_space(**SMALL)
     assert np.array_equal(after.cells, before.cells)
     assert after.origin_m == before.origin_m
+
+
+def test_the_bounds_hold_all_that_is_drawn(simulation: Simulation) -> None:
+    """A cube turned by 45 degrees reaches half its diagonal beyond its centre."""
+    simulation.reset()
+    low, high = simulation.scene_bounds()
+    assert all(one < other for one, other in zip(low, high, strict=True))
+    position = (high[0] + 3.0, low[1] - 2.0, high[2] + 1.0)
+    simulation.spawn_object(
+        "cube", position, (0.0, 0.0, 45.0), scale=0.5, object_name="far", remove_dynamics=True
+    )
+    reach = 0.25 * math.sqrt(2.0)
+    wider = simulation.scene_bounds()
+    assert wider[0] == pytest.approx((low[0], position[1] - reach, low[2]), abs=1e-9)
+    assert wider[1] == pytest.approx((position[0] + reach, high[1], position[2] + 0.25), abs=1e-9)
+    simulation.despawn_object("far")
+    assert simulation.scene_bounds() == (low, high)
 
 
 def test_listeners_are_told_of_maps(simulation: Simulation) -> None:
