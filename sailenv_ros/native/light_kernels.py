@@ -1,4 +1,4 @@
-"""What lights give straight to points, by src/kernels/direct_light.cpp; see `bake.direct`."""
+"""Direct light of lamps at points, by src/kernels/direct_light.cpp; see `bake.direct`."""
 
 from __future__ import annotations
 

@@ -104,7 +104,7 @@ class RayHits(NamedTuple):
 
 
 class LightHits(NamedTuple):
-    """What each ray of light meets first.
+    """First hit of each ray of light.
 
     Attributes
     ----------

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from sailenv_ros.native.lamp import LAMP
+
 __all__ = [
     "RAY_INSTANCE",
     "RAY_LIGHT",
@@ -75,12 +77,8 @@ RAY_SCENE = _structure(
 )
 
 RAY_LIGHT = _structure(
-    ("position", "<f4", 3),
-    ("direction", "<f4", 3),
+    ("lamp", LAMP),
     ("across", "<f4", 3),
     ("up", "<f4", 3),
-    ("range", "<f4"),
-    ("inner_cosine", "<f4"),
-    ("outer_cosine", "<f4"),
-    ("kind", "<i4"),
+    ("radius", "<f4"),
 )

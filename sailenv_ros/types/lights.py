@@ -14,11 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import TypedDict
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.native.lamp import LAMP
 from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag, vector
 
 __all__ = [
     "ENVIRONMENT_LIMITS",
-    "LAMP",
     "LIGHT_ATTRIBUTES",
     "LIGHT_KINDS",
     "LIGHT_LIMITS",
@@ -136,20 +136,6 @@ LIGHT_ATTRIBUTES: tuple[str, ...] = tuple(f.name for f in fields(Light) if f.nam
 
 LIGHT_KINDS: dict[LightType, int] = {kind: k for k, kind in enumerate(get_args(LightType))}
 """Number of each type of light in kernels and shaders, as light_law.h has them."""
-
-LAMP = np.dtype(
-    [
-        ("colour", "<f4", 3),
-        ("kind", "<i4"),
-        ("position", "<f4", 3),
-        ("range_m", "<f4"),
-        ("direction", "<f4", 3),
-        ("inner_cosine", "<f4"),
-        ("outer_cosine", "<f4"),
-        ("padding", "<f4", 3),
-    ]
-)
-"""A lamp in kernels and shaders: the structure of this name in light_law.h."""
 
 
 def lamp_rows(

@@ -1,4 +1,4 @@
-"""What instance ids stand for: bodies and the labelled parts of bodies."""
+"""Meaning of instance ids: bodies and the labelled parts of bodies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What clients may know of a body, or of a part of one, at an instant."""
+"""State of a body, or of a part of one, at an instant, as clients are told it."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def without_size(light: Light) -> NDArray[np.void]:
     """A lamp that is a point, a sun without a disc: shadows' edges are another matter."""
     row = light_record(light, sun_radius=0.0)
     if light.type in ("point", "spot"):
-        row["across"] = 0.0
+        row["radius"] = 0.0
     return row
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.render_types import record
-from sailenv_ros.types.lights import Light
+from sailenv_ros.types.lights import Light, lamp_rows
 
 __all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "area_sides", "light_record"]
 
@@ -24,9 +24,6 @@ LAMP_RADIUS_M = 0.03
 """Radius of point and spot lights, used for the edges of their shadows only."""
 
 
-_KINDS = {"directional": 0, "point": 1, "spot": 2, "area": 3}
-
-
 def light_record(light: Light, sun_radius: float = SUN_RADIUS) -> NDArray[np.void]:
     """Return (1,) RAY_LIGHT: a light as kernels look for it.
 
@@ -35,21 +32,11 @@ def light_record(light: Light, sun_radius: float = SUN_RADIUS) -> NDArray[np.voi
     sun_radius : float
         Of a directional light's disc at a distance of 1.
     """
-    row = record(
-        RAY_LIGHT,
-        position=light.position_m,
-        direction=light.direction,
-        range=max(light.range_m, 1e-6),
-        inner_cosine=np.cos(np.radians(light.inner_cone_deg)),
-        outer_cosine=np.cos(np.radians(light.outer_cone_deg)),
-        kind=_KINDS[light.type],
-    )
+    row = record(RAY_LIGHT, lamp=lamp_rows([light])[0])
     if light.type == "area":
         row["across"][0], row["up"][0] = area_sides(light)
-    elif light.type == "directional":
-        row["range"] = sun_radius
     else:
-        row["across"][0] = LAMP_RADIUS_M
+        row["radius"] = sun_radius if light.type == "directional" else LAMP_RADIUS_M
     return row
 
 

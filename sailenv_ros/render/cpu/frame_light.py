@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.drawing import ROW_PADDING, Drawing
+from sailenv_ros.native.lamp import LAMP
 from sailenv_ros.native.light_maps import LayeredMap, blur_directions, sum_texels
 from sailenv_ros.native.render_types import LIGHT, REFLECTION_POINT, address, record
 from sailenv_ros.render.cpu.part_table import PartTable
@@ -32,7 +33,7 @@ from sailenv_ros.render.scene.room_reflections import RoomReflections
 from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.types.camera import Camera
-from sailenv_ros.types.lights import LAMP, Light, SkyMap, lamp_rows
+from sailenv_ros.types.lights import Light, SkyMap, lamp_rows
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["Radiance", "FrameLight", "with_exposure"]

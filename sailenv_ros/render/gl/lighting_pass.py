@@ -14,6 +14,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.lamp import LAMP
 from sailenv_ros.render.gl.baked_textures import BakedTextures
 from sailenv_ros.render.gl.geometry_pass import Targets
 from sailenv_ros.render.gl.programs import ProgramCache, set_lens, set_uniform
@@ -24,7 +25,7 @@ from sailenv_ros.render.scene.reflection_points import MOST
 from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX
 from sailenv_ros.types.camera import Camera
-from sailenv_ros.types.lights import LAMP, Environment, Light, SkyMap, lamp_rows
+from sailenv_ros.types.lights import Environment, Light, SkyMap, lamp_rows
 
 __all__ = ["Illumination", "LightingPass", "set_camera"]
 

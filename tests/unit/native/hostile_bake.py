@@ -97,8 +97,11 @@ def drive_direct_light() -> None:
     rng = np.random.default_rng(9)
     light = np.zeros(1, RAY_LIGHT)
     for kind in range(-1, 5):
-        for name in RAY_LIGHT.names or ():
-            light[name] = wild_floats(rng, *light[name].shape) if name != "kind" else kind
+        for row in (light["lamp"], light):
+            for name in row.dtype.names or ():
+                if name not in ("kind", "lamp"):
+                    row[name] = wild_floats(rng, *row[name].shape)
+        light["lamp"]["kind"] = kind
         for count, rays in ((0, 4), (1, 1), (50, 16)):
             points = LitPoints(*wild_floats(rng, 3, count, 3), wild_floats(rng, count, 2))
             pattern = wild_floats(rng, rays, 2)

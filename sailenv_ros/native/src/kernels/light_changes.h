@@ -68,15 +68,16 @@ static inline Stopped stopped(const RayScene& s, const Ray& r, float length, boo
 // Whether anything that changes may come between a point and a light.
 static inline bool comes_between(const RayScene& s, const RayLight& l, const float* p,
                                  const float* n) {
-    float towards[3], reach_of = 0.0f;
+    const bool far = l.lamp.kind == LIGHT_DIRECTIONAL;
+    float towards[3], square = 0.0f;
     for (int c = 0; c < 3; c++) {
-        towards[c] = l.kind == LIGHT_DIRECTIONAL ? -l.direction[c] : l.position[c] - p[c];
-        reach_of += l.across[c] * l.across[c] + l.up[c] * l.up[c];
+        towards[c] = far ? -(&l.lamp.direction.x)[c] : (&l.lamp.position.x)[c] - p[c];
+        square += l.across[c] * l.across[c] + l.up[c] * l.up[c];
     }
-    reach_of = 0.5f * std::sqrt(reach_of);
+    const float reach_of = 0.5f * std::sqrt(square) + (far ? 0.0f : l.radius);
     if (dot(towards, n) < -reach_of) return false;
     const Ray r = ray_of(p, towards);
-    const float length = l.kind == LIGHT_DIRECTIONAL ? ENDLESS : 1.0f;
+    const float length = far ? ENDLESS : 1.0f;
     for (int64_t k = 0; k < s.changed_count; k++) {
         if (ray_passes_ball(s.changed[k], r, length, reach_of)) return true;
     }
@@ -113,7 +114,7 @@ static inline DirectLightDelta direct_light_delta(const RayScene& s, const RayLi
         result.touched |= way.touched;
         const float freed = static_cast<float>(way.before) - static_cast<float>(way.after);
         if (freed == 0.0f && (!whole || way.after)) continue;
-        const float clear = l.kind == LIGHT_DIRECTIONAL ? glass_transmittance(s, r) : 1.0f;
+        const float clear = l.lamp.kind == LIGHT_DIRECTIONAL ? glass_transmittance(s, r) : 1.0f;
         result.change += freed * power * clear;
         result.share_change += freed * each * clear;
         if (!way.after) {

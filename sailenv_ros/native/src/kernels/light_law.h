@@ -23,7 +23,7 @@ const int LIGHT_POINT = 1;
 const int LIGHT_SPOT = 2;
 const int LIGHT_AREA = 3;
 
-// One lamp; mirrored by LAMP in lights.py. By the rules of std140 it is as long as in C++.
+// One lamp; mirrored by native.lamp.LAMP. By the rules of std140 it is as long as in C++.
 struct Lamp {
     vec3 colour;  // radiant intensity (irradiance, if directional)
     int kind;

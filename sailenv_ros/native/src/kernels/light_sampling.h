@@ -24,12 +24,12 @@ struct LightSample {
     float towards[3], length, irradiance;  // on a surface that faces it
 };
 
-// Of the disc of a directional light, whose radius `range` holds.
+// Of the disc of a directional light.
 static inline LightSample sample_disc(const RayLight& l, float u, float v) {
     LightSample s;
-    const float axis[3] = {-l.direction[0], -l.direction[1], -l.direction[2]};
-    const float radius = l.range * std::sqrt(u), turn = 6.28318531f * v;
-    around_axis(axis, radius * std::cos(turn), radius * std::sin(turn), 1.0f, s.towards);
+    const vec3 axis = -l.lamp.direction;
+    const float radius = l.radius * std::sqrt(u), turn = 6.28318531f * v;
+    around_axis(&axis.x, radius * std::cos(turn), radius * std::sin(turn), 1.0f, s.towards);
     const float scale = 1.0f / std::sqrt(dot(s.towards, s.towards));
     for (float& t : s.towards) t *= scale;
     s.length = ENDLESS;
@@ -40,20 +40,16 @@ static inline LightSample sample_disc(const RayLight& l, float u, float v) {
 // Irradiance over radiant intensity by the law of light, at a point from which a light is
 // `towards`.
 static inline float falloff(const RayLight& l, const float* towards) {
-    Lamp lamp = {};
-    lamp.kind = l.kind;
-    lamp.range_m = l.range;
-    lamp.inner_cosine = l.inner_cosine;
-    lamp.outer_cosine = l.outer_cosine;
     const float square = lamp_square(vec3(towards[0], towards[1], towards[2]));
-    return lamp_falloff(lamp, square, -dot(towards, l.direction) / std::sqrt(square));
+    return lamp_falloff(l.lamp, square, -dot(towards, &l.lamp.direction.x) / std::sqrt(square));
 }
 
 // Of an area light's rectangle.
 static inline LightSample sample_rectangle(const RayLight& l, const float* p, float u, float v) {
     LightSample s;
+    const float* position = &l.lamp.position.x;
     for (int k = 0; k < 3; k++) {
-        s.towards[k] = l.position[k] + (u - 0.5f) * l.across[k] + (v - 0.5f) * l.up[k] - p[k];
+        s.towards[k] = position[k] + (u - 0.5f) * l.across[k] + (v - 0.5f) * l.up[k] - p[k];
     }
     const float area = std::sqrt(dot(l.across, l.across)) * std::sqrt(dot(l.up, l.up));
     s.length = 0.999f;
@@ -61,26 +57,26 @@ static inline LightSample sample_rectangle(const RayLight& l, const float* p, fl
     return s;
 }
 
-// Of the ball of a point or spot light, whose radius `across` holds: for the edges of shadows. How
-// much arrives is that of its middle.
+// Of the ball of a point or spot light: for the edges of shadows. How much arrives is that of its
+// middle.
 static inline LightSample sample_ball(const RayLight& l, const float* p, float u, float v) {
     LightSample s;
     float middle[3];
-    for (int k = 0; k < 3; k++) middle[k] = l.position[k] - p[k];
+    for (int k = 0; k < 3; k++) middle[k] = (&l.lamp.position.x)[k] - p[k];
     s.irradiance = falloff(l, middle);
     const float z = 1.0f - 2.0f * u, ring = std::sqrt(std::max(1.0f - z * z, 0.0f));
     const float turn = 6.28318531f * v;
-    s.towards[0] = middle[0] + l.across[0] * ring * std::cos(turn);
-    s.towards[1] = middle[1] + l.across[0] * ring * std::sin(turn);
-    s.towards[2] = middle[2] + l.across[0] * z;
+    s.towards[0] = middle[0] + l.radius * ring * std::cos(turn);
+    s.towards[1] = middle[1] + l.radius * ring * std::sin(turn);
+    s.towards[2] = middle[2] + l.radius * z;
     s.length = 0.999f;
     return s;
 }
 
 // u, v: 0 to 1.
 static inline LightSample sample_light(const RayLight& l, const float* p, float u, float v) {
-    if (l.kind == LIGHT_DIRECTIONAL) return sample_disc(l, u, v);
-    if (l.kind == LIGHT_AREA) return sample_rectangle(l, p, u, v);
+    if (l.lamp.kind == LIGHT_DIRECTIONAL) return sample_disc(l, u, v);
+    if (l.lamp.kind == LIGHT_AREA) return sample_rectangle(l, p, u, v);
     return sample_ball(l, p, u, v);
 }
 
@@ -96,15 +92,15 @@ static inline float sample_power(const LightSample& s, const float* n) {
 // illumination and stochastic shadows"); `unhindered` is their mean if nothing is in the way.
 static inline float sample_scale(const RayLight& l, const float* p, const float* n,
                                  float unhindered) {
-    if (l.kind != LIGHT_AREA) return 1.0f;
+    if (l.lamp.kind != LIGHT_AREA) return 1.0f;
     if (!(unhindered > 0.0f)) return 0.0f;
     double corners[4][3], direction[3];
     constexpr double u[4] = {-0.5, -0.5, 0.5, 0.5}, v[4] = {-0.5, 0.5, 0.5, -0.5};
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < 4; i++) {
-            corners[i][c] = l.position[c] + u[i] * l.across[c] + v[i] * l.up[c];
+            corners[i][c] = (&l.lamp.position.x)[c] + u[i] * l.across[c] + v[i] * l.up[c];
         }
-        direction[c] = l.direction[c];
+        direction[c] = (&l.lamp.direction.x)[c];
     }
     return form_factor(corners[0], direction, p, n) / unhindered;
 }

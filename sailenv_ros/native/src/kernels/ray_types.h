@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "light_law.h"
+
 namespace sailenv {
 
 constexpr int32_t WIDTH = 8;  // children of a node, and triangles of a leaf
@@ -59,10 +61,9 @@ struct RayScene {
 
 // A light whose rays are traced; see bake/direct.py.
 struct RayLight {
-    float position[3], direction[3];
+    Lamp lamp;
     float across[3], up[3];  // of an area light: its whole width and height
-    float range, inner_cosine, outer_cosine;
-    int32_t kind;  // LightKind
+    float radius;            // of a directional light's disc at distance 1, else of a lamp's ball
 };
 
 }  // namespace sailenv
