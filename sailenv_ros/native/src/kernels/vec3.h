@@ -79,6 +79,11 @@ LANES_INLINE float clamp(float x, float low, float high) { return min(max(x, low
 LANES_INLINE f8 clamp(f8 x, float low, float high) { return clamp8(x, low, high); }
 LANES_INLINE float sqrt(float x) { return __builtin_sqrtf(x); }
 LANES_INLINE f8 sqrt(f8 x) { return sqrt8(x); }
+LANES_INLINE float pow(float x, float y) { return __builtin_powf(x, y); }
+LANES_INLINE f8 pow(f8 x, float y) {
+    for (int k = 0; k < 8; k++) x[k] = __builtin_powf(x[k], y);
+    return x;
+}
 LANES_INLINE float step(float edge, float x) { return x < edge ? 0.0f : 1.0f; }
 LANES_INLINE f8 step(float edge, f8 x) { return x < edge ? splat(0.0f) : splat(1.0f); }
 
