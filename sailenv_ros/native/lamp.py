@@ -15,7 +15,8 @@ LAMP = np.dtype(
         ("direction", "<f4", 3),
         ("inner_cosine", "<f4"),
         ("outer_cosine", "<f4"),
-        ("padding", "<f4", 3),
+        ("exponent", "<f4"),
+        ("padding", "<f4", 2),
     ]
 )
 """`sailenv::Lamp`; `types.lights.lamp_rows` alone fills it in."""

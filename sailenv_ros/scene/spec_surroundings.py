@@ -149,6 +149,11 @@ class SpotLightSpec(PointLightSpec):
     outer_cone: Annotated[float, _of_light("outer_cone_deg")] = Field(
         default=35.0, description="half angle where the brightness has gone to 0 [deg]"
     )
+    exponent: Annotated[float, _of_light("exponent")] = Field(
+        default=0.0,
+        description="the intensity falls with the cosine of the angle to the direction to this "
+        "power; 0 for a cone that is evenly bright",
+    )
 
 
 class AreaLightSpec(_LightBase):

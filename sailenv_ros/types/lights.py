@@ -41,6 +41,7 @@ LIGHT_LIMITS: Mapping[str, Bounds] = {
     "range_m": Bounds(above=0.0, most=1e3, unit="m"),
     "inner_cone_deg": Bounds(least=0.0, most=89.0, unit="deg"),
     "outer_cone_deg": Bounds(least=0.0, most=89.0, unit="deg"),
+    "exponent": Bounds(least=0.0, most=128.0),
     "width_m": Bounds(above=0.0, most=1e3, unit="m"),
     "height_m": Bounds(above=0.0, most=1e3, unit="m"),
 }
@@ -82,6 +83,9 @@ class Light:
         Beyond it a point or spot light has no effect, above 0 and at most 1000 [m].
     inner_cone_deg, outer_cone_deg : float
         Half angles of a spot light's full and vanishing brightness [deg].
+    exponent : float
+        A spot light's intensity falls with the cosine of the angle to its direction to this power;
+        0 to 128, 0 for a cone that is evenly bright.
     width_m, height_m : float
         Size of an area light, above 0 and at most 1000 [m].
     """
@@ -96,6 +100,7 @@ class Light:
     range_m: float = 20.0
     inner_cone_deg: float = 20.0
     outer_cone_deg: float = 35.0
+    exponent: float = 0.0
     width_m: float = 1.0
     height_m: float = 1.0
 
@@ -170,6 +175,7 @@ def lamp_rows(
         row["range_m"] = max(light.range_m, 1e-3)
         row["inner_cosine"] = np.cos(np.radians(light.inner_cone_deg))
         row["outer_cosine"] = np.cos(np.radians(light.outer_cone_deg))
+        row["exponent"] = light.exponent
     return rows
 
 
@@ -184,6 +190,7 @@ class LightAttributes(TypedDict, total=False):
     range_m: float
     inner_cone_deg: float
     outer_cone_deg: float
+    exponent: float
     width_m: float
     height_m: float
 

@@ -42,6 +42,7 @@ class Case:
     range_m: float = 30.0
     inner_cone_deg: float = 20.0
     outer_cone_deg: float = 35.0
+    exponent: float = 0.0
     side_m: float = 1.0
 
     def light(self, distance_m: float, intensity: float = 1.0) -> Light:
@@ -56,6 +57,7 @@ class Case:
             range_m=self.range_m,
             inner_cone_deg=self.inner_cone_deg,
             outer_cone_deg=self.outer_cone_deg,
+            exponent=self.exponent,
             width_m=self.side_m,
             height_m=self.side_m,
         )
@@ -68,7 +70,8 @@ class Case:
         if self.type == "area":
             return self.side_m**2 * along / distance_m**2
         window = max(1.0 - (distance_m / self.range_m) ** 4, 0.0) ** 2
-        return window * self._within_the_cone(along) / distance_m**2
+        bright = self._within_the_cone(along) * (along**self.exponent if self.type == "spot" else 1)
+        return window * bright / distance_m**2
 
     def _within_the_cone(self, along: float) -> float:
         if self.type != "spot":
@@ -89,6 +92,8 @@ CASES = {
     "spot, all of it": Case("spot", 10.0),
     "spot, its soft edge": Case("spot", 27.0),
     "spot, beside it": Case("spot", 40.0),
+    "spot with an exponent": Case("spot", 15.0, exponent=10.0),
+    "spot with an exponent, its edge": Case("spot", 27.0, exponent=2.5),
     "sharp spot, within": Case("spot", 24.9, **SHARP),
     "sharp spot, without": Case("spot", 25.1, **SHARP),
     # Area lights have no range: it must not count.

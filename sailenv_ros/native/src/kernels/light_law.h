@@ -32,9 +32,9 @@ struct Lamp {
     vec3 direction;  // where it travels to; unit length
     float inner_cosine;
     float outer_cosine;
+    float exponent;  // of a spot's cosine
     float padding_0;
     float padding_1;
-    float padding_2;
 };
 
 // Share of each colour in luminance (ITU-R BT.709).
@@ -49,13 +49,15 @@ LIGHT_LAW Real lamp_square(Real3 offset) { return max(dot(offset, offset), 1e-4f
 //
 // `square` is the squared distance, `along` the cosine between the lamp's direction and the way
 // from the lamp to the point. The light of points and spots ends at their range, by the window of
-// Karis 2013, "Real shading in Unreal Engine 4". A spot without a soft edge ends at once.
+// Karis 2013, "Real shading in Unreal Engine 4". A spot without a soft edge ends at once; with an
+// exponent it is brighter in its middle, as OpenGL's and MuJoCo's spots are.
 LIGHT_LAW Real lamp_falloff(Lamp lamp, Real square, Real along) {
     if (lamp.kind == LIGHT_AREA) return max(along, 0.0f) / square;
     Real reach = square / (lamp.range_m * lamp.range_m);
     Real window = clamp(1.0f - reach * reach, 0.0f, 1.0f);
     Real share = window * window / square;
     if (lamp.kind != LIGHT_SPOT) return share;
+    if (lamp.exponent > 0.0f) share = share * pow(max(along, 1e-6f), lamp.exponent);
     if (lamp.inner_cosine <= lamp.outer_cosine) return share * step(lamp.outer_cosine, along);
     return share * smoothstep(lamp.outer_cosine, lamp.inner_cosine, along);
 }
