@@ -23,8 +23,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from sailenv_ros.authoring.generation.generator import GeneratedScene, Generator
-from sailenv_ros.authoring.generation.names import drawn_kind
+from sailenv_content.generation.generator import GeneratedScene, Generator
+from sailenv_ros.authoring.room_rules.names import drawn_kind
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.simulation.scenes import SceneLibrary

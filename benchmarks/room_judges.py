@@ -51,8 +51,8 @@ def main() -> int:
 
 
 def _export(folder: Path, seeds: range) -> int:
-    from sailenv_ros.authoring.generation.names import drawn_kind
-    from sailenv_ros.authoring.generation.rule_files import rules_of
+    from sailenv_ros.authoring.room_rules.names import drawn_kind
+    from sailenv_ros.authoring.room_rules.rule_files import rules_of
     from sailenv_ros.simulation.scenes import SceneLibrary
 
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,1 +1,1 @@
-"""Content of the standard pack: procedural models, and the recipe that builds the pack."""
+"""Content: the standard pack and how it is built, generated rooms, imported scenes."""

@@ -44,7 +44,7 @@ NOT_QUICK = (
     "unit/dataset/test_making.py",
     "unit/dataset/test_remote.py",
     "unit/dataset/test_showing.py",
-    "unit/authoring/generation/test_generated_rooms.py",
+    "unit/content/generation/test_generated_rooms.py",
     "unit/reliability",
 )
 """Folders and files whose tests are left out of the quick tier, which `scripts/check` runs.

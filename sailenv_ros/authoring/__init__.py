@@ -1,1 +1,1 @@
-"""Making scenes: generated rooms, rules for cameras."""
+"""Rules by which scenes are made: kinds of rooms, cameras."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from sailenv_ros.authoring.generation.generator import Generator
-from sailenv_ros.authoring.generation.names import MAX_SEED, drawn_kind
-from sailenv_ros.authoring.generation.rule_files import read_rules
+from sailenv_content.generation.generator import Generator
+from sailenv_ros.authoring.room_rules.names import MAX_SEED, drawn_kind
+from sailenv_ros.authoring.room_rules.rule_files import read_rules
 from sailenv_ros.errors import InvalidRequest, SceneError
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
 from sailenv_ros.simulation.scenes import SceneLibrary

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.authoring.generation.rule_files import room_kinds
+from sailenv_ros.authoring.room_rules.rule_files import room_kinds
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.authoring.generation.names import PREFIX
+from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
 from sailenv_ros.dataset.job import Job

@@ -10,15 +10,16 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sailenv_content import generation
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.folders import cache_folder, standard_pack_folder
 from sailenv_ros.assets.pack import PACK_FILE
-from sailenv_ros.authoring.generation import names
+from sailenv_ros.authoring.room_rules import names
 from sailenv_ros.system.files import make_folder, storage_errors, write_file
 from sailenv_ros.system.resources import resource_path
 
 if TYPE_CHECKING:
-    from sailenv_ros.authoring.generation.generator import Generator
+    from sailenv_content.generation.generator import Generator
 
 __all__ = ["GeneratedScenes", "generation_state"]
 
@@ -65,7 +66,7 @@ class GeneratedScenes:
     @cached_property
     def _generator(self) -> Generator:
         # Most scenes are files, and the generator needs much.
-        from sailenv_ros.authoring.generation.generator import Generator
+        from sailenv_content.generation.generator import Generator
 
         return Generator(assets=self._assets)
 
@@ -83,7 +84,8 @@ def generation_state() -> str:
     digest = blake2b(digest_size=8)
     rules = resource_path("config", "rooms")
     files = [*sorted(rules.rglob("*.yaml")), standard_pack_folder() / PACK_FILE]
-    files += sorted(Path(names.__file__).parent.glob("*.py"))
+    for package in (names, generation):
+        files += sorted(Path(package.__file__).parent.glob("*.py"))
     for file in files:
         if file.is_file():
             digest.update(file.read_bytes())

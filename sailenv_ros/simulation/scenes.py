@@ -14,7 +14,7 @@ from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.authoring.generation.names import PREFIX as GENERATED
+from sailenv_ros.authoring.room_rules.names import PREFIX as GENERATED
 from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
 from sailenv_ros.behaviours import (
     behaviour_errors,

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from sailenv_ros.authoring.generation.names import MAX_SEED, PREFIX
-from sailenv_ros.authoring.generation.rule_files import rules_of
+from sailenv_ros.authoring.room_rules.names import MAX_SEED, PREFIX
+from sailenv_ros.authoring.room_rules.rule_files import rules_of
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.simulation.operations.operations import Operations
 from sailenv_ros.simulation.operations.rooms import RoomOperations

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
-from sailenv_ros.authoring.generation.rule_files import room_kinds
+from sailenv_ros.authoring.room_rules.rule_files import room_kinds
 from sailenv_ros.cli.main import main
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sailenv_content.generation.asset_index import AssetIndex
+from sailenv_content.generation.items import Item, block_of, clear_blocks
+from sailenv_content.generation.plan import Area, Block, WallGap, WallSide
 from sailenv_ros.assets.arranging import RESTING_GAP_M, WALL_GAP_M
-from sailenv_ros.authoring.generation.asset_index import AssetIndex
-from sailenv_ros.authoring.generation.items import Item, block_of, clear_blocks
-from sailenv_ros.authoring.generation.plan import Area, Block, WallGap, WallSide
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.rule_models import FurnitureRule
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_models import FurnitureRule
 
 __all__ = ["Positioner", "offset"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.rule_files import Rules
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_files import Rules
 from sailenv_ros.errors import InvalidRequest
 
 __all__ = ["MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]

@@ -12,26 +12,26 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
+from sailenv_content.generation.asset_index import AssetIndex
+from sailenv_content.generation.checks import Fault, faults, look_backend, unseen
+from sailenv_content.generation.draft import Draft
+from sailenv_content.generation.furnishing import Furnisher
+from sailenv_content.generation.items import Item, Namer
+from sailenv_content.generation.lighting import environment_entry, light_entries
+from sailenv_content.generation.plan import RoomPlan
+from sailenv_content.generation.room_agents import StandingWorld, agent_entries, best_first
+from sailenv_content.generation.route import mover_entry
+from sailenv_content.generation.scene_text import scene_text
+from sailenv_content.generation.shells import shell_of
+from sailenv_content.generation.things import lay_things
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.sources import installed_packs, installed_sources
-from sailenv_ros.authoring.generation.asset_index import AssetIndex
-from sailenv_ros.authoring.generation.checks import Fault, faults, look_backend, unseen
-from sailenv_ros.authoring.generation.draft import Draft
-from sailenv_ros.authoring.generation.furnishing import Furnisher
-from sailenv_ros.authoring.generation.items import Item, Namer
-from sailenv_ros.authoring.generation.lighting import environment_entry, light_entries
-from sailenv_ros.authoring.generation.names import MAX_SEED
-from sailenv_ros.authoring.generation.plan import RoomPlan
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.room_agents import StandingWorld, agent_entries, best_first
-from sailenv_ros.authoring.generation.route import mover_entry
-from sailenv_ros.authoring.generation.rule_files import Rules, rules_of
-from sailenv_ros.authoring.generation.rule_models import KindFile
-from sailenv_ros.authoring.generation.scene_text import scene_text
-from sailenv_ros.authoring.generation.shells import shell_of
-from sailenv_ros.authoring.generation.things import lay_things
+from sailenv_ros.authoring.room_rules.names import MAX_SEED
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_files import Rules, rules_of
+from sailenv_ros.authoring.room_rules.rule_models import KindFile
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.scene.room_rules import WALLS, room_part_names

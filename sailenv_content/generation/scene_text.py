@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sailenv_ros.authoring.generation.items import Item
+from sailenv_content.generation.items import Item
 from sailenv_ros.scene.dumper import dump_scene
 from sailenv_ros.scene.spec import SceneSpec
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from sailenv_ros.authoring.generation.asset_index import AssetIndex
-from sailenv_ros.authoring.generation.companion_spots import CompanionSpots
-from sailenv_ros.authoring.generation.items import Item, Namer
-from sailenv_ros.authoring.generation.plan import Area, Block, RoomPlan
-from sailenv_ros.authoring.generation.positions import Positioner
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.rule_files import Rules
-from sailenv_ros.authoring.generation.rule_models import CompanionRule, FurnitureRule, PieceRule
+from sailenv_content.generation.asset_index import AssetIndex
+from sailenv_content.generation.companion_spots import CompanionSpots
+from sailenv_content.generation.items import Item, Namer
+from sailenv_content.generation.plan import Area, Block, RoomPlan
+from sailenv_content.generation.positions import Positioner
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_files import Rules
+from sailenv_ros.authoring.room_rules.rule_models import CompanionRule, FurnitureRule, PieceRule
 
 __all__ = ["Furnisher"]
 

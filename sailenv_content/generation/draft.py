@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sailenv_ros.authoring.generation.checks import Fault
-from sailenv_ros.authoring.generation.items import Item
-from sailenv_ros.authoring.generation.plan import RoomPlan
-from sailenv_ros.authoring.generation.rule_models import KindFile
-from sailenv_ros.authoring.generation.shells import Shell
+from sailenv_content.generation.checks import Fault
+from sailenv_content.generation.items import Item
+from sailenv_content.generation.plan import RoomPlan
+from sailenv_content.generation.shells import Shell
+from sailenv_ros.authoring.room_rules.rule_models import KindFile
 from sailenv_ros.scene.spec import SceneSpec
 
 __all__ = ["Draft"]

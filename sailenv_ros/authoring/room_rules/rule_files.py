@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from pydantic import ValidationError
 
-from sailenv_ros.authoring.generation.rule_models import (
+from sailenv_ros.authoring.room_rules.rule_models import (
     FurnitureFile,
     FurnitureRule,
     KindFile,

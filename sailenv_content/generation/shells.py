@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sailenv_ros.authoring.generation.apartments import apartment
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.room_shapes import Shell, materials_of, single_room
-from sailenv_ros.authoring.generation.rule_files import Rules
+from sailenv_content.generation.apartments import apartment
+from sailenv_content.generation.room_shapes import Shell, materials_of, single_room
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_files import Rules
 
 __all__ = ["Shell", "shell_of"]
 

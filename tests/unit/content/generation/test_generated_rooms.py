@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sailenv_ros.authoring.generation.checks import look_backend
-from sailenv_ros.authoring.generation.generator import GeneratedScene, Generator
-from sailenv_ros.authoring.generation.room_agents import StandingWorld
-from sailenv_ros.authoring.generation.rule_files import Rules, room_kinds
+from sailenv_content.generation.checks import look_backend
+from sailenv_content.generation.generator import GeneratedScene, Generator
+from sailenv_content.generation.room_agents import StandingWorld
+from sailenv_ros.authoring.room_rules.rule_files import Rules, room_kinds
 from sailenv_ros.authoring.viewpoints.room_view import view_score
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.spec import SceneSpec

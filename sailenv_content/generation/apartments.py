@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sailenv_ros.authoring.generation.plan import Area, Block, WallGap, WallSide
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.room_shapes import (
+from sailenv_content.generation.plan import Area, Block, WallGap, WallSide
+from sailenv_content.generation.room_shapes import (
     DOOR_M,
     OUTER,
     PARTITION_M,
@@ -20,8 +19,9 @@ from sailenv_ros.authoring.generation.room_shapes import (
     note_openings,
     surface_entry,
 )
-from sailenv_ros.authoring.generation.rule_files import Rules
-from sailenv_ros.authoring.generation.rule_models import SplitRule
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_files import Rules
+from sailenv_ros.authoring.room_rules.rule_models import SplitRule
 
 __all__ = ["apartment"]
 

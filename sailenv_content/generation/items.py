@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.authoring.generation.asset_index import AssetIndex
-from sailenv_ros.authoring.generation.plan import Block, WallSide
-from sailenv_ros.authoring.generation.rule_models import FurnitureRule
+from sailenv_content.generation.asset_index import AssetIndex
+from sailenv_content.generation.plan import Block, WallSide
+from sailenv_ros.authoring.room_rules.rule_models import FurnitureRule
 
 __all__ = ["Item", "Namer", "block_of", "clear_blocks"]
 

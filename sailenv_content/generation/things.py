@@ -10,12 +10,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from sailenv_ros.authoring.generation.asset_index import AssetIndex
-from sailenv_ros.authoring.generation.items import Item, Namer, block_of
-from sailenv_ros.authoring.generation.plan import Block
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.rule_files import Rules
-from sailenv_ros.authoring.generation.rule_models import ThingRule
+from sailenv_content.generation.asset_index import AssetIndex
+from sailenv_content.generation.items import Item, Namer, block_of
+from sailenv_content.generation.plan import Block
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_files import Rules
+from sailenv_ros.authoring.room_rules.rule_models import ThingRule
 
 __all__ = ["lay_things"]
 

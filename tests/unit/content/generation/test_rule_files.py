@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.authoring.generation.names import drawn_kind, parsed_name
-from sailenv_ros.authoring.generation.rule_files import read_rules, room_kinds, rules_of
+from sailenv_ros.authoring.room_rules.names import drawn_kind, parsed_name
+from sailenv_ros.authoring.room_rules.rule_files import read_rules, room_kinds, rules_of
 from sailenv_ros.errors import SceneError, UnknownName
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.resources import resource_path

@@ -13,9 +13,9 @@ from functools import partial
 
 import numpy as np
 
-from sailenv_ros.authoring.generation.items import Item
-from sailenv_ros.authoring.generation.positions import Positioner, offset
-from sailenv_ros.authoring.generation.rule_models import CompanionRule, FurnitureRule
+from sailenv_content.generation.items import Item
+from sailenv_content.generation.positions import Positioner, offset
+from sailenv_ros.authoring.room_rules.rule_models import CompanionRule, FurnitureRule
 
 __all__ = ["CompanionSpots"]
 

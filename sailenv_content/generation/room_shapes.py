@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sailenv_ros.authoring.generation.plan import Area, Block, WallGap, WallSide
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.rule_models import KindFile, MaterialsRule
+from sailenv_content.generation.plan import Area, Block, WallGap, WallSide
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_models import KindFile, MaterialsRule
 
 __all__ = ["PARTITION_M", "Shell", "single_room", "surface_entry"]
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from sailenv_ros.authoring.generation.items import Item
-from sailenv_ros.authoring.generation.plan import Area, WallGap, WallSide
-from sailenv_ros.authoring.generation.random_stream import RandomStream
-from sailenv_ros.authoring.generation.rule_models import LightRule
+from sailenv_content.generation.items import Item
+from sailenv_content.generation.plan import Area, WallGap, WallSide
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.authoring.room_rules.rule_models import LightRule
 
 __all__ = ["environment_entry", "light_entries"]
 

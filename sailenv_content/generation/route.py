@@ -16,9 +16,9 @@ from scipy.ndimage import label
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from sailenv_ros.authoring.generation.items import Item
-from sailenv_ros.authoring.generation.plan import RoomPlan
-from sailenv_ros.authoring.generation.random_stream import RandomStream
+from sailenv_content.generation.items import Item
+from sailenv_content.generation.plan import RoomPlan
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 
 __all__ = ["mover_entry", "walk_cells"]
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.authoring.generation.plan import Area, Block, RoomPlan, WallSide
+from sailenv_content.generation.plan import Area, Block, RoomPlan, WallSide
 
 LENGTH = st.floats(0.1, 2.0)
 PLACE = st.floats(-2.0, 2.0)
