@@ -1,6 +1,7 @@
 """Rays from points of surfaces, and the sky that they meet.
 
-By src/kernels/hemisphere_rays.cpp and sky_gathering.cpp; see `bake.gather` and `bake.emitters`.
+By src/kernels/hemisphere_rays.cpp and sky_gathering.cpp; see `light.bake.gather` and
+`light.bake.emitters`.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def hemisphere_rays(points: LitPoints, pattern: Floats) -> tuple[Floats, Floats]
     points : LitPoints
         Directions that would run into their faces are mirrored at these.
     pattern : (M, 2) float32
-        A net of points of the unit square that become the directions; see `bake.sampling`.
+        A net of points of the unit square that become the directions; see `light.bake.sampling`.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """The kernel that measures the instances of a picture in one pass over its ids.
 
-What is measured stands in `object_truth.visible_parts`.
+What is measured stands in `frame.truth.visible_parts`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Direct light of lamps at points, by src/kernels/direct_light.cpp; see `bake.direct`."""
+"""Direct light of lamps at points, by src/kernels/direct_light.cpp; see `light.bake.direct`."""
 
 from __future__ import annotations
 

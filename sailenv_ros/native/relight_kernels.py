@@ -1,4 +1,6 @@
-"""What moved things change of baked light, by src/kernels/relight_*.cpp; see `relight.relighting`.
+"""Changes of baked light by moved things, by src/kernels/relight_*.cpp.
+
+See `light.relight.relighting`.
 
 Arrays of structures hold addresses; whoever calls keeps what they point to alive.
 """

@@ -1,6 +1,6 @@
 """Light that goes from surface to surface, by src/kernels/surface_light.cpp.
 
-See `bake.gather`, `bake.bounces` and `bake.light_probes`.
+See `light.bake.gather`, `light.bake.bounces` and `light.bake.light_probes`.
 """
 
 from __future__ import annotations

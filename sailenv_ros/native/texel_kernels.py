@@ -1,7 +1,7 @@
 """The texels of light maps: which triangles they stand for, and filters over them.
 
-By src/kernels/texel_coverage.cpp and texel_filters.cpp; see `bake.texels`, `bake.sun_edges` and
-`bake.denoise`.
+By src/kernels/texel_coverage.cpp and texel_filters.cpp; see `light.bake.texels`,
+`light.bake.sun_edges` and `light.bake.denoise`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Amodal masks: what each object covers of a picture, whatever lies in front of it.
 
-Made by `cpu_render.amodal_renderer`, read out of messages; goes to tables, files and windows.
+Made by `render.cpu.amodal_renderer`, read out of messages; goes to tables, files and windows.
 """
 
 from __future__ import annotations

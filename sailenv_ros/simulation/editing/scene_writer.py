@@ -27,7 +27,7 @@ __all__ = ["SceneWriter"]
 
 
 class SceneWriter:
-    """Writes the world of one simulation; see `operations.saving` for arguments and errors."""
+    """Writes the world of one simulation; `operations.saving_operations` tells of the errors."""
 
     def __init__(self, scene: LiveScene) -> None:
         self._scene = scene

@@ -19,7 +19,7 @@ struct TexelMap {
     int64_t count, height, width;
 };
 
-// Points of surfaces that are lit; see bake/direct.py.
+// Points of surfaces that are lit; see light/bake/direct.py.
 struct LitPoints {
     const float* positions;  // (count, 3), world
     const float* normals;    // (count, 3), of the smooth surface

@@ -1,4 +1,4 @@
-// What arrives straight from lights, for bakes; see bake/direct.py.
+// What arrives straight from lights, for bakes; see light/bake/direct.py.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

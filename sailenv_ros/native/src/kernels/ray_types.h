@@ -59,7 +59,7 @@ struct RayScene {
     int32_t channels, padding;
 };
 
-// A light whose rays are traced; see bake/direct.py.
+// A light whose rays are traced; see light/bake/direct.py.
 struct RayLight {
     Lamp lamp;
     float across[3], up[3];  // of an area light: its whole width and height

@@ -1,5 +1,5 @@
-// Bloom and sensor noise; see render/sensor.py, and tests/support/reference_kernels.py for the
-// sums.
+// Bloom and sensor noise; see render/picture/sensor.py, and tests/support/reference_kernels.py for
+// the sums.
 #include "../abi.h"
 #include "../threads.h"
 #include "lanes.h"
