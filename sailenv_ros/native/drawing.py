@@ -6,6 +6,8 @@ memory that frames are drawn in.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -78,8 +80,7 @@ class Drawing:
         *,
         surface: NDArray[np.float32] | None = None,
         radiance: NDArray[np.float16] | None = None,
-        normals: NDArray[np.float32] | None = None,
-        albedo: NDArray[np.float32] | None = None,
+        attributes: Sequence[NDArray[np.float32] | None] = (),
     ) -> None:
         """Draw what a camera sees.
 
@@ -95,10 +96,8 @@ class Drawing:
             Takes depth along the optical axis [m] (inf: nothing was hit) and the instance id.
         radiance : (H, W, 4) float16 or None
             Takes exposed linear radiance, and the share of it that came from around.
-        normals : (H, W, 3) float32 or None
-            Takes unit normals in the optical frame; 0 where nothing was hit.
-        albedo : (H, W, 3) float32 or None
-            Takes linear base colours; 0 where nothing was hit.
+        attributes : sequence of (H, W, C) float32 or None
+            Take the views of source 'geometry', in their order; see `types.views.VIEWS`.
         """
         height, width = int(view["height"][0]), int(view["width"][0])
         checked("view", view, VIEW, (1,))
@@ -108,8 +107,7 @@ class Drawing:
         for name, array, dtype, channels in (
             ("surface", surface, np.float32, 2),
             ("radiance", radiance, np.float16, 4),
-            ("normals", normals, np.float32, 3),
-            ("albedo", albedo, np.float32, 3),
+            *(("attribute", array, np.float32, None) for array in attributes),
         ):
             if array is not None:
                 checked(name, array, dtype, (height, width, channels))
@@ -117,9 +115,8 @@ class Drawing:
             OUTPUTS,
             surface_at=address(surface),
             radiance_at=address(radiance),
-            normals_at=address(normals),
-            albedo_at=address(albedo),
         )
+        outputs["attributes_at"][0, : len(attributes)] = [address(a) for a in attributes]
         _PICTURE(
             self._threads,
             self._handle,

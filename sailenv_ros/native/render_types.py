@@ -156,11 +156,13 @@ VIEW = _structure(
     ("smooth_edges", "<i8"),
 )
 
+MOST_ATTRIBUTES = 8
+"""Views that are attributes of surfaces, at most."""
+
 OUTPUTS = _structure(
     ("surface_at", _ADDRESS),
     ("radiance_at", _ADDRESS),
-    ("normals_at", _ADDRESS),
-    ("albedo_at", _ADDRESS),
+    ("attributes_at", _ADDRESS, MOST_ATTRIBUTES),
 )
 
 

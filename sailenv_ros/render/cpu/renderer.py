@@ -31,8 +31,8 @@ from sailenv_ros.types.views import VIEWS, checked_views, views_of
 
 __all__ = ["NativeRenderer", "native_view"]
 
-_ATTRIBUTES = ("normals", "albedo")
-"""Views that the library writes as they are; `Drawing.picture` takes an array for each."""
+_ATTRIBUTES = views_of("geometry")
+"""Views that the library writes as they are, in their order."""
 
 _NO_GLASS = np.zeros(0, PART)
 
@@ -81,8 +81,7 @@ class NativeRenderer:
     @property
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
-        made = {*views_of("lighting", "annotation"), *_ATTRIBUTES}
-        return tuple(view for view in VIEWS if view in made)
+        return views_of("lighting", "annotation", "geometry")
 
     def render(
         self,
@@ -158,7 +157,7 @@ class NativeRenderer:
             None if radiance is None else light,
             surface=arrays["surface"],
             radiance=radiance,
-            **{view: arrays.get(view) for view in _ATTRIBUTES},
+            attributes=[arrays.get(view) for view in _ATTRIBUTES],
         )
         if sampled:
             fine = camera.of_samples()

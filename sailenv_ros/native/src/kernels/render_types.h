@@ -135,12 +135,13 @@ struct View {
     int64_t smooth_edges;  // 1: edges of surfaces are smoothed, see kernels/edges.cpp
 };
 
+constexpr int64_t MOST_ATTRIBUTES = 8;
+
 // What is wanted; null pointers for what is not.
 struct Outputs {
-    float* surface;      // (height, width, 2): depth [m], instance id
-    uint16_t* radiance;  // halves (height, width, 4): exposed radiance, share from around
-    float* normals;      // (height, width, 3): optical frame
-    float* albedo;       // (height, width, 3): linear base colour
+    float* surface;                      // (height, width, 2): depth [m], instance id
+    uint16_t* radiance;                  // halves (height, width, 4): exposed, share from around
+    float* attributes[MOST_ATTRIBUTES];  // see surface_attributes.cpp
 };
 
 }  // namespace sailenv

@@ -30,22 +30,6 @@ void write_gathered_surface(const Shading& s, const Chunk& c) {
     memcpy(out, pairs, static_cast<size_t>(c.count) * 8);
 }
 
-void write_normals(const Shading& s, const Chunk& c) {
-    float* out = s.outputs->normals + 3 * (c.y * s.width + c.x);
-    Vectors seen;
-    for (int32_t i = 0; i < c.padded; i += 8) {
-        const Vec3x8 normal = s.camera_from_world * c.normal.at(i);
-        const i8 there = ~load(c.empty + i);
-        seen.set(i, {bit_cast_float(bits(normal.x) & there), bit_cast_float(bits(normal.y) & there),
-                     bit_cast_float(bits(normal.z) & there)});
-    }
-    for (int32_t i = 0; i < c.count; i++) {
-        out[3 * i] = seen.x[i];
-        out[3 * i + 1] = seen.y[i];
-        out[3 * i + 2] = seen.z[i];
-    }
-}
-
 void place_points(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         c.point.set(i, s.eye + c.ray.at(i) * load(c.depth + i));
@@ -102,15 +86,14 @@ void write_radiance(const Shading& s, const Chunk& c, uint16_t* radiance) {
 
 void shade_chunk(const Shading& s, Chunk& c) {
     const Outputs& wanted = *s.outputs;
-    if (!wanted.radiance && !wanted.normals && !wanted.albedo) {
+    if (!wanted.radiance && !wants_attributes(wanted)) {
         if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
         return;
     }
     gather(s, c);
     if (wanted.surface != nullptr) write_gathered_surface(s, c);
     set_rays(s, c);
-    if (wanted.normals != nullptr) write_normals(s, c);
-    if (wanted.albedo != nullptr) write_albedo(s, c);
+    write_attributes(s, c);
     if (s.outputs->radiance == nullptr) return;
     light_chunk(s, c);
     write_radiance(s, c, s.outputs->radiance + 4 * (c.y * s.width + c.x));

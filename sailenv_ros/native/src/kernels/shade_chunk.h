@@ -57,11 +57,13 @@ void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c);
 // Depth and instance id of a row's pixels, with nothing gathered.
 void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count);
 
-// Multiplies base colours by what colour maps hold, as a picture wants it.
+// Multiplies base colours by what colour maps hold: as a picture wants it, and one texel a pixel.
 void colour_for_picture(Chunk& c);
+void colour_of_pixels(Chunk& c);
 
-// Writes linear base colours. What glows is shaded in the glow's colour, so its own is looked up.
-void write_albedo(const Shading& s, Chunk& c);
+// Views that are attributes of surfaces, of a row's pixels; see surface_attributes.cpp.
+bool wants_attributes(const Outputs& outputs);
+void write_attributes(const Shading& s, Chunk& c);
 
 // Normal, roughness and metallic as the detail map has them; see shaders/textures.glsl.
 void apply_detail_maps(const Shading& s, Chunk& c);

@@ -93,27 +93,7 @@ void multiply_by_maps(Chunk& c, float bias, float most) {
 
 void colour_for_picture(Chunk& c) { multiply_by_maps(c, PICTURE_BIAS, MOST_LOOK_UPS); }
 
-void write_albedo(const Shading& s, Chunk& c) {
-    alignas(32) float shaded[3][CHUNK];
-    float* const channels[3] = {c.base.x, c.base.y, c.base.z};
-    for (int k = 0; k < 3; k++) {
-        memcpy(shaded[k], channels[k], sizeof(shaded[k]));
-        for (int32_t i = 0; i < c.padded; i += 8) store(channels[k] + i, splat(1.0f));
-    }
-    if (c.coloured) multiply_by_maps(c, 0.0f, 1.0f);
-    const uint32_t* visible = s.visible + c.y * s.stride + c.x;
-    float* out = s.outputs->albedo + 3 * (c.y * s.width + c.x);
-    for (int32_t i = 0; i < c.count; i++) {
-        const uint32_t tag = visible[i];
-        const float* base =
-            tag == NOTHING ? nullptr : s.parts->parts[s.set->triangles[tag].part].base;
-        for (int k = 0; k < 3; k++) {
-            const float root = base == nullptr ? 0.0f : base[k] * channels[k][i];
-            out[3 * i + k] = root * root;
-        }
-    }
-    for (int k = 0; k < 3; k++) memcpy(channels[k], shaded[k], sizeof(shaded[k]));
-}
+void colour_of_pixels(Chunk& c) { multiply_by_maps(c, 0.0f, 1.0f); }
 
 void apply_detail_maps(const Shading& s, Chunk& c) {
     TapRows taps;
