@@ -29,11 +29,10 @@ __all__ = [
     "views_of",
 ]
 
-
 ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry", "motion"]
 """Source of a view: the lit picture; arithmetic on depth and instance id, which all back ends
-share; an attribute of the surface, which the geometry pass writes as it is; or arithmetic on a
-frame and the one that follows it, which no renderer makes (`sailenv_ros.frame.motion`)."""
+share; an attribute of the surface, which renderers write as it is; or arithmetic on a frame and
+the one that follows it, which no renderer makes (`sailenv_ros.frame.motion`)."""
 
 ViewDisplay: TypeAlias = Literal[
     "colour", "depth", "category", "instance", "flow", "direction", "mask", "place", "displacement"
@@ -231,6 +230,16 @@ _SPECS = (
         meaning="base colour of the surface, whatever its light: red, green, blue (linear)",
         invalid="0 nothing hit",
         display="colour",
+        source="geometry",
+    ),
+    ViewSpec(
+        name="uv",
+        dtype=np.dtype(np.float32),
+        channels=2,
+        encoding="32FC2",
+        meaning="texture coordinates of the surface, in repeats of its texture: u right, v up",
+        invalid="0 nothing hit",
+        display="flow",
         source="geometry",
     ),
     ViewSpec(

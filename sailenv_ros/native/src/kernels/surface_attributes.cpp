@@ -45,13 +45,21 @@ void write_albedo(const Shading& s, Chunk& c, float* out) {
     for (int k = 0; k < 3; k++) memcpy(channels[k], shaded[k], sizeof(shaded[k]));
 }
 
+// Texture coordinates.
+void write_uv(const Shading&, Chunk& c, float* out) {
+    for (int32_t i = 0; i < c.count; i++) {
+        out[2 * i] = c.empty[i] ? 0.0f : c.u[i];
+        out[2 * i + 1] = c.empty[i] ? 0.0f : c.v[i];
+    }
+}
+
 struct Attribute {
     int64_t channels;
     void (*write)(const Shading& s, Chunk& c, float* out);
 };
 
 // In the order of the views of source "geometry" in types/views.py.
-constexpr Attribute ATTRIBUTES[] = {{3, write_normals}, {3, write_albedo}};
+constexpr Attribute ATTRIBUTES[] = {{3, write_normals}, {3, write_albedo}, {2, write_uv}};
 constexpr int64_t COUNT = sizeof(ATTRIBUTES) / sizeof(ATTRIBUTES[0]);
 static_assert(COUNT <= MOST_ATTRIBUTES);
 

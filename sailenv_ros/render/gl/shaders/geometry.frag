@@ -27,6 +27,9 @@ layout(location = OUT_NORMALS) out vec4 out_normals;  // unit, optical frame
 #ifdef OUT_ALBEDO
 layout(location = OUT_ALBEDO) out vec4 out_base;  // linear base colour
 #endif
+#ifdef OUT_UV
+layout(location = OUT_UV) out vec4 out_uv;  // texture coordinates
+#endif
 
 #if defined(SHADED) && !defined(UNLIT)
 vec2 octahedral(vec3 n) {
@@ -50,6 +53,9 @@ void main() {
     vec3 normal = normalize(optical_normal) * (gl_FrontFacing ? 1.0 : -1.0);
 #ifdef OUT_NORMALS
     out_normals = vec4(normal, 1.0);
+#endif
+#ifdef OUT_UV
+    out_uv = vec4(uv, 0.0, 1.0);
 #endif
 #ifdef OUT_ALBEDO
     vec3 root = MATERIAL_BASE;
