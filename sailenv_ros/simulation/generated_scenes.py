@@ -84,8 +84,8 @@ def generation_state() -> str:
     digest = blake2b(digest_size=8)
     rules = resource_path("config", "rooms")
     files = [*sorted(rules.rglob("*.yaml")), standard_pack_folder() / PACK_FILE]
-    for package in (names, generation):
-        files += sorted(Path(package.__file__).parent.glob("*.py"))
+    for folder in (Path(names.__file__).parent, Path(generation.__path__[0])):
+        files += sorted(folder.glob("*.py"))
     for file in files:
         if file.is_file():
             digest.update(file.read_bytes())
