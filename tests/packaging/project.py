@@ -18,6 +18,8 @@ BUILT_FROM = (
     "config",
     "launch",
     "resource",
+    "sailenv_bench",
+    "sailenv_content",
     "sailenv_msgs",
     "sailenv_msgs_py",
     "sailenv_ros",
