@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image
@@ -17,6 +17,7 @@ from sailenv_msgs.msg import AgentInfo, FrameInfo
 from sailenv_msgs.srv import Capture, DeleteAgent, RegisterAgent
 from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.stamps import ns_from_stamp
+from sailenv_ros.ros.executor_thread import ExecutorThread
 from tests.support.waiting import until
 
 RELIABLE = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)
@@ -58,12 +59,12 @@ class Probe:
         self._executor.add_node(self.node)
         self._clients: dict[str, Any] = {}
         self._subscriptions: list[Any] = []
-        self._thread = threading.Thread(target=self._spin, daemon=True)
-        self._thread.start()
+        self._spinning = ExecutorThread(self._executor, "probe")
+        self._spinning.start()
 
     def close(self) -> None:
+        self._spinning.stop(5.0)
         self._context.try_shutdown()
-        self._thread.join(5.0)
         self._executor.shutdown(0.0)
         self.node.destroy_node()
 
@@ -110,16 +111,6 @@ class Probe:
         """Return up every topic."""
         while self._subscriptions:
             self.node.destroy_subscription(self._subscriptions.pop())
-
-    def _spin(self) -> None:
-        try:
-            self._executor.spin()
-        except ExternalShutdownException:
-            pass
-        except Exception:
-            # The context was shut down between the executor's look at it and its wait.
-            if self._context.ok():
-                raise
 
 
 class Eye:

@@ -7,7 +7,6 @@ memory and its discovery. It lives beside whatever the user does with rclpy.
 from __future__ import annotations
 
 import contextlib
-import logging
 import math
 import os
 import threading
@@ -18,8 +17,7 @@ from typing import Any
 
 import rclpy
 from rclpy.context import Context
-from rclpy.exceptions import InvalidHandle
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
@@ -34,6 +32,7 @@ from sailenv_ros.errors import (
     SimulatorLost,
 )
 from sailenv_ros.ros.client.scene_history import DEPTH, SceneHistory
+from sailenv_ros.ros.executor_thread import ExecutorThread
 from sailenv_ros.system.client_locks import ClientLock
 from sailenv_ros.system.inherited_dds import renew_inherited_dds
 from sailenv_ros.system.presence import present_simulator
@@ -41,8 +40,6 @@ from sailenv_ros.system.transport import use_shared_memory_profile
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["Connection"]
-
-_log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.1
 """Interval at which a wait checks whether the simulator still lives [s]."""
@@ -94,8 +91,8 @@ class Connection:
         self.node.create_subscription(SceneInfoMsg, "scene_info", self._take_info, _LATCHED)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
-        self._thread = threading.Thread(target=self._spin, name="sailenv-client", daemon=True)
-        self._thread.start()
+        self._spinning = ExecutorThread(self._executor, "sailenv-client")
+        self._spinning.start()
 
     # -- the simulator ---------------------------------------------------------------------
 
@@ -316,21 +313,6 @@ class Connection:
             self._scenes.add(info)
             self._changed.notify_all()
 
-    def _spin(self) -> None:
-        while not self._closed and self._context.ok():
-            try:
-                self._executor.spin()
-            except ExternalShutdownException:
-                return
-            except InvalidHandle:
-                # Another thread destroyed a subscription while this one got ready to wait for it;
-                # rclpy catches that for all but the subscription's events.
-                continue
-            except Exception:
-                # A message that cannot be read must not end the thread that reads all others.
-                if not self._closed:
-                    _log.exception("a message of the simulator could not be taken")
-
     def close(self) -> None:
         """End the thread and free the context; a second call does nothing."""
         if self._closed:
@@ -338,9 +320,8 @@ class Connection:
         self._closed = True
         with self._changed:
             self._changed.notify_all()
+        self._spinning.stop(5.0)
         self._executor.shutdown(0)
-        if self._thread is not threading.current_thread():
-            self._thread.join(5.0)
         self.node.destroy_node()
         with contextlib.suppress(RuntimeError):  # the interpreter's end may have come before
             self._context.try_shutdown()

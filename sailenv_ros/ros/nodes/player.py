@@ -26,7 +26,7 @@ from sailenv_ros.recording.playback import PlaybackClock, Programme, programme
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.schemas import message_class
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
-from sailenv_ros.ros.nodes.executor_thread import ExecutorThread
+from sailenv_ros.ros.executor_thread import ExecutorThread
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.parameters import declare_table

@@ -30,8 +30,8 @@ from sailenv_ros.recording.queue_writer import QueueWriter
 from sailenv_ros.recording.snapshot_buffer import SnapshotBuffer
 from sailenv_ros.recording.topics import RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
+from sailenv_ros.ros.executor_thread import ExecutorThread
 from sailenv_ros.ros.nodes.bag_recorder import Recorder
-from sailenv_ros.ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.parameters import declare_table

@@ -26,13 +26,13 @@ from sailenv_ros.errors import (
     SailenvError,
     SimulationClosed,
 )
+from sailenv_ros.ros.executor_thread import ExecutorThread
 from sailenv_ros.ros.nodes.agent_endpoints import AgentEndpoints
 from sailenv_ros.ros.nodes.agent_leases import AgentLeases
 from sailenv_ros.ros.nodes.announcements import Announcements
 from sailenv_ros.ros.nodes.capture_server import CaptureServer
 from sailenv_ros.ros.nodes.contact_topic import ContactTopic
 from sailenv_ros.ros.nodes.diagnostics import Diagnostics
-from sailenv_ros.ros.nodes.executor_thread import ExecutorThread
 from sailenv_ros.ros.nodes.free_space_topic import FreeSpaceTopic
 from sailenv_ros.ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
 from sailenv_ros.ros.nodes.joint_topic import JointTopic

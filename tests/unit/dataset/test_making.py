@@ -165,7 +165,10 @@ def test_ctrl_c_is_quick_and_leaves_nothing_among_temporary_files(
     scratch.mkdir()
     folder = tmp_path / "broken"
     (tmp_path / "mine.yaml").write_text(resource_path("scenes", "optical.yaml").read_text())
-    recipe = written_recipe(tmp_path, scenes=[{"scene": "mine.yaml"}], shard={"clips": 1})
+    # So many that it cannot end by itself before the signal comes.
+    recipe = written_recipe(
+        tmp_path, scenes=[{"scene": "mine.yaml"}], shard={"clips": 1}, clips={"train": 5000}
+    )
     running = subprocess.Popen(
         [
             sys.executable, "-m", "sailenv_ros.cli.main", "dataset", "make", str(recipe),
