@@ -20,6 +20,7 @@ from sailenv_ros.gateway.gateway_limits import GatewayLimits
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.gateway.steps import Request, Response, Step, one_line
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.connection_gate import address_of
 from sailenv_ros.system.silent_peers import end_when_silent
 
 __all__ = ["ClientConnection"]
@@ -46,6 +47,8 @@ class ClientConnection:
     admit : callable
         Called with each message before it is answered, and with None whenever bytes have come;
         raises `ProtocolError` where the peers together want too much.
+    stranger_left : callable
+        Told in words of a peer that is disconnected before its first command was complete.
     """
 
     def __init__(
@@ -59,6 +62,7 @@ class ClientConnection:
         protocol: str,
         limits: GatewayLimits,
         admit: Callable[[ClientConnection, Message | None], None],
+        stranger_left: Callable[[str], None],
     ) -> None:
         self._session = session
         self._reader = reader
@@ -68,10 +72,13 @@ class ClientConnection:
         self._messages = MessageReader(protocol)
         self._limits = limits
         self._admit = admit
+        self._stranger_left = stranger_left
         self._began_s: float | None = asyncio.get_running_loop().time()
         self._greeted = False
         self.pixels = 0
-        self.peer = _peer_of(writer)
+        address = writer.get_extra_info("peername")
+        self.address = address_of(address)
+        self.peer = f"client {address[0]}:{address[1]}" if address else "a client that has gone"
 
     @property
     def held_bytes(self) -> int:
@@ -87,7 +94,11 @@ class ClientConnection:
         except (OSError, asyncio.IncompleteReadError) as problem:
             self._say_it_went(problem)
         except SailenvError as error:
-            _log.warning("%s is disconnected: %s", self.peer, one_line(error))
+            told = f"{self.peer} is disconnected: {one_line(error)}"
+            if self._greeted:
+                _log.warning("%s", told)
+            else:
+                self._stranger_left(told)
         except Exception:
             _log.exception("%s is disconnected because of an internal error", self.peer)
         finally:
@@ -203,8 +214,3 @@ async def _within(awaitable: Awaitable[T], what: str, timeout_s: float) -> T:
         if getattr(problem, "errno", None):
             raise  # of the socket's own
         raise DeadlineExceeded(what, timeout_s) from None
-
-
-def _peer_of(writer: asyncio.StreamWriter) -> str:
-    address = writer.get_extra_info("peername")
-    return f"client {address[0]}:{address[1]}" if address else "a client that has gone"

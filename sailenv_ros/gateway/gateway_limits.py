@@ -18,6 +18,8 @@ class GatewayLimits:
     ----------
     connections : int
         Peers at a time. Each that registers is an agent, of which the simulator has a limit too.
+    per_address : int
+        Peers of one address at a time, so that none keeps all others out.
     pixels : int
         Of the pictures of all peers together: at most so many are held in memory.
     held_bytes : int
@@ -36,7 +38,8 @@ class GatewayLimits:
         For the simulation to do what a command asks for [s]; loading a scene takes many.
     """
 
-    connections: int = 64
+    connections: int = 96
+    per_address: int = 64
     pixels: int = 4 * MAX_SIZE_PX**2
     held_bytes: int = 256 * 2**20
     hello_s: float = 10.0

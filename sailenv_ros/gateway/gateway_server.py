@@ -18,6 +18,7 @@ from sailenv_ros.gateway.gateway_limits import GatewayLimits
 from sailenv_ros.gateway.protocol_commands import commands_of
 from sailenv_ros.gateway.session import Session
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.connection_gate import BACKLOG, ConnectionGate, RareWarning
 from sailenv_ros.system.loop_server import LoopServer
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "GatewayServer"]
@@ -70,6 +71,8 @@ class GatewayServer(LoopServer):
         self._protocol = protocol
         self._limits = limits or GatewayLimits()
         self._ids = itertools.count(1)
+        self._gate = ConnectionGate("gateway", self._limits.connections, self._limits.per_address)
+        self._silent = RareWarning(_log)
         self._connections: dict[ClientConnection, asyncio.Task[None] | None] = {}
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="sailenv-gateway-work")
         self._start()
@@ -87,7 +90,7 @@ class GatewayServer(LoopServer):
 
     async def _serve(self, listening: Callable[[int], None]) -> None:
         server = await asyncio.start_server(
-            self._accept, self.host, self.port, limit=CHUNK_BYTES, backlog=128
+            self._accept, self.host, self.port, limit=CHUNK_BYTES, backlog=BACKLOG
         )
         listening(server.sockets[0].getsockname()[1])
         await self._stop.wait()
@@ -100,8 +103,8 @@ class GatewayServer(LoopServer):
             await asyncio.wait(tasks, timeout=0.1)
 
     async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._connections) >= self._limits.connections:
-            _log.warning("a client is refused: %d are connected", len(self._connections))
+        others = [connection.address for connection in self._connections]
+        if not self._gate.admits(writer.get_extra_info("socket"), others):
             writer.transport.abort()
             return
         connection = ClientConnection(
@@ -113,6 +116,7 @@ class GatewayServer(LoopServer):
             protocol=self._protocol,
             limits=self._limits,
             admit=self._admit,
+            stranger_left=self._silent.warn,
         )
         self._connections[connection] = asyncio.current_task()
         try:

@@ -12,6 +12,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from sailenv_ros.errors import AddressInUse, DeadlineExceeded, InvalidRequest
+from sailenv_ros.system.connection_gate import RareWarning
 from sailenv_ros.system.futures import wait_for
 
 __all__ = ["LoopServer"]
@@ -57,7 +58,14 @@ class LoopServer(ABC):
         self._listens: Future[int] = Future()
         self._thread = threading.Thread(target=self._run, name=f"sailenv-{what}", daemon=True)
         self._loop = asyncio.new_event_loop()
+        self._loop.set_exception_handler(self._warn_of)
+        self._warning = RareWarning(_log)
         self._stop = asyncio.Event()
+
+    def _warn_of(self, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Tell of what no request answers for, e.g. that no connection can be accepted."""
+        problem = context.get("exception")
+        self._warning.warn(f"the {self._what}: {context['message']} ({problem})", problem)
 
     @abstractmethod
     async def _serve(self, listening: Callable[[int], None]) -> None:

@@ -11,12 +11,18 @@ __all__ = ["ViewerLimits"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewerLimits:
-    """Limits of one window.
+    """Limits of one viewer, and of each window of it.
 
     Attributes
     ----------
+    connections : int
+        Connections at a time; a browser keeps up to seven for each window.
+    per_address : int
+        Connections of one address at a time, so that no peer keeps all others out.
+    header_s : float
+        From a connection's begin, or its last answer, to a complete request [s].
     clients : int
-        Sockets at a time.
+        Windows at a time.
     message_bytes : int
         Longest message of a client.
     messages_per_s : int
@@ -31,6 +37,9 @@ class ViewerLimits:
         Deadline of a request [s]; loading a scene takes many.
     """
 
+    connections: int = 256
+    per_address: int = 192
+    header_s: float = 15.0
     clients: int = 24
     message_bytes: int = 64 * 1024
     messages_per_s: int = 400

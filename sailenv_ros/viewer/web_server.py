@@ -18,6 +18,7 @@ from aiohttp import web
 
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.connection_gate import BACKLOG, ConnectionGate, address_of
 from sailenv_ros.system.loop_server import LoopServer
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.scene_info import SceneInfo
@@ -49,6 +50,31 @@ STATS_S = 0.5
 MAX_NAME = 200
 
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class _Entrance(asyncio.Protocol):
+    """A connection of which nothing has been read: given to aiohttp, or closed."""
+
+    def __init__(self, runner: web.AppRunner, gate: ConnectionGate) -> None:
+        self._runner = runner
+        self._gate = gate
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Admit it or not."""
+        server = self._runner.server
+        if server is None or not isinstance(transport, asyncio.Transport):
+            raise RuntimeError("a connection came before the server was ready")
+        others = [
+            address_of(handler.transport.get_extra_info("peername"))
+            for handler in server.connections
+            if handler.transport is not None and not handler.transport.is_closing()
+        ]
+        if self._gate.admits(transport.get_extra_info("socket"), others):
+            protocol = server()
+            transport.set_protocol(protocol)
+            protocol.connection_made(transport)
+        else:
+            transport.abort()
 
 
 class ViewerServer(LoopServer):
@@ -91,6 +117,7 @@ class ViewerServer(LoopServer):
         )
         self._may_change = loopback or control
         self._limits = limits or ViewerLimits()
+        self._gate = ConnectionGate("viewer", self._limits.connections, self._limits.per_address)
         self._debug_agent = DebugAgent(simulation)
         self._clients: set[Client] = set()
         self._connected = 0
@@ -140,14 +167,24 @@ class ViewerServer(LoopServer):
         app.router.add_get("/socket", self._socket)
         app.router.add_get("/thumbnail/{asset}", self._thumbnail)
         app.router.add_get("/{name}", self._page_file)
-        runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=1.0)
+        runner = web.AppRunner(
+            app,
+            access_log=None,
+            handle_signals=False,
+            shutdown_timeout=1.0,
+            # aiohttp closes by it, too, who has not sent a whole request.
+            keepalive_timeout=self._limits.header_s,
+        )
         await runner.setup()
         try:
-            await web.TCPSite(runner, self.host, self.port).start()
-            listening(runner.addresses[0][1])
+            server = await self._loop.create_server(
+                lambda: _Entrance(runner, self._gate), self.host, self.port, backlog=BACKLOG
+            )
+            listening(server.sockets[0].getsockname()[1])
             stats = asyncio.create_task(self._send_stats_repeatedly())
             await self._stop.wait()
             stats.cancel()
+            server.close()
             await asyncio.gather(*(client.close() for client in tuple(self._clients)))
         finally:
             await runner.cleanup()

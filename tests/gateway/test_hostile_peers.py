@@ -149,18 +149,26 @@ def test_a_peer_that_vanishes_in_the_middle_of_a_frame(gateway: GatewayServer) -
             peer.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
-def test_a_crowd(gateway: GatewayServer, blank_simulation: Simulation) -> None:
-    """Of 200 connections no more than the limit are kept, of 200 agents no more than fit."""
+def test_a_crowd(
+    gateway: GatewayServer, blank_simulation: Simulation, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Of 200 connections of one address few are kept, and others are served; the log is short."""
     with ExitStack() as crowd:
         peers = [crowd.enter_context(connected(gateway)) for _ in range(CONNECTIONS)]
-        until(lambda: gateway.clients <= LIMITS.connections, "the rest to be refused")
+        until(lambda: gateway.clients <= LIMITS.per_address, "the rest to be refused")
+        with socket.create_connection(
+            ("127.0.0.1", gateway.port), 20.0, source_address=("127.0.0.2", 0)
+        ) as other:
+            other.sendall(hello())
+            assert other.recv(4)
         for peer in peers:
             try:
                 peer.sendall(hello())
             except ConnectionError:
                 continue
-        until(lambda: 0 < len(_agents(blank_simulation)) <= LIMITS.connections, "some to register")
-        assert gateway.clients <= LIMITS.connections
+        until(lambda: 0 < len(_agents(blank_simulation)) <= LIMITS.per_address, "some to register")
+        assert gateway.clients <= LIMITS.per_address
+    assert sum("refuses a connection" in message for message in caplog.messages) == 1
 
 
 def test_random_bytes(gateway: GatewayServer) -> None:
