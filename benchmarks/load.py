@@ -1,11 +1,12 @@
 """Cost of stalled, idle and working clients for others: frames per second beside them.
 
     python benchmarks/load.py [--seconds S] [--rounds N] [--agents N] [--peers N] [--pages N]
-                              [--realtime HZ]
+                              [--begun N] [--realtime HZ]
 
 Agents stream in process all the time: as fast as the machine can, in lockstep, or with `--realtime`
 so many frames a second each, in real time. In each round they do so alone, then beside stalled
-clients, then beside clients half of which are stalled. The clients are a process of their own:
+clients, then beside clients half of which are stalled, then in a storm of `--begun` connections to
+each server that send one byte of a request. The clients are a process of their own:
 
 - peers at the gateway: all connect, as many as fit register (16 agents are the most). A stalled one
   asks for frames and never reads, a working one reads `--peer-hz` frames a second.
@@ -25,6 +26,7 @@ import contextlib
 import json
 import logging
 import os
+import resource
 import socket
 import statistics
 import struct
@@ -55,6 +57,8 @@ SWITCH_INTERVAL_S = 0.0005
 SETTLE_S = 2.0
 """Until the buffers of those who do not read are full [s]."""
 
+STALLED, HALF_STALLED, STORM = KINDS = "stalled", "half stalled", "one byte"
+
 
 def main() -> None:
     """Measure and print."""
@@ -67,7 +71,8 @@ def main() -> None:
     parser.add_argument("--peer-hz", type=float, default=5.0)
     parser.add_argument("--realtime", type=float, default=0.0, metavar="HZ")
     parser.add_argument("--clients-of", nargs=2, type=int, help=argparse.SUPPRESS)
-    parser.add_argument("--working", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--begun", type=int, default=1100)
+    parser.add_argument("--kind", choices=KINDS, default=STALLED, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.clients_of:
         asyncio.run(_Clients(options).live(*options.clients_of))
@@ -88,7 +93,7 @@ class _Rate:
 def _measure(options: argparse.Namespace) -> None:
     logging.disable(logging.WARNING)
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    rates = {what: _Rate() for what in ("alone", "stalled", "half stalled")}
+    rates = {what: _Rate() for what in ("alone", *KINDS)}
     with (
         Simulation("optical", mode="realtime" if options.realtime else "lockstep") as simulation,
         GatewayServer(simulation, port=0) as gateway,
@@ -104,8 +109,8 @@ def _measure(options: argparse.Namespace) -> None:
         ports = (gateway.port, viewer.port)
         for _ in range(options.rounds):
             _run(simulation, names, options.seconds, rates["alone"])
-            for what in ("stalled", "half stalled"):
-                with _clients(options, ports, working=what != "stalled"):
+            for what in KINDS:
+                with _clients(options, ports, what):
                     _run(simulation, names, SETTLE_S)
                     _run(simulation, names, options.seconds, rates[what])
     _print(options, rates)
@@ -163,14 +168,12 @@ def _print(options: argparse.Namespace, rates: dict[str, _Rate]) -> None:
 
 
 @contextlib.contextmanager
-def _clients(
-    options: argparse.Namespace, ports: tuple[int, int], *, working: bool
-) -> Iterator[None]:
+def _clients(options: argparse.Namespace, ports: tuple[int, int], kind: str) -> Iterator[None]:
     """Have the clients there, in another process, until the end of the block."""
     command = [sys.executable, __file__, "--clients-of", *map(str, ports)]
-    for name in ("agents", "peers", "pages", "peer_hz"):
+    for name in ("agents", "peers", "pages", "peer_hz", "begun"):
         command += [f"--{name.replace('_', '-')}", str(getattr(options, name))]
-    command += ["--working"] if working else []
+    command += ["--kind", kind]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=os.environ
     ) as clients:
@@ -198,6 +201,15 @@ class _Clients:
         """Connect all, say so, and live until standard input ends."""
         options = self._options
         with contextlib.ExitStack() as sockets:
+            if options.kind == STORM:
+                hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+                resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+                for port in (gateway, viewer) * options.begun:
+                    peer = sockets.enter_context(socket.create_connection(("127.0.0.1", port), 5.0))
+                    peer.sendall(b"G")
+                print("there", flush=True)
+                await asyncio.to_thread(sys.stdin.read)
+                return
             async with aiohttp.ClientSession() as session:
                 for number in range(options.peers):
                     await self._peer(gateway, number, sockets)
@@ -214,7 +226,7 @@ class _Clients:
             return  # it would be refused
         peer.sendall(struct.pack("<iiB", *SIZE, 0))
         peer.recv(2**16)
-        if self._options.working and number % 2:
+        if self._options.kind == HALF_STALLED and number % 2:
             self._tasks.append(asyncio.create_task(asyncio.to_thread(self._ask, peer)))
         else:
             peer.sendall(FRAME * 20)
@@ -236,7 +248,7 @@ class _Clients:
         page = await session.ws_connect(f"{address}/socket", headers={"Origin": address})
         watch = {"do": "watch", "id": 1, "agent": "load_0", "views": ["rgb", "depth", "flow"]}
         await page.send_json(watch)
-        works = self._options.working and number % 2 == 1
+        works = self._options.kind == HALF_STALLED and number % 2 == 1
         if works or number % 4 == 0:
             self._tasks.append(asyncio.create_task(_look(page, shows=works)))
 
