@@ -1,6 +1,6 @@
 """Frames as a PyTorch IterableDataset: each worker process has its own camera.
 
-An Agent cannot be used in a forked process and cannot be pickled, so each worker makes its own.
+An Agent works in the process that made it alone, so each worker makes its own.
 Without PyTorch the same data set is iterated in this process.
 """
 

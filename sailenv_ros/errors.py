@@ -18,6 +18,7 @@ Every sentence says what was wrong and what is accepted, with the names that the
     │   ├── ContextError        no OpenGL context could be created
     │   └── NativeLibraryError  the native library is missing, or refused its arguments
     ├── SimulationClosed        the simulation has ended, before or during a request
+    │   └── WrongProcess        it lives in another process than the one that asks
     ├── DeadlineExceeded        something did not happen in time
     │   └── SimulatorLost       the simulator no longer answers
     ├── ProtocolError           bytes of a client that violate the protocol
@@ -35,7 +36,7 @@ import difflib
 import errno
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 E = TypeVar("E", bound="SailenvError")
@@ -50,6 +51,9 @@ class SailenvError(Exception):
         error = cls.__new__(cls)
         Exception.__init__(error, sentence)
         return error
+
+    def __reduce__(self) -> Any:
+        return type(self).from_sentence, (str(self),), self.__dict__
 
 
 class InvalidRequest(SailenvError, ValueError):
@@ -73,17 +77,7 @@ class InvalidRequest(SailenvError, ValueError):
 
 
 class UnknownName(InvalidRequest):
-    """A name that is not among the known ones; the nearest known name is suggested.
-
-    Parameters
-    ----------
-    kind : str
-        What is named, e.g. ``"scene"``.
-    name : str
-        The unknown name.
-    known : iterable of str
-        The names that would have been accepted.
-    """
+    """A name of a `kind` of things that is not among the known ones; the nearest is suggested."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         names = [str(k) for k in known]
@@ -130,13 +124,7 @@ class InvalidEntry(InvalidRequest):
 
 
 class InvalidState(SailenvError):
-    """Something that is not possible as things are now; nothing was changed.
-
-    Parameters
-    ----------
-    why : str
-        A sentence: what stands against it, and what would make it possible.
-    """
+    """Something that is not possible as things are now, and what would make it so."""
 
 
 class NoFreeSpace(InvalidState):
@@ -247,16 +235,20 @@ class SimulationClosed(SailenvError):
         super().__init__(f"the simulation has ended: {why}")
 
 
-class DeadlineExceeded(SailenvError, TimeoutError):
-    """Something did not happen in time.
+class WrongProcess(SimulationClosed):
+    """A `thing` that works in the process `made_in` alone, in a fork of it or on the way out."""
 
-    Parameters
-    ----------
-    waited_for : str
-        What was waited for, e.g. ``"the service /sailenv/register_agent"``.
-    timeout_s : float
-        How long [s].
-    """
+    def __init__(self, thing: str, *, made_in: int) -> None:
+        self.why = f"process {made_in} has made it"
+        SailenvError.__init__(
+            self,
+            f"a {thing} works in the process that made it alone ({made_in}) and cannot be copied, "
+            "sent to another one or inherited by a fork: make it in the worker",
+        )
+
+
+class DeadlineExceeded(SailenvError, TimeoutError):
+    """Something did not happen in time: `waited_for`, in words, within `timeout_s` seconds."""
 
     def __init__(self, waited_for: str, timeout_s: float) -> None:
         self.waited_for = waited_for

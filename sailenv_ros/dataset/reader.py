@@ -61,6 +61,12 @@ class DatasetFrame:
     frame: Frame
     objects: tuple[Mapping[str, Any], ...] = ()
 
+    def __repr__(self) -> str:
+        return (
+            f"<DatasetFrame {self.number} of {self.split}: clip {self.clip}, time {self.time}, "
+            f"camera {self.camera!r}, {len(self.objects)} objects\n {self.frame.about}>"
+        )
+
 
 def open_dataset(folder: str | Path, split: str = "") -> Dataset:
     """Open a data set that `sailenv dataset make` has made, or is making.

@@ -6,9 +6,10 @@ Comes from `render/` by way of `simulation/`, goes to messages, sockets, files a
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from numpy.typing import NDArray
 
@@ -16,6 +17,7 @@ from sailenv_ros.errors import UnknownName
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.rebuilding import RebuiltByFields
 from sailenv_ros.types.scene_info import SceneInfo, SceneObject
 from sailenv_ros.types.views import VIEWS, view_spec
 
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 
 __all__ = ["DrawAmodal", "FrameData"]
+
+F = TypeVar("F", bound="FrameData")
 
 
 class DrawAmodal(Protocol):
@@ -33,8 +37,10 @@ class DrawAmodal(Protocol):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FrameData(Mapping[str, NDArray[Any]]):
+class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
     """All views of one camera at one instant: a mapping of their names to arrays.
+
+    Can be copied and sent to other processes; what drew amodal masks stays where it is.
 
     Attributes
     ----------
@@ -121,6 +127,35 @@ class FrameData(Mapping[str, NDArray[Any]]):
 
     def __bool__(self) -> bool:
         return True  # also without views: a frame without views is a frame
+
+    def field_values(self) -> dict[str, Any]:
+        """Return the arguments of the constructor that make an equal frame in any process."""
+        return {**super().field_values(), "views": dict(self.views), "draw_amodal": None}
+
+    def __copy__(self: F) -> F:
+        return replace(self, draw_amodal=self.amodal_source)
+
+    def __deepcopy__(self: F, memo: dict[int, Any]) -> F:
+        values = deepcopy(self.field_values(), memo)
+        return type(self)(**{**values, "draw_amodal": self.amodal_source})
+
+    @property
+    def amodal_source(self) -> DrawAmodal | None:
+        """What gives amodal masks to a copy in this process."""
+        return self.draw_amodal
+
+    @property
+    def about(self) -> str:
+        """A line that says whose frame it is, of when, and how large."""
+        lens = self.camera.intrinsics
+        return (
+            f"{self.agent} in {self.scene}: frame {self.sequence}, "
+            f"t = {self.stamp_ns * 1e-9:.3f} s, Δt = {self.dt_s:.3f} s, "
+            f"{lens.width} × {lens.height} px"
+        )
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.about}\n views: {', '.join(self.views) or 'none'}>"
 
     def get(self, view: str, default: Any = None) -> Any:
         """Return a view; the default if the frame does not have it."""

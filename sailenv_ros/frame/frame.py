@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.frame.data import FrameData
+from sailenv_ros.frame.data import DrawAmodal, FrameData
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.frame.truth.frame_objects import keypoints_of, objects_of
 from sailenv_ros.frame.truth.object_table import Keypoints, ObjectTable
@@ -16,7 +16,17 @@ from sailenv_ros.frame.truth.point_cloud import PointCloud, points_of
 __all__ = ["Frame"]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True)
+class _DrawnAmodal:
+    """Gives amodal masks that were drawn already."""
+
+    masks: AmodalMasks
+
+    def __call__(self, only: int = 0) -> AmodalMasks:
+        return self.masks
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Frame(FrameData):
     """All views of one camera at one instant, with their objects, points and pictures.
 
@@ -50,7 +60,7 @@ class Frame(FrameData):
         if self.draw_amodal is None:
             raise InvalidState(
                 "the frame has no amodal masks: ask a frame of a Simulation or of an Agent for "
-                "them, or record them"
+                "them, before it is sent to another process, or record them"
             )
         return self.draw_amodal()
 
@@ -97,6 +107,16 @@ class Frame(FrameData):
             If the frame has no depth.
         """
         return points_of(self, in_world=in_world)
+
+    def field_values(self) -> dict[str, Any]:
+        """Return the arguments of the constructor that make an equal frame in any process."""
+        drawn = {"draw_amodal": self.amodal_source} if "amodal" in self.__dict__ else {}
+        return {**super().field_values(), **drawn}
+
+    @property
+    def amodal_source(self) -> DrawAmodal | None:
+        """What gives amodal masks to a copy: those that are drawn, else what draws them here."""
+        return _DrawnAmodal(self.amodal) if "amodal" in self.__dict__ else self.draw_amodal
 
     def to_dict(self, *, copy: bool = True) -> dict[str, Any]:
         """Return the frame as the dict of the SAILenv client, with more in it.

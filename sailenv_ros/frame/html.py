@@ -39,15 +39,9 @@ def frame_html(frame: FrameData, *, categories: CategoryTable | None = None) -> 
     text : str
         Needs no other file.
     """
-    lens = frame.camera.intrinsics
-    about = (
-        f"{frame.agent} in {frame.scene}: frame {frame.sequence}, "
-        f"t = {frame.stamp_ns * 1e-9:.3f} s, Δt = {frame.dt_s:.3f} s, "
-        f"{lens.width} × {lens.height} px"
-    )
     pictures = view_pictures(frame, categories)
     return (
-        f'<div><p style="margin:0 0 4px"><b>Frame</b> {html.escape(about)}</p>'
+        f'<div><p style="margin:0 0 4px"><b>Frame</b> {html.escape(frame.about)}</p>'
         f"{tiles_html(pictures)}</div>"
     )
 

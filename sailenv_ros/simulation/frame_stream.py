@@ -12,12 +12,13 @@ from collections.abc import Callable, Collection, Iterable
 
 from sailenv_ros.errors import DeadlineExceeded, SimulationClosed
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.system.own_process import OwnProcess, StaysInProcess
 from sailenv_ros.types.views import checked_views
 
 __all__ = ["FrameStream"]
 
 
-class FrameStream:
+class FrameStream(StaysInProcess):
     """One consumer of one agent's frames at the agent's rate; a context manager.
 
     Parameters
@@ -45,6 +46,7 @@ class FrameStream:
         supported: Collection[str],
     ) -> None:
         self.agent = agent
+        self._process = OwnProcess("FrameStream")
         self._on_change = on_change
         self._ready = threading.Condition()
         self._frame: Frame | None = None
@@ -100,8 +102,10 @@ class FrameStream:
         DeadlineExceeded
             If none came in time.
         SimulationClosed
-            If none will come: the agent was deleted, or the simulation or this stream closed.
+            If none will come: the agent was deleted, or the simulation or this stream closed, or
+            it is another process's.
         """
+        self._process.require()
         deadline = time.monotonic() + timeout_s
         with self._ready:
             while self._frame is None:
@@ -140,7 +144,7 @@ class FrameStream:
 
     def close(self) -> None:
         """Stop taking frames; a second call does nothing."""
-        if not self._ended:
+        if not self._ended and not self._process.is_inherited:
             self.end("the stream was closed")
             self._views = ()
             self._on_change(self)

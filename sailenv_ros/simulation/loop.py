@@ -17,6 +17,7 @@ from sailenv_ros.errors import DeadlineExceeded, SimulationClosed
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.pacing import Pacer
 from sailenv_ros.system.futures import wait_for
+from sailenv_ros.system.own_process import OwnProcess
 from sailenv_ros.world.world import World
 
 __all__ = ["SimulationLoop"]
@@ -44,12 +45,15 @@ class SimulationLoop:
         True once it has ended or is ending.
     ended : str
         Why it has ended; empty while it runs.
+    process : OwnProcess
+        Where its thread is.
     """
 
     def __init__(self) -> None:
         self.core: SimulationCore | None = None
         self.closing = False
         self.ended = ""
+        self.process = OwnProcess("Simulation")
         self._wake = threading.Condition()
         self._queue: collections.deque[tuple[Future[Any], Callable[[SimulationCore], Any]]] = (
             collections.deque()
@@ -92,8 +96,9 @@ class SimulationLoop:
         Raises
         ------
         SimulationClosed
-            If the simulation has ended.
+            If the simulation has ended, or is another process's.
         """
+        self.process.require()
         future: Future[T] = Future()
         with self._wake:
             if self.closing:

@@ -8,12 +8,12 @@ from __future__ import annotations
 import atexit
 import contextlib
 import inspect
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.errors import InvalidState, SailenvError, SimulationClosed
+from sailenv_ros.errors import SailenvError, SimulationClosed
 from sailenv_ros.frame.html import scene_html
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.render.selection import make_backend
@@ -22,26 +22,23 @@ from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.first_scene import default_scene
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.light_cache import LightChoice
-from sailenv_ros.simulation.listeners import Listeners
+from sailenv_ros.simulation.listened_simulation import ListenedSimulation
 from sailenv_ros.simulation.loop import SimulationLoop
 from sailenv_ros.simulation.models.model_workers import ModelWorkers
 from sailenv_ros.simulation.models.thumbnails import Thumbnails
 from sailenv_ros.simulation.models.upload_queue import UploadQueue
-from sailenv_ros.simulation.operations import Operation, Operations
+from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.space import FreeSpace
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
-from sailenv_ros.types.contacts import Contact
-from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.lessons import LessonState
-from sailenv_ros.types.scene_info import SceneInfo, TimeMode
+from sailenv_ros.types.scene_info import TimeMode
 from sailenv_ros.types.snapshot import SceneContents
 
 __all__ = ["Simulation"]
 
 
-class Simulation(Operations):
+class Simulation(ListenedSimulation):
     """A running simulation; a context manager.
 
     Parameters
@@ -102,13 +99,9 @@ class Simulation(Operations):
         agent: AgentSpec | None = None,
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
-        self._loop = loop = SimulationLoop()
+        super().__init__(SimulationLoop())
+        loop = self._loop
         self._own_agent = None if agent is None else agent.name
-        self._info: SceneInfo | None = None
-        self._sim_time_ns = 0
-        self._info_listeners = Listeners[SceneInfo]()
-        self._step_listeners = Listeners[int]()
-        self._map_listeners = Listeners[FreeSpace]()
         self.background_task = ""
         self._workers = ModelWorkers(
             uploads=UploadQueue(
@@ -156,20 +149,9 @@ class Simulation(Operations):
     # -- reading ---------------------------------------------------------------------------
 
     @property
-    def info(self) -> SceneInfo:
-        """The scene as it was announced last; never blocks."""
-        assert self._info is not None
-        return self._info
-
-    @property
     def own_agent(self) -> str | None:
         """The agent that operations mean if none is named; None is the scene's first."""
         return self._own_agent
-
-    @property
-    def sim_time_ns(self) -> int:
-        """Simulated time as of the last step [ns]; never blocks."""
-        return self._sim_time_ns
 
     @property
     def supported_views(self) -> tuple[str, ...]:
@@ -214,6 +196,7 @@ class Simulation(Operations):
         SimulationClosed
             If the simulation has ended.
         """
+        self._loop.process.require()
         if operation.background:
             future: Future[Any] = operation.run(self._workers, *arguments.args, **arguments.kwargs)
             return future
@@ -257,7 +240,7 @@ class Simulation(Operations):
                 with contextlib.suppress(SailenvError):  # it has ended, or the agent is gone
                     self.set_rate(0.0, agent=name)
 
-    # -- streams and listeners -------------------------------------------------------------
+    # -- streams and life ------------------------------------------------------------------
 
     def stream(self, agent: str, views: Iterable[str], *, timeout_s: float = 30.0) -> FrameStream:
         """Open a newest-wins stream of an agent's frames at its rate; close it after use."""
@@ -266,53 +249,17 @@ class Simulation(Operations):
         future = self._loop.submit(lambda core: core.open_stream(agent, wanted, self._changed))
         return wait_for(future, f"a stream of agent {agent!r}", timeout_s)
 
-    def on_info(self, listener: Callable[[SceneInfo], None]) -> Callable[[], None]:
-        """Have a quick function called, now and at every change; gives the one that ends it.
-
-        Changes are told from the loop thread, before any frame that depends on them.
-        """
-        end = self._info_listeners.add(listener)
-        listener(self.info)
-        return end
-
-    def on_step(self, listener: Callable[[int], None]) -> Callable[[], None]:
-        """Have a quick function called with the simulated time [ns] after physics advanced."""
-        return self._step_listeners.add(listener)
-
-    def on_free_space(self, listener: Callable[[FreeSpace], None]) -> Callable[[], None]:
-        """Have a quick function called with each map that `free_space` makes."""
-        return self._map_listeners.add(listener)
-
-    def contacts_of_steps(self, seconds: float) -> tuple[Contact, ...]:
-        """Return what touched what in the last time [s]; for listeners of `on_step` alone.
-
-        Raises
-        ------
-        InvalidState
-            If it is called from another thread than theirs, which has the operation `contacts`.
-        """
-        if self._loop.core is None or not self._loop.is_mine:
-            raise InvalidState("this is for listeners of on_step; others call contacts(seconds)")
-        return self._loop.core.world.contacts(seconds)
-
-    def joints_now(self) -> tuple[JointState, ...]:
-        """Return the states of all joints; for listeners of `on_step` alone.
-
-        Raises
-        ------
-        InvalidState
-            If it is called from another thread than theirs, which has the operation `get_joints`.
-        """
-        if self._loop.core is None or not self._loop.is_mine:
-            raise InvalidState("this is for listeners of on_step; others call get_joints()")
-        return self._loop.core.world.joints()
-
     def refresh(self) -> Future[None]:
         """Begin to take up furniture and baked light that were built since the start."""
         return self._loop.submit(lambda core: core.refresh())
 
     def close(self) -> None:
-        """End the simulation: break off what runs, free everything; a second call does nothing."""
+        """End the simulation: break off what runs, free everything; a second call does nothing.
+
+        In a fork it does nothing either: the parent goes on with it.
+        """
+        if self._loop.process.is_inherited:
+            return
         self._loop.closing = True
         self._workers.close()
         atexit.unregister(self.close)
@@ -327,19 +274,6 @@ class Simulation(Operations):
 
     def __exit__(self, *exc: object) -> None:
         self.close()
-
-    def _listen(self, core: SimulationCore) -> None:
-        core.on_info, core.on_step = self._take_info, self._take_step
-        core.on_free_space = self._map_listeners
-        self._take_info(core.info)
-
-    def _take_info(self, info: SceneInfo) -> None:
-        self._info = info
-        self._info_listeners(info)
-
-    def _take_step(self, sim_time_ns: int) -> None:
-        self._sim_time_ns = sim_time_ns
-        self._step_listeners(sim_time_ns)
 
     def _core(self) -> SimulationCore:
         if self._loop.core is None:

@@ -21,6 +21,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.lens import LENS
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.picture_settings import MAX_SIZE_PX, PictureSettings
+from sailenv_ros.types.rebuilding import RebuiltByFields
 from sailenv_ros.types.validation import Bounds, check_bounds
 
 __all__ = [
@@ -50,7 +51,7 @@ INTRINSICS_LIMITS: Mapping[str, Bounds] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class CameraIntrinsics:
+class CameraIntrinsics(RebuiltByFields):
     """Intrinsics of a pinhole camera, with its clip distances.
 
     Attributes
@@ -277,7 +278,7 @@ class _Samples(CameraIntrinsics):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Camera:
+class Camera(RebuiltByFields):
     """A camera that stands somewhere.
 
     Attributes

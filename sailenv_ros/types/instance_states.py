@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.rebuilding import RebuiltByFields
 
 __all__ = ["InstanceStates", "rotation_matrices"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class InstanceStates:
+class InstanceStates(RebuiltByFields):
     """Poses and velocities of all instances, static and moving, at one instant.
 
     Arrays are read-only. An instance's own frame is that of its asset's mesh, its scale applied,

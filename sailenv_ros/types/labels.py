@@ -103,6 +103,10 @@ class CategoryTable(Mapping[int, Category]):
     def __len__(self) -> int:
         return len(self._by_id)
 
+    def __reduce__(self) -> Any:
+        # Without the palette, which is read-only and as large as a picture.
+        return type(self), (tuple(self._by_id.values()),)
+
     def named(self, name: str) -> Category:
         """Find a category by its name.
 

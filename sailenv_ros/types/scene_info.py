@@ -18,6 +18,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.look_at import LookAt
+from sailenv_ros.types.rebuilding import RebuiltByFields
 from sailenv_ros.types.rigid_body import RigidBody
 from sailenv_ros.types.validation import Bounds
 
@@ -114,7 +115,7 @@ class InstanceColumns:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SceneInfo:
+class SceneInfo(RebuiltByFields):
     """The scene as clients see it.
 
     Attributes

@@ -528,7 +528,7 @@ def work(inherited, all_are_here, answers):
     try:
         inherited.get_frame()
     except SimulationClosed as error:
-        answers.put(str(error))
+        answers.put(str(error)[-42:])
     inherited.close()
     with Agent(width=64, height=48, namespace="/tested", start_timeout_s=20) as own:
         all_are_here.wait(30)
@@ -551,7 +551,7 @@ with Agent(width=64, height=48, namespace="/tested") as agent:
 heard = sorted(str(answers.get(timeout=10)) for _ in range(8))
 print(heard)
 """
-    told = "the simulation has ended: this process was forked; make an Agent of its own in it"
+    told = "inherited by a fork: make it in the worker"
     assert run_python(code) == f"{['(48, 64, 3)'] * 4 + [told] * 4}\n"
 
 

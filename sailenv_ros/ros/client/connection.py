@@ -35,6 +35,7 @@ from sailenv_ros.ros.client.scene_history import DEPTH, SceneHistory
 from sailenv_ros.ros.executor_thread import ExecutorThread
 from sailenv_ros.system.client_locks import ClientLock
 from sailenv_ros.system.inherited_dds import renew_inherited_dds
+from sailenv_ros.system.own_process import OwnProcess
 from sailenv_ros.system.presence import present_simulator
 from sailenv_ros.system.transport import use_shared_memory_profile
 from sailenv_ros.types.scene_info import SceneInfo
@@ -61,12 +62,17 @@ class Connection:
     domain_id : int
     namespace : str
         The simulator's, e.g. ``"/sailenv"``.
+
+    Attributes
+    ----------
+    process : OwnProcess
+        Where its thread is.
     """
 
     def __init__(self, domain_id: int, namespace: str) -> None:
         self.domain_id = domain_id
         self.namespace = namespace
-        self._process_id = os.getpid()
+        self.process = OwnProcess("Agent")
         self._scenes = SceneHistory()
         self._changed = threading.Condition()
         self._closed = False
@@ -112,25 +118,6 @@ class Connection:
         """Return the process id of the simulator of this name on this host, if there is one."""
         return present_simulator(self.domain_id, self.namespace)
 
-    @property
-    def is_inherited(self) -> bool:
-        """True in a fork of the process that this was made in."""
-        return os.getpid() != self._process_id
-
-    def check_process(self) -> None:
-        """Refuse to work in a fork of the process that this was made in.
-
-        To be called before any lock is taken: in a fork, locks may be held by threads that exist
-        in the parent alone.
-
-        Raises
-        ------
-        SimulationClosed
-            If this is a forked process.
-        """
-        if self.is_inherited:
-            raise SimulationClosed("this process was forked; make an Agent of its own in it")
-
     # -- requests --------------------------------------------------------------------------
 
     def call(
@@ -174,7 +161,7 @@ class Connection:
         DeadlineExceeded
             If there was no answer in time.
         """
-        self.check_process()
+        self.process.require()
         refuse_nul(service, request)
         deadline = time.monotonic() + timeout_s
         client = self._client(srv_type, service)

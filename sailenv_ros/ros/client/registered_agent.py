@@ -124,7 +124,7 @@ class RegisteredAgent(Operations):
 
         The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
         """
-        self._remote.connection.check_process()
+        self._remote.connection.process.require()
         with self._lock:
             if self._closed:
                 raise SimulationClosed("the Agent was closed")
@@ -139,7 +139,7 @@ class RegisteredAgent(Operations):
 
         A simulator that was started for this agent ends with the last one that uses it.
         """
-        if self._remote.connection.is_inherited:
+        if self._remote.connection.process.is_inherited:
             return  # it is the parent's, who goes on with it
         with self._lock:
             if self._closed:
@@ -177,7 +177,7 @@ class RegisteredAgent(Operations):
         self, operation: Operation[..., Any], arguments: inspect.BoundArguments
     ) -> Future[Any]:
         """Begin an operation in a thread of its own; one is done after the other."""
-        self._remote.connection.check_process()
+        self._remote.connection.process.require()
         with self._lock:
             if self._closed:
                 raise SimulationClosed("the Agent was closed")
@@ -192,7 +192,7 @@ class RegisteredAgent(Operations):
         timeout_s: float | None,
     ) -> Any:
         """Carry an operation out in the simulator and return its result."""
-        self._remote.connection.check_process()
+        self._remote.connection.process.require()
         limit_s = self._deadline_s(operation) if timeout_s is None else timeout_s
         service = SERVICES[operation.name]
         if service.of_agent and arguments.arguments["agent"] == self.id:

@@ -29,6 +29,7 @@ from typing_extensions import Unpack
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.simulation.operations.argument_checks import declared_checks
 from sailenv_ros.system.futures import wait_for
+from sailenv_ros.system.own_process import StaysInProcess
 
 if TYPE_CHECKING:
     from sailenv_ros.simulation.models.model_workers import ModelWorkers
@@ -44,7 +45,7 @@ Check = Callable[[str, Any], Any]
 """Takes the name of an argument and its value, returns the value to use or raises."""
 
 
-class Caller(ABC):
+class Caller(StaysInProcess, ABC):
     """Carries out operations: in the same thread, in another one, or in another process."""
 
     @property
