@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any, TypeVar
+from weakref import WeakSet
 
 from sailenv_msgs_py.services import SERVICES
 from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
@@ -33,9 +34,19 @@ END_S = 2.0
 
 A = TypeVar("A", bound="RegisteredAgent")
 
+_open: WeakSet[RegisteredAgent] = WeakSet()
+
+
+@atexit.register
+def _close_all() -> None:
+    for agent in tuple(_open):
+        agent.close()
+
 
 class RegisteredAgent(Operations):
     """An agent that exists in the simulator as long as this does; a context manager.
+
+    One that nobody refers to any more, as that of a notebook's cell that ran again, is closed.
 
     Parameters
     ----------
@@ -59,7 +70,6 @@ class RegisteredAgent(Operations):
         self._lock = threading.RLock()
         self._frames: FrameClient | None = None
         self._worker: ThreadPoolExecutor | None = None
-        self._closed = False
         self._recaptured = 0
         self._remote = RemoteSimulator(
             namespace=namespace,
@@ -67,7 +77,8 @@ class RegisteredAgent(Operations):
             simulator=simulator,
             start_timeout_s=start_timeout_s,
         )
-        atexit.register(self.close)
+        self._closed = False
+        _open.add(self)
         try:
             self.register()
         except BaseException:
@@ -145,7 +156,7 @@ class RegisteredAgent(Operations):
             if self._closed:
                 return
             self._closed = True
-            atexit.unregister(self.close)
+            _open.discard(self)
             self._timeout_s = min(self._timeout_s, END_S)
             if self._worker is not None:
                 self._worker.shutdown(wait=False, cancel_futures=True)
@@ -155,6 +166,13 @@ class RegisteredAgent(Operations):
                 pass  # the simulator is gone, and with it the agent
             finally:
                 self._remote.close()
+
+    def __del__(self) -> None:
+        """Give the place in the simulator back where nobody can use it any more."""
+        if not getattr(self, "_closed", True):
+            # Not here: this may run in any thread, also in the one that receives the answers.
+            with suppress(RuntimeError):  # the interpreter ends, and has closed it
+                threading.Thread(target=self.close, name=f"{self.id}-end", daemon=True).start()
 
     def _repr_html_(self) -> str:
         """Return a table of what is simulated, for notebooks."""
