@@ -21,6 +21,9 @@ SIZES_PX = (128, 512, 1024)
 _ROOT_OF_LINEAR = np.round(255.0 * np.sqrt(LINEAR_OF_SRGB8)).astype(np.uint8)
 """(256,) uint8: the square root of linear colour, 0 to 255, over the sRGB code."""
 
+_TEXEL_OF_PIXEL = np.stack([*[_ROOT_OF_LINEAR] * 3, np.arange(256, dtype=np.uint8)], axis=1)[None]
+"""(1, 256, 4) uint8: the same for red, green and blue; alpha stays."""
+
 
 def array_of(texture: Texture | None) -> int:
     """Return the place in `SIZES_PX` of the size that holds a texture; the last for larger ones.
@@ -52,7 +55,7 @@ def square_texels(texture: Texture, edge: int, *, is_colour: bool) -> NDArray[np
     """
     pixels = _resized(texture, edge)
     if is_colour:
-        pixels = np.concatenate([_ROOT_OF_LINEAR[pixels[..., :3]], pixels[..., 3:]], axis=2)
+        pixels = np.asarray(cv2.LUT(pixels, _TEXEL_OF_PIXEL), np.uint8)
     return pixels
 
 
