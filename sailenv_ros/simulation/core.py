@@ -231,6 +231,8 @@ class SimulationCore:
         self.agents.add_missing(brought, world)
         with self.scene.announce.once():
             self.randomiser.place_cameras()
+        if scene != before[0].scene:
+            self.frames.prepare()
         self.streams.discard()
         self.announce()
         self.on_step(world.sim_time_ns)

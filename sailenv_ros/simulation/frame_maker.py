@@ -17,7 +17,7 @@ from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.simulation.agent_table import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
-from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.camera import MIN_SIZE_PX, Camera, CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 
 __all__ = ["FrameMaker"]
+
+_SMALL = CameraIntrinsics(width=MIN_SIZE_PX, height=MIN_SIZE_PX)
 
 
 class FrameMaker:
@@ -130,6 +132,17 @@ class FrameMaker:
     def look(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
         """Render views of the scene as it stands now, through a camera that is no agent's."""
         return self._renderer.render(self._scene.world.snapshot(), None, camera, views).views
+
+    def prepare(self) -> None:
+        """Have the renderer take up the present scene, if there are agents to be drawn for.
+
+        Its first picture needs meshes, textures and mirrored surroundings, which take a second or
+        more: in the request that changes the scene, not in the deadline of a first frame.
+        """
+        specs = self._scene.agents.specs
+        if specs:
+            views = ("rgb",) if any("rgb" in spec.views for spec in specs) else ("depth",)
+            self.look(Camera(intrinsics=_SMALL), *views)
 
     def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.

@@ -61,6 +61,23 @@ def test_streamed_frames_fall_on_the_rate_s_grid() -> None:
     assert stream.get(0.0).sequence == 31
 
 
+@pytest.mark.parametrize("views", [("rgb", "depth"), ("instance",)])
+def test_the_renderer_takes_a_scene_up_while_it_changes(views: tuple[str, ...]) -> None:
+    """Not in the first frame's deadline; what agents see alone; a reset shows what is known."""
+    core, renderer = make_core()
+    core.change_scene("solid_benchmark")
+    assert not renderer.calls  # there is nobody to be drawn for
+    core.register_agent(spec(views=views))
+    core.change_scene("optical")
+    (call,) = renderer.calls
+    assert call[0].contents is core.world.contents
+    assert call[3] == (("rgb",) if "rgb" in views else ("depth",))
+    assert core.capture(views, agent="eye").sequence == 1
+    core.reset()
+    assert len(renderer.calls) == 2
+    core.close()
+
+
 def test_views_that_the_renderer_cannot_make_are_refused_where_they_are_asked_for() -> None:
     """At the capture and at the stream, before a frame falls due; what was wanted stays so."""
     core, renderer = make_core()
