@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter, minimum_filter
+from scipy.ndimage import find_objects, label, maximum_filter, minimum_filter
 
-__all__ = ["bright_spots", "dashes", "luma_of", "outliers", "surfaces_of"]
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8
+
+__all__ = ["bright_spots", "dark_blots", "dashes", "luma_of", "outliers", "surfaces_of"]
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
@@ -30,6 +33,18 @@ BORDER_PX = 9
 BLOCK_PX = 8
 RING = 5
 """Spots are looked for among squares of `BLOCK_PX`, in rings so far around each."""
+
+BLOT_PX = 31
+"""Blots that are narrower are looked for [px]."""
+
+BLOT_SHARE = 0.5
+"""Share of the light around it below which a pixel belongs to a blot."""
+
+BLOT_LEAST_PX = 3
+"""Least width and height of a blot [px]."""
+
+TURN = 0.97
+"""Cosine between the normals of neighbours below which a surface ends."""
 
 BRIGHTER = 4.0
 """Luma by which a spot is brighter than all of its ring."""
@@ -125,3 +140,35 @@ def bright_spots(
         if around.all() and level[v, u] > level[at].max() + BRIGHTER:
             found.append((v, u))
     return np.array(found, np.intp).reshape(-1, 2)
+
+
+def dark_blots(
+    rgb: NDArray[np.uint8],
+    albedo: NDArray[np.float32],
+    normals: NDArray[np.float32],
+    instance: NDArray[np.integer],
+) -> Bools:
+    """Return (H, W) bool: blots with less than half of the light around them, in smooth surfaces.
+
+    Shades that touch an edge, as where two things meet, are none.
+    """
+    linear = LINEAR_OF_SRGB8[rgb].mean(axis=2)
+    light = (linear / np.maximum(albedo.mean(axis=2), 0.02)).astype(np.float32)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BLOT_PX, BLOT_PX))
+    around = cv2.morphologyEx(light, cv2.MORPH_CLOSE, disc)
+    dark = (light < BLOT_SHARE * around) & (instance > 0)
+    edge = np.zeros_like(dark)
+    for axis in (0, 1):
+        ahead = np.roll(normals, -1, axis)
+        ends = (np.einsum("vuc,vuc->vu", normals, ahead) < TURN) | (
+            np.roll(instance, -1, axis) != instance
+        )
+        edge |= ends | np.roll(ends, 1, axis)
+    edge = cv2.dilate(edge.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+    found = np.zeros_like(dark)
+    parts, _ = label(dark)
+    for number, box in enumerate(find_objects(parts), start=1):
+        own = parts[box] == number
+        if min(own.shape) >= BLOT_LEAST_PX and not (own & edge[box]).any():
+            found[box] |= own
+    return found

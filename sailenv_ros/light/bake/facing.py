@@ -1,4 +1,4 @@
-"""Choice of the side of two-sided surfaces that the light map holds. From `Texels` to `Texels`.
+"""Where the texels of the light map are lit from. From `Layout` and rays to `Texels`.
 
 A light map holds one side. Of a closed body whose triangles were wound either way that must be
 the outer one, of a sheet that hangs before a wall the open one.
@@ -11,13 +11,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
+from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
-from sailenv_ros.light.bake.texels import Texels
+from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
-__all__ = ["facing_the_light"]
+__all__ = ["lit_texels"]
 
 RAYS = 42
 FAR_M = 0.5
@@ -37,8 +39,19 @@ SPOTS /= SPOTS.sum(axis=1, keepdims=True)
 """Points of a triangle, as weights of its corners."""
 
 
-def facing_the_light(
-    geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int = 1
+def lit_texels(
+    geometry: StaticGeometry, scene: RayScene, layout: Layout, workers: int = 1
+) -> Texels:
+    """Return the texels in use, on the open side of their surfaces, beyond layers that crossed."""
+    texels = _facing_the_light(geometry, scene, rasterised(geometry, layout), workers)
+    lit_from = above_crossed_layers(
+        geometry, scene, texels.positions, texels.faces, texels.triangle
+    )
+    return replace(texels, positions=lit_from)
+
+
+def _facing_the_light(
+    geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int
 ) -> Texels:
     """Turn the texels of two-sided triangles whose back is the open side."""
     shown = np.zeros(geometry.triangle_count, dtype=bool)

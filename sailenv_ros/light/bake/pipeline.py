@@ -17,7 +17,7 @@ from sailenv_ros.light.bake.bounces import Patches, patches_of
 from sailenv_ros.light.bake.denoise import denoised, dilated
 from sailenv_ros.light.bake.direct import Points
 from sailenv_ros.light.bake.emitters import emitters_of
-from sailenv_ros.light.bake.facing import facing_the_light
+from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.gather import Surroundings
 from sailenv_ros.light.bake.layout import laid_out
@@ -37,7 +37,7 @@ from sailenv_ros.light.bake.sky import panes
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.solving import Samples, SolvedLight, Solver, Stages
 from sailenv_ros.light.bake.sun_edges import sun_edges
-from sailenv_ros.light.bake.texels import Texels, rasterised
+from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.rays.light_rays import NEVER, RayScene
@@ -130,7 +130,7 @@ class _Bake:
         self._visibility = probe_visibility(geometry, scene, self._spots, settings.probe_rays)
         visible = visible_triangles(geometry, self._visibility.seen)
         layout = laid_out(geometry, settings, visible, stages.begin("surfaces", 0.14))
-        texels = facing_the_light(geometry, scene, rasterised(geometry, layout), stages.workers)
+        texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
         glows = self._glows(geometry, texels)

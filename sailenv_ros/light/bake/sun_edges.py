@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
 from sailenv_ros.light.bake.direct import Points, free_shares
 from sailenv_ros.light.bake.light_shapes import SUN_DISC_RADIUS, light_record
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
@@ -95,6 +96,7 @@ def _shares(
         "nx,nx->n", texels.faces[chosen], geometry.faces[texels.triangle[chosen]]
     ), POINTS)  # fmt: skip
     faces = geometry.faces[triangle] * np.sign(side)[:, None].astype(np.float32)
+    positions = above_crossed_layers(geometry, scene, positions, faces, triangle)
     # All points take the same rays: shares grow evenly across an edge, in small steps.
     shifts = np.zeros((len(triangle), 2), np.float32)
     points = Points(positions=positions, normals=faces, faces=faces, shifts=shifts)
