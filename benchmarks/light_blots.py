@@ -4,8 +4,8 @@
 
 Without names: each asset of the standard pack, from twelve sides. A scene, as `room_02` or
 `generated:kitchen:7`, is baked in full and looked at from plausible views. What counts as a blot
-says `dark_blots` in `tests/support/light_faults.py`. Prints those that have any, and a sum. With
-`--output` their pictures are written, blots in red.
+says `dark_blots` in `tests/support/light_faults.py`; things are shown white and matt. Prints those
+that have any, and a sum. With `--output` their pictures are written, blots in red.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.bake_scenes import still
 from tests.support.light_faults import dark_blots
@@ -46,7 +47,7 @@ def alone(name: str, library: AssetLibrary) -> tuple[WorldSnapshot, list[Camera]
     model = library.get(name).model
     snapshot = still([Thing(model)], environment=EVEN, lights=())
     baked = bake(snapshot)
-    snapshot = replace(snapshot, contents=replace(snapshot.contents, baked=baked))
+    snapshot = whitened(replace(snapshot, contents=replace(snapshot.contents, baked=baked)))
     low, high = model.bounds()
     middle, reach = (low + high) / 2.0, 1.5 * float(np.linalg.norm(high - low))
     cameras = []
@@ -57,10 +58,39 @@ def alone(name: str, library: AssetLibrary) -> tuple[WorldSnapshot, list[Camera]
     return snapshot, cameras
 
 
+def whitened(snapshot: WorldSnapshot) -> WorldSnapshot:
+    """Return the scene in its light, all things white and matt: what is dark then lacks light."""
+    models: dict[int, Model] = {}
+
+    def white(model: Model) -> Model:
+        parts = tuple(
+            replace(
+                part,
+                material=replace(
+                    part.material,
+                    base_colour=(*WHITE, part.material.base_colour[3]),
+                    base_colour_texture=None,
+                    metallic=0.0,
+                    roughness=1.0,
+                    metallic_roughness_texture=None,
+                    normal_texture=None,
+                ),
+            )
+            if part.material.alpha == "opaque"
+            else part
+            for part in model.parts
+        )
+        return models.setdefault(id(model), replace(model, parts=parts))
+
+    contents = snapshot.contents
+    drawn = tuple(replace(one, model=white(one.model)) for one in contents.instances)
+    return replace(snapshot, contents=replace(contents, instances=drawn))
+
+
 def in_scene(name: str, renderer: NativeRenderer) -> tuple[WorldSnapshot, Iterator[Camera]]:
     """Return a scene in its finished light, and plausible cameras."""
     room = room_at_rest(name)
-    return room, plausible_views(room, renderer, f"blots{name}", width=1024, height=768)
+    return whitened(room), plausible_views(room, renderer, f"blots{name}", width=1024, height=768)
 
 
 def counted(
