@@ -80,6 +80,10 @@ class Furnisher:
                 continue
             if piece.once and any(item.base == piece.put for item in self.items):
                 continue
+            stand_ins = [item for item in self.items if item.base in piece.unless]
+            if stand_ins:
+                stand_ins[0].needed |= piece.needed
+                continue
             count = self.dice.whole(piece.count)
             count += int(piece.per_metre * self.area.floor_m2)
             for number in range(count):

@@ -234,6 +234,10 @@ def _kind_errors(
             if piece.put not in known["furniture"]:
                 loc = ("furniture", index, "put")
                 yield _unknown("piece", loc, piece.put, known["furniture"])
+            for number, name in enumerate(piece.unless):
+                if name not in known["furniture"]:
+                    loc = ("furniture", index, "unless", number)
+                    yield _unknown("piece", loc, name, known["furniture"])
         for key in ("materials", "light"):
             for index, name in enumerate(getattr(file, key)):
                 if name not in known[key]:

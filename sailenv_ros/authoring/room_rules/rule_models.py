@@ -248,6 +248,9 @@ class PieceRule(_RuleModel):
     once: Annotated[bool, Switch()] = Field(
         default=False, description="true: not if the room has one already"
     )
+    unless: tuple[_Name, ...] = Field(
+        default=(), description="pieces of the room that stand for it: then it has none"
+    )
     per_metre: Fraction = Field(
         default=0.0, description="more of them: so many per square metre of the floor"
     )

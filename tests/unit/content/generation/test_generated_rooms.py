@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from sailenv_content.generation.checks import look_backend
 from sailenv_content.generation.generator import GeneratedScene, Generator
@@ -204,3 +205,11 @@ def test_a_scene_is_made_when_its_name_is_asked_for(library: SceneLibrary) -> No
 
 def test_all_kinds_are_tried_here() -> None:
     assert {kind for kind, _ in ROOMS} == set(room_kinds())
+
+
+@pytest.mark.parametrize("seed", [100060, 100074])
+def test_a_bathroom_has_one_place_to_wash(generator: Generator, seed: int) -> None:
+    """A vanity has a basin in it: with one there is no other."""
+    entries = yaml.safe_load(generator.generate("bathroom", seed).text)["objects"]
+    names = [entry["name"] for entry in entries]
+    assert sum(name.startswith(("vanity", "washbasin")) for name in names) == 1

@@ -61,6 +61,7 @@ def test_the_packages_own_rules_are_well() -> None:
         ("library/materials.yaml", "oak_parquet]", "oak_parket]", "there is no material"),
         ("library/light.yaml", "sunrise,", "sunrize,", "there is no sky 'sunrize'"),
         ("apartment.yaml", "kind: kitchen", "kind: kitschen", "there is no kind of room"),
+        ("bathroom.yaml", "[vanity]", "[vanty]", "there is no piece 'vanty'"),
         ("apartment.yaml", "name: bedroom, ", "", "is a room and must have a name"),
     ],
 )
