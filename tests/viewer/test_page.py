@@ -476,17 +476,27 @@ def test_the_page_fits(
     opened.close()
 
 
+LONG = "furniture: 3 of 9, " + 30 * "one more thing, " + "about 7 min"
+
+
 def test_what_is_built_in_the_background_is_shown(
     opened: OpenPage, simulation: Simulation, tmp_path: Path
 ) -> None:
     """As long as it is being built, in the words of who builds it."""
     go_on = tmp_path / "go_on"
     step = BuildStep(
-        command=("sh", "-c", f"echo furniture: 3 of 9; until [ -e {go_on} ]; do sleep 0.1; done"),
+        command=("sh", "-c", f"echo {LONG}; until [ -e {go_on} ]; do sleep 0.1; done"),
         by_hand="-",
     )
     shown = opened.page.locator("#building")
     with BackgroundBuild(simulation, [step]):
-        expect(shown).to_have_text("furniture: 3 of 9")
+        expect(shown).to_have_text(LONG)
+        # Cut where there is no room for it: nothing else is covered, and all of it is its title.
+        expect(shown).to_have_attribute("title", LONG)
+        line, rate = shown.bounding_box(), opened.page.locator("#fps").bounding_box()
+        assert line is not None
+        assert rate is not None
+        assert line["x"] + line["width"] <= rate["x"]
+        assert rate["x"] + rate["width"] <= opened.page.viewport_size["width"]
         go_on.touch()
         expect(shown).to_have_text("")

@@ -28,6 +28,7 @@ class App {
   hint = "W A S D walk · drag to look · wheel zooms · Tab hands over";
   #panels = [];
   #times = [];
+  #begun = performance.now();
   #placing = false;
   #pointer = null;
   #pointed = 0;
@@ -131,8 +132,17 @@ class App {
   #counted(stats) {
     $("clock").textContent = `${fixed(stats.time_s)} s`;
     $("pace").textContent = `× ${fixed(stats.real_time_factor)}`;
-    $("building").textContent = stats.building;
+    $("building").textContent = $("building").title = stats.building;
+    this.#waiting(stats.building);
     this.#history(stats.undo, stats.redo);
+  }
+
+  /** Say instead of the first picture what is waited for, and how long by now. */
+  #waiting(building) {
+    if (this.stage.head) return;
+    const seconds = Math.round((performance.now() - this.#begun) / 1000);
+    const what = building || "waiting for the first picture …";
+    document.body.style.setProperty("--waiting", JSON.stringify(`${what} (${seconds} s)`));
   }
 
   #history(undo, redo) {
