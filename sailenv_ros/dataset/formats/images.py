@@ -20,8 +20,13 @@ __all__ = ["FloExport", "PngExport", "frame_record", "scaled_depth"]
 
 
 def frame_record(number: int, frame: Frame) -> dict[str, Any]:
-    """Return what belongs to a frame beside its views, for a table of frames."""
+    """Return what belongs to a frame beside its views, for a table of frames.
+
+    ``randomised`` is the record of what was drawn at random for it, which makes it again; it is
+    missing where nothing was.
+    """
     return {
+        **({} if frame.randomised is None else {"randomised": dict(frame.randomised)}),
         "number": number,
         "sequence": frame.sequence,
         "stamp_ns": frame.stamp_ns,

@@ -1,7 +1,8 @@
 """Frames → Parquet: tables of pictures and objects, as Hugging Face's `datasets` loads them.
 
 A row is a frame. Pictures of 8 and 16 bits are PNG files, which `datasets` shows as images; other
-views are arrays of numbers. ``objects`` is a list, an entry for each visible object.
+views are arrays of numbers. ``objects`` is a list, an entry for each visible object; ``randomised`` a
+JSON text of what was drawn at random, if anything was.
 """
 
 from __future__ import annotations
@@ -50,6 +51,7 @@ class ParquetExport(DatasetFormat):
             "sequence": sample.sequence,
             "K": np.ravel(told["K"]).tolist(),
             "world_from_camera": np.ravel(told["world_from_camera"]).tolist(),
+            "randomised": json.dumps(told["randomised"]) if "randomised" in told else None,
             "objects": [object_record(found.table, index) for index in range(len(found.table))],
             **{view: _cell(values) for view, values in frame.views.items()},
         }
@@ -98,6 +100,7 @@ def _schema(pa: Any, views: Mapping[str, NDArray[Any]]) -> Any:
     columns = {
         "number": pa.int64(), "frame": pa.int64(), "sequence": pa.string(), "scene": pa.string(),
         "stamp_ns": pa.int64(), "dt_ns": pa.int64(), "K": numbers, "world_from_camera": numbers,
+        "randomised": pa.string(),
         "objects": pa.list_(pa.struct(item)),
     }  # fmt: skip
     features = {name: _feature(kind) for name, kind in columns.items() if name != "objects"}
