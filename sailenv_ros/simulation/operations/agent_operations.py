@@ -6,7 +6,6 @@ first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -21,6 +20,7 @@ from sailenv_ros.simulation.operations.targets import DrawsFrames, HasAgents
 from sailenv_ros.types.agents import RATE, AgentPose, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.picture_settings import PictureChanges, PictureSettings
 from sailenv_ros.types.validation import Bounds, vector
 from sailenv_ros.types.views import FIVE_VIEWS
@@ -221,7 +221,7 @@ class AgentOperations(Caller):
     @operation(views=check.optional(check.view_names))
     @staticmethod
     def capture(
-        core: DrawsFrames, views: Iterable[str] | None = None, *, agent: str | None = None
+        core: DrawsFrames, views: Views | None = None, *, agent: str | None = None
     ) -> Frame:
         """Render one frame of an agent now.
 
@@ -229,7 +229,7 @@ class AgentOperations(Caller):
 
         Parameters
         ----------
-        views : iterable of str or None
+        views : str, iterable of str or None
             Names in `sailenv_ros.types.views.VIEWS`; None means the agent's own.
         agent : str or None
 
@@ -278,12 +278,12 @@ class AgentOperations(Caller):
             )
         return core.draw_amodal(record.latest.snapshot, record.latest.camera)
 
-    def get_frame(self, views: Sequence[str] = (), *, agent: str | None = None) -> dict[str, Any]:
+    def get_frame(self, views: Views = (), *, agent: str | None = None) -> dict[str, Any]:
         """Render one frame now and return it as the dict of the SAILenv client.
 
         Parameters
         ----------
-        views : sequence of str
+        views : str or iterable of str
             More views than the agent's own, for this frame alone.
         agent : str or None
 
@@ -292,7 +292,8 @@ class AgentOperations(Caller):
         frame : dict
             See `sailenv_ros.frame.frame.Frame.to_dict`; every array is the caller's own.
         """
-        wanted = (*self._own_views(agent), *views) if views else None
+        more = listed_views(views)
+        wanted = (*self._own_views(agent), *more) if more else None
         return self.capture(wanted, agent=agent).to_dict()
 
     def _own_views(self, agent: str | None) -> tuple[str, ...]:
