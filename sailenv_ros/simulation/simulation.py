@@ -21,7 +21,6 @@ from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.first_scene import default_scene
 from sailenv_ros.simulation.frame_stream import FrameStream
-from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.listened_simulation import ListenedSimulation
 from sailenv_ros.simulation.loop import SimulationLoop
 from sailenv_ros.simulation.models.model_workers import ModelWorkers
@@ -33,6 +32,7 @@ from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.light_choice import LightChoice, checked_light
 from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.scene_info import TimeMode
 from sailenv_ros.types.snapshot import SceneContents
@@ -110,6 +110,7 @@ class Simulation(ListenedSimulation):
         views: Views = (),
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
+        checked_light(light)
         agent = _own_agent(agent, width, height, listed_views(views))
         super().__init__(SimulationLoop())
         loop = self._loop
