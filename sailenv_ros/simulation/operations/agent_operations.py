@@ -25,7 +25,7 @@ from sailenv_ros.types.picture_settings import PictureChanges, PictureSettings
 from sailenv_ros.types.validation import Bounds, vector
 from sailenv_ros.types.views import FIVE_VIEWS
 
-__all__ = ["AgentOperations"]
+__all__ = ["AgentOperations", "set_following"]
 
 
 def _agent_spec(what: str, value: object) -> AgentSpec:
@@ -55,7 +55,8 @@ def _set_pose(core: HasAgents, pose: Pose, agent: str | None, *, teleport: bool)
         core.announce()
 
 
-def _set_follow(core: HasAgents, following: bool, agent: str | None) -> bool:
+def set_following(core: HasAgents, following: bool, agent: str | None) -> bool:
+    """Have an agent follow its mover, or not; return the new state."""
     result = core.agents.set_follow(agent, following, core.world)
     core.announce()
     return result
@@ -134,25 +135,11 @@ class AgentOperations(Caller):
         """Return the pose of an agent's body (x forward, y left, z up) in the world."""
         return self.get_agent_pose(agent=agent).pose
 
-    def get_position(self, *, agent: str | None = None) -> tuple[float, float, float]:
-        """Return an agent's world coordinates [m]."""
-        return self.get_pose(agent=agent).position_m
-
-    def get_rotation(self, *, agent: str | None = None) -> tuple[float, float, float]:
-        """Return an agent's roll, pitch, yaw about fixed axes [deg]."""
-        return self.get_pose(agent=agent).rpy_deg
-
     @operation()
     @staticmethod
     def set_follow(core: HasAgents, following: bool, *, agent: str | None = None) -> bool:
         """Follow the mover or stop following it; return the new state."""
-        return _set_follow(core, following, agent)
-
-    @operation()
-    @staticmethod
-    def toggle_follow(core: HasAgents, *, agent: str | None = None) -> bool:
-        """Switch between following and not; return the new state."""
-        return _set_follow(core, not core.agents[agent].spec.following, agent)
+        return set_following(core, following, agent)
 
     # -- camera ----------------------------------------------------------------------------
 

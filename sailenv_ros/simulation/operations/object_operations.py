@@ -46,11 +46,6 @@ class ObjectOperations(Caller):
     Positions are in metres, rotations are roll, pitch, yaw about fixed axes in degrees.
     """
 
-    @property
-    def spawnable_objects_names(self) -> list[str]:
-        """Names of the catalogue that `spawn_object` takes."""
-        return list(self.info.spawnables)
-
     @operation(
         name=check.text,
         position=check.optional(vector),
@@ -83,7 +78,7 @@ class ObjectOperations(Caller):
         Parameters
         ----------
         name : str
-            One of `spawnable_objects_names`, a display name, or what `send_obj_zip` returned.
+            One of `info.spawnables`, a display name, or what `send_obj_zip` returned.
         position : (3,) array-like or None
             Of the asset's origin, world frame [m]; None is the world's origin.
         rotation : (3,) array-like or None
