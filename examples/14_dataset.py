@@ -1,4 +1,4 @@
-"""A data set by recipe, and a PyTorch data set of it: made in this process, read by two workers.
+"""A data set by recipe: made in this process, read in batches by two workers of PyTorch.
 
 Without PyTorch its frames are read one after another.
 """
@@ -6,14 +6,12 @@ Without PyTorch its frames are read one after another.
 import tempfile
 from pathlib import Path
 
-import numpy as np
-
 from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset
 
 try:
-    from torch.utils.data import DataLoader, Dataset
+    from torch.utils.data import DataLoader
 except ImportError:
-    DataLoader, Dataset = None, object
+    DataLoader = None
 
 RECIPE = """\
 version: 1
@@ -28,39 +26,29 @@ shard: {clips: 8}
 """
 
 
-class Pictures(Dataset):
-    """Pictures (3, H, W) float32 with category ids (H, W) int64."""
-
-    def __init__(self, folder: Path, split: str) -> None:
-        # Can be sent to workers: each opens the files anew.
-        self.frames = open_dataset(folder, split)
-
-    def __len__(self) -> int:
-        return len(self.frames)
-
-    def __getitem__(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        frame = self.frames[number].frame
-        picture = frame["rgb"].transpose(2, 0, 1).astype(np.float32) / 255.0
-        return picture, frame["category"].astype(np.int64)
-
-
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         recipe = Path(folder) / "cubes.yaml"
         recipe.write_text(RECIPE)
         made = make_dataset(load_job(recipe), Path(folder) / "cubes", engine_of(1, None))
         print(f"{made.frames} frames, SHA-256 {made.sha256[:12]}")
-        train = Pictures(Path(folder) / "cubes", "train")
-        if DataLoader is None:
-            print("PyTorch is not installed; frame by frame, in this process:")
-            batches = ([one[None] for one in train[number]] for number in range(len(train)))
-        else:
-            batches = DataLoader(
-                train, batch_size=4, num_workers=2, multiprocessing_context="spawn"
-            )
-        seen = 0
-        for pictures, labels in batches:
-            seen += len(pictures)
-            print(tuple(pictures.shape), tuple(labels.shape), f"{float(pictures.mean()):.3f}")
-        print("frames:", seen)
-        train.frames.close()
+        form = "numpy" if DataLoader is None else "torch"
+        with open_dataset(Path(folder) / "cubes", "train", format=form) as train:
+            if DataLoader is None:
+                print("PyTorch is not installed; frame by frame, in this process:")
+                batches = (
+                    {
+                        name: value[None]
+                        for name, value in one.items()
+                        if name in ("rgb", "category")
+                    }
+                    for one in train
+                )
+            else:
+                batches = DataLoader(train, batch_size=4, num_workers=2)
+            seen = 0
+            for batch in batches:
+                pictures, labels = batch["rgb"] / 255.0, batch["category"]
+                seen += len(pictures)
+                print(tuple(pictures.shape), tuple(labels.shape), f"{float(pictures.mean()):.3f}")
+            print("frames:", seen)

@@ -77,15 +77,20 @@ class InvalidRequest(SailenvError, ValueError):
 
 
 class UnknownName(InvalidRequest):
-    """A name of a `kind` of things that is not among the known ones; the nearest is suggested."""
+    """A name of a `kind` of things that is not among the known ones; the nearest is suggested.
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    Names of the form `also` says are accepted besides.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], *, also: str = "") -> None:
         names = [str(k) for k in known]
         near = difflib.get_close_matches(str(name), names, n=1, cutoff=0.6)
         shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
         accepted = f"one of: {shown}" if names else f"the name of a {kind}, but there is none"
         if near:
             accepted = f"one of: {shown} (did you mean {near[0]!r}?)"
+        if also:
+            accepted += f"; or {also}"
         self.kind = kind
         self.name = name
         self.known = tuple(names)
@@ -242,8 +247,8 @@ class WrongProcess(SimulationClosed):
         self.why = f"process {made_in} has made it"
         SailenvError.__init__(
             self,
-            f"a {thing} works in the process that made it alone ({made_in}) and cannot be copied, "
-            "sent to another one or inherited by a fork: make it in the worker",
+            f"this {thing} works in the process that made it alone ({made_in}) and cannot be "
+            "copied, sent to another one or inherited by a fork: make it in the worker",
         )
 
 

@@ -43,6 +43,7 @@ NOT_QUICK = (
     "unit/dataset/test_engines.py",
     "unit/dataset/test_making.py",
     "unit/dataset/test_remote.py",
+    "unit/dataset/test_samples.py",
     "unit/dataset/test_showing.py",
     "unit/content/generation/test_generated_rooms.py",
     "unit/reliability",

@@ -129,16 +129,12 @@ def fill_spawned(response: Any, result: int, info: SceneInfo) -> None:
 
 
 def write_moved(given: Arguments) -> Arguments:
-    if given["pose"] is not None:
-        return given
     position, rotation = given["position"], given["rotation"]
+    to = {**given, "pose": pose_of(position, rotation, given["pose"])}
+    if given["pose"] is not None:
+        return to
     return {
-        **given,
-        "pose": pose_of(
-            (0.0, 0.0, 0.0) if position is None else position,
-            (0.0, 0.0, 0.0) if rotation is None else rotation,
-            None,
-        ),
+        **to,
         "keep_position": position is None,
         "keep_orientation": rotation is None,
     }

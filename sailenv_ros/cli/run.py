@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args
 
-from sailenv_ros.cli.arguments import add_allow_modules
+from sailenv_ros.cli.arguments import add_allow_modules, add_any_light
 from sailenv_ros.errors import SimulationClosed
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.protocol_commands import Protocol
@@ -68,6 +68,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
     )
+    add_any_light(parser)
     add_allow_modules(parser)
 
 
@@ -87,6 +88,7 @@ def _become_the_node(args: argparse.Namespace) -> int:
         "viewer.host": args.viewer_host,
         "viewer.port": args.viewer_port,
         "allow_modules": str(args.allow_modules).lower(),
+        "light": args.light,
         "viewer.control": str(args.viewer_control).lower(),
         "build_missing": "nothing" if args.no_build else "scene",
     }
@@ -110,6 +112,7 @@ def _run_alone(args: argparse.Namespace) -> int:
         seed=args.seed,
         scene_paths=args.scenes,
         allow_modules=args.allow_modules,
+        light=args.light,
     ) as simulation:
         server = GatewayServer(
             simulation, host=args.host, port=args.port, protocol=args.protocol
@@ -140,6 +143,7 @@ def _background_build(
         everything=False,
         scene_paths=args.scenes,
         allow_modules=args.allow_modules,
+        light=args.light != "plain",
     )
     return BackgroundBuild(simulation, [step])
 

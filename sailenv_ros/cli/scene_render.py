@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_ros.cli.arguments import add_allow_modules
+from sailenv_ros.cli.arguments import add_allow_modules, add_any_light
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.pictures.colours import view_picture
@@ -58,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plain", action="store_true", help="a single view's pixels alone, no label and no border"
     )
+    add_any_light(parser)
     add_allow_modules(parser)
 
 
@@ -69,7 +70,9 @@ def render_scene(args: argparse.Namespace) -> int:
     _check(args)
     scene = Path(args.scene) if Path(args.scene).suffix in SUFFIXES else args.scene
     pictures: dict[str, Any] = {}
-    with Simulation(scene=scene, mode="lockstep", allow_modules=args.allow_modules) as simulation:
+    with Simulation(
+        scene=scene, mode="lockstep", allow_modules=args.allow_modules, light=args.light
+    ) as simulation:
         simulation.register_agent(_eye(args))
         table = simulation.info.categories
         for time_s in sorted(args.time):

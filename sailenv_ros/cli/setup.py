@@ -19,6 +19,7 @@ from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.simulation.background_build import READY
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.parent import end_with_parent
+from sailenv_ros.types.light_choice import STEADY_LIGHTS
 
 __all__ = ["add_parser", "run"]
 
@@ -33,7 +34,15 @@ def add_parser(subparsers: Any) -> None:
         "--scene", metavar="SCENE", help="what this scene needs first (with --only: nothing else)"
     )
     parser.add_argument("--only", action="store_true", help="what --scene needs and nothing else")
-    parser.add_argument("--no-light", action="store_true", help="bake no light")
+    parser.add_argument(
+        "--light",
+        choices=STEADY_LIGHTS,
+        default="baked",
+        help="plain: bake none (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--no-light", action="store_const", const="plain", dest="light", help="as --light plain"
+    )
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument(
         "--scenes", type=Path, action="append", default=[], metavar="DIR", help="more scenes"
@@ -49,12 +58,12 @@ def run(args: argparse.Namespace) -> int:
         end_with_parent(args.parent)
     if args.scene is not None:
         _furniture(_names_of(args.scene, args.scenes), args.jobs, f"furniture of {args.scene}")
-        if not args.no_light:
+        if args.light == "baked":
             _light(args.scene, args)
     if args.only:
         return 0
     _furniture(None, args.jobs, "furniture")
-    if not args.no_light:
+    if args.light == "baked":
         for scene in rooms(SceneLibrary(args.scenes, allow_modules=args.allow_modules)):
             _light(scene, args)
     return 0

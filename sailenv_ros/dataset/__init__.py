@@ -12,13 +12,16 @@ if TYPE_CHECKING:
     from sailenv_ros.dataset.engines import engine_of
     from sailenv_ros.dataset.job import Job, RecipeError, load_job, load_recipe
     from sailenv_ros.dataset.making import MadeDataset, Progress, make_dataset
-    from sailenv_ros.dataset.reader import Dataset, DatasetFrame, open_dataset
-    from sailenv_ros.dataset.reader import open_dataset as open
+    from sailenv_ros.dataset.opening import open_dataset
+    from sailenv_ros.dataset.opening import open_dataset as open
+    from sailenv_ros.dataset.reader import Dataset, DatasetFrame
+    from sailenv_ros.dataset.samples import DatasetSamples
     from sailenv_ros.dataset.verifying import Difference, verify_dataset
 
 __all__ = [
     "Dataset",
     "DatasetFrame",
+    "DatasetSamples",
     "Difference",
     "Job",
     "MadeDataset",
@@ -37,7 +40,9 @@ _HOMES = {
     "engines": ("engine_of",),
     "job": ("Job", "RecipeError", "load_job", "load_recipe"),
     "making": ("MadeDataset", "Progress", "make_dataset"),
-    "reader": ("Dataset", "DatasetFrame", "open_dataset"),
+    "opening": ("open_dataset",),
+    "reader": ("Dataset", "DatasetFrame"),
+    "samples": ("DatasetSamples",),
     "verifying": ("Difference", "verify_dataset"),
 }
 

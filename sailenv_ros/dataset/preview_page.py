@@ -26,7 +26,8 @@ from sailenv_ros.dataset.formats.annotated_objects import NO_CATEGORY
 from sailenv_ros.dataset.formats.object_records import object_record
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
-from sailenv_ros.dataset.reader import Dataset, DatasetFrame, open_dataset
+from sailenv_ros.dataset.opening import open_dataset
+from sailenv_ros.dataset.reader import Dataset, DatasetFrame
 from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
 from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.frame.pictures.colours import view_picture

@@ -1,35 +1,23 @@
-"""Data set → typed frames, by their numbers: from WebDataset's tar files or from MCAP bags."""
+"""Data set → typed frames, by their numbers."""
 
 from __future__ import annotations
 
-import io
-import json
-import tarfile
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from sailenv_ros.dataset.folder_storage import FolderStorage
+from sailenv_ros.dataset.frame_sources import FrameSource, frame_source
 from sailenv_ros.dataset.making import job_of
 from sailenv_ros.dataset.manifest import done_shards
 from sailenv_ros.dataset.merging import frame_records
 from sailenv_ros.dataset.recipe import DatasetRecipe
-from sailenv_ros.dataset.shard_plan import ShardPlan
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.frame.pictures.codecs import decode_picture
-from sailenv_ros.recording.frames import RecordedFrames
-from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.views import VIEWS
+from sailenv_ros.system.own_process import OwnProcess
 
-__all__ = ["Dataset", "DatasetFrame", "open_dataset"]
+__all__ = ["Dataset", "DatasetFrame"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,25 +56,6 @@ class DatasetFrame:
         )
 
 
-def open_dataset(folder: str | Path, split: str = "") -> Dataset:
-    """Open a data set that `sailenv dataset make` has made, or is making.
-
-    Parameters
-    ----------
-    folder : str or Path
-    split : str
-        Only that one; empty for all.
-
-    Raises
-    ------
-    RecordingError
-        If there is none, or it has neither of the formats that keep frames exactly.
-    UnknownName
-        If it has no such split.
-    """
-    return Dataset(Path(folder), split)
-
-
 class Dataset(Sequence[DatasetFrame]):
     """The frames of a data set, or of one of its splits.
 
@@ -115,7 +84,8 @@ class Dataset(Sequence[DatasetFrame]):
             for record in frame_records(storage, done_shards(storage))
             if split in ("", record["split"])
         ]
-        self._source = self._opened()
+        self._source: FrameSource = frame_source(folder, self.recipe)
+        self._process = OwnProcess("Dataset")
 
     def __len__(self) -> int:
         return len(self._records)
@@ -123,6 +93,10 @@ class Dataset(Sequence[DatasetFrame]):
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
+        if self._process.is_inherited:
+            # Where a file is read next is the parent's, too.
+            self._source = frame_source(self.folder, self.recipe)
+            self._process = OwnProcess("Dataset")
         record = self._records[index]
         frame, objects = self._source.frame(record)
         return DatasetFrame(
@@ -153,118 +127,3 @@ class Dataset(Sequence[DatasetFrame]):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
-
-    def _opened(self) -> _Source:
-        if "webdataset" in self.recipe.formats:
-            return _TarSource(self.folder, self.recipe)
-        if "mcap" in self.recipe.formats:
-            return _BagSource(self.folder, self.recipe)
-        raise RecordingError(
-            f"{self.folder} keeps frames as {', '.join(self.recipe.formats)} alone, for which "
-            "there are readers of their own; frames are read here from webdataset or mcap"
-        )
-
-
-class _Source(ABC):
-    """Base of the sources from which frames are read."""
-
-    def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
-        self._folder = folder
-        self._plan = ShardPlan(recipe)
-
-    @abstractmethod
-    def frame(self, record: Mapping[str, Any]) -> tuple[Frame, tuple[Mapping[str, Any], ...]]:
-        """Return a frame and its objects."""
-
-    @abstractmethod
-    def close(self) -> None:
-        """Close all files."""
-
-
-class _TarSource(_Source):
-    def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
-        super().__init__(folder, recipe)
-        self._tars: dict[int, tuple[tarfile.TarFile, dict[str, tarfile.TarInfo]]] = {}
-
-    def frame(self, record: Mapping[str, Any]) -> tuple[Frame, tuple[Mapping[str, Any], ...]]:
-        shard = self._plan.shard_of_clip(record["clip"])
-        path = self._folder / "webdataset" / f"{record['split']}-{shard:05d}.tar"
-        try:
-            tar, members = self._opened(shard, path)
-            name = f"{record['number']:08d}"
-            told = json.loads(_read(tar, members[f"{name}.json"]))
-            views = {}
-            for view in VIEWS:
-                for ending, decode in (("png", _from_png), ("npy", _from_npy)):
-                    member = members.get(f"{name}.{view}.{ending}")
-                    if member is not None:
-                        views[view] = decode(view, _read(tar, member))
-            frame = Frame(
-                agent=told["agent"],
-                scene=told["scene"],
-                epoch=told["epoch"],
-                revision=0,
-                sequence=told["sequence"],
-                stamp_ns=told["stamp_ns"],
-                dt_ns=told["dt_ns"],
-                camera=Camera(
-                    intrinsics=CameraIntrinsics(**told["lens"]),
-                    pose=Pose(tuple(told["position"]), tuple(told["orientation_xyzw"])),
-                ),
-                depth_range_m=told["depth_range_m"],
-                views=views,
-            )
-        except (OSError, tarfile.TarError, KeyError, ValueError, TypeError) as problem:
-            raise RecordingError(f"{path} cannot be read: {problem}") from None
-        return frame, tuple(told.get("objects", ()))
-
-    def _opened(self, shard: int, path: Path) -> tuple[tarfile.TarFile, dict[str, tarfile.TarInfo]]:
-        if shard not in self._tars:
-            tar = tarfile.TarFile(path)
-            self._tars[shard] = tar, {one.name: one for one in tar.getmembers()}
-        return self._tars[shard]
-
-    def close(self) -> None:
-        """Close all files."""
-        for tar, _ in self._tars.values():
-            tar.close()
-        self._tars.clear()
-
-
-class _BagSource(_Source):
-    def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
-        super().__init__(folder, recipe)
-        self._several = len(recipe.cameras) > 1
-        self._open: tuple[Path, RecordingReader, RecordedFrames] | None = None
-
-    def frame(self, record: Mapping[str, Any]) -> tuple[Frame, tuple[Mapping[str, Any], ...]]:
-        name = f"{record['clip']:06d}" + (f"_{record['camera']}" if self._several else "")
-        path = self._folder / "mcap" / record["split"] / name / "bag"
-        if self._open is None or self._open[0] != path:
-            self.close()
-            reader = RecordingReader(path)
-            self._open = path, reader, RecordedFrames(reader)
-        return self._open[2][record["time"]], ()
-
-    def close(self) -> None:
-        """Close the bag."""
-        if self._open is not None:
-            self._open[1].close()
-            self._open = None
-
-
-def _read(tar: tarfile.TarFile, member: tarfile.TarInfo) -> bytes:
-    file = tar.extractfile(member)
-    assert file is not None  # only files are written
-    return file.read()
-
-
-def _from_png(view: str, data: bytes) -> NDArray[Any]:
-    picture = decode_picture(data)
-    if VIEWS[view].dtype == np.bool_:
-        return np.asarray(picture > 0)
-    return picture
-
-
-def _from_npy(view: str, data: bytes) -> NDArray[Any]:
-    return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))

@@ -20,11 +20,11 @@ from sailenv_ros.scene.fields import Name, Rule, SceneModel
 from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.rules import distinct, distinct_values
 from sailenv_ros.types.agents import MAX_RATE_HZ
+from sailenv_ros.types.light_choice import STEADY_LIGHTS, SteadyLight
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
-__all__ = ["ClipRecipe", "Light", "DatasetRecipe", "SceneRecipe", "ShardRecipe", "SplitSizes"]
+__all__ = ["ClipRecipe", "DatasetRecipe", "SceneRecipe", "ShardRecipe", "SplitSizes"]
 
-Light: TypeAlias = Literal["baked", "plain"]
 FlowChoice: TypeAlias = Literal["forward", "backward", "both"]
 
 MAX_CLIPS = 10_000_000
@@ -181,7 +181,7 @@ class DatasetRecipe(SceneModel):
         description="what is drawn at random whenever a scene begins, as in a scene file; instead "
         "of the scene's own",
     )
-    light: Annotated[Light, Choice(get_args(Light))] = Field(
+    light: Annotated[SteadyLight, Choice(STEADY_LIGHTS)] = Field(
         default="baked",
         description="baked: with bounced light, which is baked first where that was not done yet; "
         "plain: without",

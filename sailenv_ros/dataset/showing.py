@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sailenv_ros.assets.categories import load_categories
-from sailenv_ros.dataset.reader import open_dataset
+from sailenv_ros.dataset.opening import open_dataset
 from sailenv_ros.dataset.shown_frames import shown_frames, shown_views
 from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet

@@ -26,6 +26,7 @@ from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.listed_views import Views
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views
@@ -139,7 +140,7 @@ def record_lockstep(
     *,
     frames: int,
     agents: Sequence[str] = (),
-    views: Sequence[str] = (),
+    views: Views = (),
     amodal: bool = False,
     namespace: str = "/sailenv",
     on_frame: Callable[[int], None] = lambda count: None,
@@ -155,7 +156,7 @@ def record_lockstep(
         Of each agent.
     agents : sequence of str
         Names; none means all.
-    views : sequence of str
+    views : str or iterable of str
         Views of every frame; none means each agent's own. Of ``flow_forward`` and ``scene_flow``
         the last frame of each agent has none (nan).
     amodal : bool

@@ -40,13 +40,15 @@ class SceneCatalogue:
         """Names of the scenes that there are now, sorted."""
         return tuple(sorted(self._found()))
 
-    def path(self, scene: str | Path) -> Path:
+    def path(self, scene: str | Path, *, also: str = "") -> Path:
         """Find a scene's file.
 
         Parameters
         ----------
         scene : str or Path
             A name, or the path of a YAML file.
+        also : str
+            Other names that the caller takes, for the error.
 
         Raises
         ------
@@ -58,7 +60,7 @@ class SceneCatalogue:
             return found[str(scene)]
         if Path(scene).suffix in SUFFIXES and _is_file(Path(scene)):
             return Path(scene)
-        raise UnknownName("scene", str(scene), sorted(found))
+        raise UnknownName("scene", str(scene), sorted(found), also=also)
 
     def _found(self) -> dict[str, Path]:
         found: dict[str, Path] = {}

@@ -68,6 +68,7 @@ def furnishing(
     everything: bool,
     scene_paths: Sequence[Path] = (),
     allow_modules: bool = False,
+    light: bool = True,
 ) -> BuildStep:
     """Return the step that builds what is missing of furniture and light.
 
@@ -81,6 +82,8 @@ def furnishing(
         More folders with scenes.
     allow_modules : bool
         True lets scene files have behaviours of Python modules.
+    light : bool
+        False bakes none: it would not be shown.
     """
     command = [sys.executable, "-m", "sailenv_ros.cli.main", "setup"]
     command += ["--scene", scene, "--parent", str(os.getpid())]
@@ -90,6 +93,8 @@ def furnishing(
         command += ["--scenes", str(path)]
     if allow_modules:
         command.append("--allow-modules")
+    if not light:
+        command += ["--light", "plain"]
     return BuildStep(command=tuple(command), by_hand="sailenv setup")
 
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection
 
 from sailenv_ros.errors import DeadlineExceeded, SimulationClosed
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.system.own_process import OwnProcess, StaysInProcess
+from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.views import checked_views
 
 __all__ = ["FrameStream"]
@@ -24,7 +25,7 @@ class FrameStream(StaysInProcess):
     Parameters
     ----------
     agent : str
-    views : iterable of str
+    views : str or iterable of str
         Views wanted; none at all means that nothing is rendered for this stream.
     supported : collection of str
         Views that the renderer can make.
@@ -40,7 +41,7 @@ class FrameStream(StaysInProcess):
     def __init__(
         self,
         agent: str,
-        views: Iterable[str],
+        views: Views,
         on_change: Callable[[FrameStream], None],
         *,
         supported: Collection[str],
@@ -76,7 +77,7 @@ class FrameStream(StaysInProcess):
         """True once no more frames will come."""
         return bool(self._ended)
 
-    def set_views(self, views: Iterable[str]) -> None:
+    def set_views(self, views: Views) -> None:
         """Change what is rendered for this stream, from the next frame on.
 
         Raises
@@ -155,7 +156,7 @@ class FrameStream(StaysInProcess):
     def __exit__(self, *exc: object) -> None:
         self.close()
 
-    def _checked(self, views: Iterable[str]) -> tuple[str, ...]:
+    def _checked(self, views: Views) -> tuple[str, ...]:
         # Here, not when a frame is due: there is nobody then to whom it could be refused.
-        names = tuple(views)
+        names = listed_views(views)
         return checked_views(names, supported=self._supported) if names else ()

@@ -6,7 +6,6 @@ Never bakes: a simulator that runs must not be held up for minutes.
 from __future__ import annotations
 
 import logging
-from typing import Literal, TypeAlias
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.light.bake.fingerprint import fingerprint
@@ -14,11 +13,7 @@ from sailenv_ros.light.bake.light_files import load_baked, load_draft
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.world.world import World
 
-__all__ = ["BAKE_COMMAND", "LightCache", "LightChoice"]
-
-LightChoice: TypeAlias = Literal["newest", "baked", "plain"]
-"""``newest``: what is baked by now, or is being baked, if anything is; ``baked``: the finished
-light of a room, and nothing else; ``plain``: without bounced light, whatever is baked."""
+__all__ = ["BAKE_COMMAND", "LightCache"]
 
 BAKE_COMMAND = "sailenv scene bake"
 

@@ -14,6 +14,7 @@ from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.surfaces import surface_names
+from sailenv_ros.authoring.room_rules.names import FORM
 from sailenv_ros.authoring.room_rules.names import PREFIX as GENERATED
 from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
 from sailenv_ros.behaviours import (
@@ -307,7 +308,7 @@ class SceneLibrary:
         """
         if str(scene).startswith(GENERATED):
             return self._generated.path(str(scene))
-        return self._files.get(str(scene)) or self._catalogue.path(scene)
+        return self._files.get(str(scene)) or self._catalogue.path(scene, also=FORM)
 
     def environment(self, spec: EnvironmentSpec) -> Environment:
         """Return the surroundings that an entry describes.

@@ -8,12 +8,12 @@ from __future__ import annotations
 import atexit
 import contextlib
 import inspect
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.errors import SailenvError, SimulationClosed
+from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
 from sailenv_ros.frame.html import scene_html
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.render.selection import make_backend
@@ -21,7 +21,6 @@ from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.first_scene import default_scene
 from sailenv_ros.simulation.frame_stream import FrameStream
-from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.listened_simulation import ListenedSimulation
 from sailenv_ros.simulation.loop import SimulationLoop
 from sailenv_ros.simulation.models.model_workers import ModelWorkers
@@ -31,9 +30,13 @@ from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.light_choice import LightChoice, checked_light
+from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.scene_info import TimeMode
 from sailenv_ros.types.snapshot import SceneContents
+from sailenv_ros.types.views import FIVE_VIEWS, checked_views
 
 __all__ = ["Simulation"]
 
@@ -71,6 +74,11 @@ class Simulation(ListenedSimulation):
     agent : AgentSpec or None
         An agent to begin with, and the one that operations mean if none is named; None means the
         scene's first.
+    width, height : int or None
+        Size of the frames [px] of an agent to begin with, which is called ``own`` and follows the
+        scene's mover: the quick way to say `agent`. None means 640 and 480.
+    views : str or iterable of str
+        More views of that agent than the usual five.
 
     Raises
     ------
@@ -97,8 +105,13 @@ class Simulation(ListenedSimulation):
         allow_modules: bool = False,
         light: LightChoice = "newest",
         agent: AgentSpec | None = None,
+        width: int | None = None,
+        height: int | None = None,
+        views: Views = (),
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
+        checked_light(light)
+        agent = _own_agent(agent, width, height, listed_views(views))
         super().__init__(SimulationLoop())
         loop = self._loop
         self._own_agent = None if agent is None else agent.name
@@ -242,9 +255,9 @@ class Simulation(ListenedSimulation):
 
     # -- streams and life ------------------------------------------------------------------
 
-    def stream(self, agent: str, views: Iterable[str], *, timeout_s: float = 30.0) -> FrameStream:
+    def stream(self, agent: str, views: Views, *, timeout_s: float = 30.0) -> FrameStream:
         """Open a newest-wins stream of an agent's frames at its rate; close it after use."""
-        wanted = tuple(views)
+        wanted = listed_views(views)
 
         future = self._loop.submit(lambda core: core.open_stream(agent, wanted, self._changed))
         return wait_for(future, f"a stream of agent {agent!r}", timeout_s)
@@ -282,3 +295,21 @@ class Simulation(ListenedSimulation):
 
     def _changed(self, stream: FrameStream) -> None:
         self._loop.nudge()
+
+
+def _own_agent(
+    agent: AgentSpec | None, width: int | None, height: int | None, views: tuple[str, ...]
+) -> AgentSpec | None:
+    """Return the agent to begin with, if there is to be one: as it is given, or by its size."""
+    if width is None and height is None and not views:
+        return agent
+    if agent is not None:
+        accepted = "left out where width, height or views are given: they describe an agent"
+        raise InvalidRequest("agent", agent.name, accepted)
+    sizes = {"width": width, "height": height}
+    return AgentSpec(
+        name="own",
+        intrinsics=CameraIntrinsics(**{k: v for k, v in sizes.items() if v is not None}),
+        rate_hz=0.0,
+        views=checked_views((*FIVE_VIEWS, *views)),
+    )

@@ -6,7 +6,7 @@ names none of its own.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
@@ -14,6 +14,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.types.listed_views import Views, listed_views
 
 __all__ = [
     "ALWAYS_MADE",
@@ -311,14 +312,12 @@ def views_of(*sources: ViewSource) -> tuple[str, ...]:
     return tuple(name for name, spec in VIEWS.items() if spec.source in sources)
 
 
-def checked_views(
-    names: Iterable[str], *, supported: Collection[str] | None = None
-) -> tuple[str, ...]:
+def checked_views(names: Views, *, supported: Collection[str] | None = None) -> tuple[str, ...]:
     """Check names of views: known, at least one, each once; in the order of `VIEWS`.
 
     Parameters
     ----------
-    names : iterable of str
+    names : str or iterable of str
     supported : collection of str or None
         What the renderer can make; None if that is not known here.
 
@@ -329,7 +328,7 @@ def checked_views(
     InvalidRequest
         If there is none, or one that the renderer cannot make.
     """
-    wanted = set(names)
+    wanted = set(listed_views(names))
     for name in sorted(wanted):
         view_spec(name)
     if not wanted:

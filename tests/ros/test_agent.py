@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -22,9 +24,10 @@ from sailenv_ros.errors import (
     SimulationClosed,
     SimulatorLost,
     UnknownName,
+    WrongProcess,
 )
 from sailenv_ros.system.presence import simulator_is_present
-from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.geometry import Pose, look_at
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -563,6 +566,26 @@ def test_the_first_example_runs(tmp_path: Path) -> None:
     for name in ("main", "depth", "depth_m", "category", "instance", "object", "flow"):
         assert any(line.startswith(name) for line in out.splitlines()), out
     assert (tmp_path / "sheet.png").stat().st_size > 10_000
+
+
+def test_one_view_by_its_name_and_one_place_by_one_pose(agent: Agent) -> None:
+    """As a `Simulation` has it."""
+    assert list(agent.capture("depth")) == ["depth"]
+    assert "normals" in agent.get_frame("normals")
+    before = agent.instances
+    for places in ({"position": (0, 0, 3)}, {"rotation": (0, 0, 90)}):
+        with pytest.raises(InvalidRequest, match="pose must be left out"):
+            agent.spawn_object("Cube", **places, pose=Pose())
+        with pytest.raises(InvalidRequest, match="pose must be left out"):
+            agent.move_object("red cube", **places, pose=Pose())
+    assert agent.instances == before
+
+
+def test_an_agent_cannot_be_sent_to_another_process(agent: Agent) -> None:
+    """It is told in the same words as to a fork."""
+    for copied in (pickle.dumps, copy.deepcopy):
+        with pytest.raises(WrongProcess, match="this Agent works in the process that made it"):
+            copied(agent)
 
 
 def test_a_text_with_a_nul_is_refused(agent: Agent) -> None:

@@ -195,7 +195,7 @@ def test_realtime_is_paused_stepped_and_resumed() -> None:
         until(lambda: not scene.last.paused, "a running simulation")
         refused = probe.call(Step, "step", Step.Request(steps=1))
         assert not refused.success
-        assert "pause it first" in refused.message
+        assert "pause it before stepping" in refused.message
         probe.done(Pause, "pause")
         third = probe.done(Step, "step", Step.Request(steps=1))
         assert ns_from_stamp(third.stamp) > ns_from_stamp(second.stamp)

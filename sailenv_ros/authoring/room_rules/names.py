@@ -8,10 +8,13 @@ from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import Rules
 from sailenv_ros.errors import InvalidRequest
 
-__all__ = ["MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]
+__all__ = ["FORM", "MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]
 
 PREFIX = "generated:"
 """Prefix of the names of scenes that are generated on request."""
+
+FORM = f"{PREFIX}KIND:SEED, such as {PREFIX}kitchen:17"
+"""Their form, in words."""
 
 MAX_SEED = 2**31 - 1
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.simulation.finished_light import bake_missing
-from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.light_choice import SteadyLight
 
 __all__ = ["PLAIN", "scene_content"]
 
@@ -17,7 +17,7 @@ PLAIN = "plain"
 """Stands for light that is not baked."""
 
 
-def scene_content(scene: Path, seed: int, light: LightChoice) -> dict[str, str]:
+def scene_content(scene: Path, seed: int, light: SteadyLight) -> dict[str, str]:
     """Return fingerprints of a scene's light and models; bake the light that is not there yet.
 
     Parameters

@@ -31,8 +31,8 @@ from sailenv_ros.recording.lockstep import (
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.system.futures import wait_for
+from sailenv_ros.types.light_choice import STEADY_LIGHTS, SteadyLight, checked_light
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views
 
@@ -67,7 +67,7 @@ class StreamJob:
     frames: int
     seed: int = 0
     views: tuple[str, ...] = ()
-    light: LightChoice = "plain"
+    light: SteadyLight = "plain"
     backend: BackendName = "auto"
 
     def __post_init__(self) -> None:
@@ -87,8 +87,7 @@ class StreamJob:
             raise InvalidRequest(
                 "view", late[0], "a view of a frame alone; export makes the others"
             )
-        if self.light not in ("plain", "baked"):
-            raise InvalidRequest("light", self.light, "'plain' or 'baked'")
+        checked_light(self.light, STEADY_LIGHTS)
         if self.views:
             checked_views(self.views)
 

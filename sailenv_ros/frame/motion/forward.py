@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion.between import motion
+from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.views import VIEWS, checked_views
 
 __all__ = ["FORWARD_VIEWS", "forward_views", "with_forward_motion"]
@@ -24,7 +25,7 @@ FORWARD_VIEWS: tuple[str, ...] = tuple(name for name, spec in VIEWS.items() if s
 
 
 def forward_views(
-    frame: Frame, following: Frame | None, views: Sequence[str] = FORWARD_VIEWS
+    frame: Frame, following: Frame | None, views: Views = FORWARD_VIEWS
 ) -> dict[str, NDArray[Any]]:
     """Return a frame's views of its motion to the frame that follows it.
 
@@ -33,7 +34,7 @@ def forward_views(
     frame : Frame
     following : Frame or None
         The same agent's next frame; None or one of another epoch gives views that are nan.
-    views : sequence of str
+    views : str or iterable of str
         Among `FORWARD_VIEWS`.
 
     Raises
@@ -41,19 +42,18 @@ def forward_views(
     InvalidRequest
         As `motion`.
     """
+    wanted = listed_views(views)
     if following is None or (following.scene, following.epoch) != (frame.scene, frame.epoch):
         height, width = frame.camera.intrinsics.height, frame.camera.intrinsics.width
         return {
-            view: np.full(VIEWS[view].shape(height, width), np.nan, np.float32) for view in views
+            view: np.full(VIEWS[view].shape(height, width), np.nan, np.float32) for view in wanted
         }
     moved = motion(frame, following)
     made = {"flow_forward": moved.flow, "scene_flow": moved.scene_flow}
-    return {view: made[view] for view in views}
+    return {view: made[view] for view in wanted}
 
 
-def with_forward_motion(
-    frames: Iterable[Frame], views: Sequence[str] = FORWARD_VIEWS
-) -> Iterator[Frame]:
+def with_forward_motion(frames: Iterable[Frame], views: Views = FORWARD_VIEWS) -> Iterator[Frame]:
     """Return frames with the motion to the next frame of the same agent as views.
 
     Each frame is given when the agent's next frame of a later instant has come; what is left at
@@ -64,7 +64,7 @@ def with_forward_motion(
     frames : iterable of Frame
         In their order; of several agents if need be. They need the views ``depth`` and
         ``instance``.
-    views : sequence of str
+    views : str or iterable of str
         Among `FORWARD_VIEWS`.
 
     Raises

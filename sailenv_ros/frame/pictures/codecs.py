@@ -99,7 +99,7 @@ def decode_picture(data: bytes) -> NDArray[Any]:
     found = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data else None
     if found is None:
         raise InvalidRequest("picture", f"{len(data)} bytes", "a PNG or JPEG file")
-    return found if found.ndim == 2 else np.ascontiguousarray(found[..., ::-1])
+    return found if found.ndim == 2 else cv2.cvtColor(found, cv2.COLOR_BGR2RGB)
 
 
 def _encoded(
@@ -110,6 +110,6 @@ def _encoded(
         bits = " or ".join(str(np.dtype(one).itemsize * 8) for one in depths)
         accepted = f"an array (H, W) or (H, W, 3) of truth values or {bits} bits"
         raise InvalidRequest("picture", f"{picture.shape} {picture.dtype}", accepted)
-    ordered = picture if picture.ndim == 2 else np.ascontiguousarray(picture[..., ::-1])
+    ordered = picture if picture.ndim == 2 else cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)
     _, data = cv2.imencode(ending, ordered, options)
     return bytes(data)

@@ -8,7 +8,7 @@ z up) [m], angles [deg].
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from sailenv_ros.ros.client.recorded import RecordedAgent
 from sailenv_ros.ros.client.registered_agent import RegisteredAgent
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.views import checked_views
 
@@ -33,7 +34,7 @@ depth_frame_active : bool
         Which views `get_frame` gives.
     width, height : int
         Size of the frames [px], 8 to 4096.
-    views : sequence of str
+    views : str or iterable of str
         More views, by their names in `sailenv_ros.types.views.VIEWS`.
     vertical_fov_deg : float
         Full vertical angle of view [deg].
@@ -77,7 +78,7 @@ depth_frame_active : bool
         width: int = 640,
         height: int = 480,
         *,
-        views: Sequence[str] = (),
+        views: Views = (),
         vertical_fov_deg: float = 60.0,
         near_m: float = 0.05,
         far_m: float = 100.0,
@@ -114,7 +115,7 @@ depth_frame_active : bool
             ),
             depth_range_m=depth_range_m,
             rate_hz=0.0,
-            views=checked_views([*wanted, *views]),
+            views=checked_views([*wanted, *listed_views(views)]),
             following=following,
             picture=PictureSettings() if picture is None else picture,
         )
@@ -131,7 +132,7 @@ depth_frame_active : bool
 
     def get_frame(
         self,
-        views: Sequence[str] = (),
+        views: Views = (),
         *,
         agent: str | None = None,
         timeout_s: float | None = None,
@@ -142,7 +143,7 @@ depth_frame_active : bool
 
         Parameters
         ----------
-        views : sequence of str
+        views : str or iterable of str
             More views than the agent's own, by their names in `sailenv_ros.types.views.VIEWS`;
             rendered for this frame alone.
         agent : str or None
@@ -163,7 +164,8 @@ depth_frame_active : bool
             If no complete frame arrived in time; `recaptured` counts the attempts that were
             repeated because images did not arrive.
         """
-        wanted = (*self._spec.views, *views) if views else None
+        more = listed_views(views)
+        wanted = (*self._spec.views, *more) if more else None
         capture = self.capture if timeout_s is None else self.capture.within(timeout_s)
         # What was received is nobody else's: it is handed over as it is.
         return capture(wanted, agent=agent).to_dict(copy=False)

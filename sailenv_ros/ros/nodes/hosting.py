@@ -112,6 +112,7 @@ def _simulation(parameters: SimParameters) -> Simulation:
         render_device=parameters.render_device,
         scene_paths=parameters.scene_paths,
         allow_modules=parameters.allow_modules,
+        light=parameters.light,
     )
     try:
         agent = parameters.agent
@@ -157,6 +158,7 @@ def _furnishing(simulation: Simulation, parameters: SimParameters) -> list[Build
         everything=parameters.build_missing == "all",
         scene_paths=parameters.scene_paths,
         allow_modules=parameters.allow_modules,
+        light=parameters.light != "plain",
     )
     return [step]
 

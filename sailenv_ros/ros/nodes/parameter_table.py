@@ -18,6 +18,7 @@ from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.render.contract import BACKEND_NAMES, BackendName
 from sailenv_ros.types.agents import RATE, AgentSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
+from sailenv_ros.types.light_choice import LIGHTS, LightChoice
 from sailenv_ros.types.scene_info import REAL_TIME_FACTOR, TimeMode
 from sailenv_ros.types.validation import SEED, Bounds
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
@@ -66,6 +67,7 @@ class SimParameters:
     render_device: int | None
     scene_paths: tuple[Path, ...]
     allow_modules: bool
+    light: LightChoice
     build_missing: str
     publish_clock: bool
     publish_instance_tf: bool
@@ -141,6 +143,12 @@ PARAMETERS: dict[str, Parameter] = {
         choices=BACKEND_NAMES,
     ),
     "render_device": Parameter(-1, "Number of the EGL device; -1: the best there is.", _DEVICE),
+    "light": Parameter(
+        "newest",
+        "Light of rooms: newest = what is baked by now, or is being baked; baked = the finished "
+        "light, or no start; plain = without bounced light.",
+        choices=LIGHTS,
+    ),
     "build_missing": Parameter(
         "nothing",
         "What is built in the background: furniture and light that the first scene lacks, or all.",
@@ -213,6 +221,7 @@ def sim_parameters(values: Mapping[str, Any]) -> SimParameters:
         render_device=None if values["render_device"] < 0 else values["render_device"],
         scene_paths=tuple(Path(path) for path in values["scene_paths"] if path),
         allow_modules=values["allow_modules"],
+        light=cast(LightChoice, values["light"]),
         build_missing=values["build_missing"],
         publish_clock=values["publish_clock"],
         publish_instance_tf=values["publish_instance_tf"],

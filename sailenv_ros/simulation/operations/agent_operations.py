@@ -6,7 +6,6 @@ first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -21,11 +20,12 @@ from sailenv_ros.simulation.operations.targets import DrawsFrames, HasAgents
 from sailenv_ros.types.agents import RATE, AgentPose, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.picture_settings import PictureChanges, PictureSettings
 from sailenv_ros.types.validation import Bounds, vector
 from sailenv_ros.types.views import FIVE_VIEWS
 
-__all__ = ["AgentOperations"]
+__all__ = ["AgentOperations", "set_following"]
 
 
 def _agent_spec(what: str, value: object) -> AgentSpec:
@@ -55,7 +55,8 @@ def _set_pose(core: HasAgents, pose: Pose, agent: str | None, *, teleport: bool)
         core.announce()
 
 
-def _set_follow(core: HasAgents, following: bool, agent: str | None) -> bool:
+def set_following(core: HasAgents, following: bool, agent: str | None) -> bool:
+    """Have an agent follow its mover, or not; return the new state."""
     result = core.agents.set_follow(agent, following, core.world)
     core.announce()
     return result
@@ -134,25 +135,11 @@ class AgentOperations(Caller):
         """Return the pose of an agent's body (x forward, y left, z up) in the world."""
         return self.get_agent_pose(agent=agent).pose
 
-    def get_position(self, *, agent: str | None = None) -> tuple[float, float, float]:
-        """Return an agent's world coordinates [m]."""
-        return self.get_pose(agent=agent).position_m
-
-    def get_rotation(self, *, agent: str | None = None) -> tuple[float, float, float]:
-        """Return an agent's roll, pitch, yaw about fixed axes [deg]."""
-        return self.get_pose(agent=agent).rpy_deg
-
     @operation()
     @staticmethod
     def set_follow(core: HasAgents, following: bool, *, agent: str | None = None) -> bool:
         """Follow the mover or stop following it; return the new state."""
-        return _set_follow(core, following, agent)
-
-    @operation()
-    @staticmethod
-    def toggle_follow(core: HasAgents, *, agent: str | None = None) -> bool:
-        """Switch between following and not; return the new state."""
-        return _set_follow(core, not core.agents[agent].spec.following, agent)
+        return set_following(core, following, agent)
 
     # -- camera ----------------------------------------------------------------------------
 
@@ -221,7 +208,7 @@ class AgentOperations(Caller):
     @operation(views=check.optional(check.view_names))
     @staticmethod
     def capture(
-        core: DrawsFrames, views: Iterable[str] | None = None, *, agent: str | None = None
+        core: DrawsFrames, views: Views | None = None, *, agent: str | None = None
     ) -> Frame:
         """Render one frame of an agent now.
 
@@ -229,7 +216,7 @@ class AgentOperations(Caller):
 
         Parameters
         ----------
-        views : iterable of str or None
+        views : str, iterable of str or None
             Names in `sailenv_ros.types.views.VIEWS`; None means the agent's own.
         agent : str or None
 
@@ -278,12 +265,12 @@ class AgentOperations(Caller):
             )
         return core.draw_amodal(record.latest.snapshot, record.latest.camera)
 
-    def get_frame(self, views: Sequence[str] = (), *, agent: str | None = None) -> dict[str, Any]:
+    def get_frame(self, views: Views = (), *, agent: str | None = None) -> dict[str, Any]:
         """Render one frame now and return it as the dict of the SAILenv client.
 
         Parameters
         ----------
-        views : sequence of str
+        views : str or iterable of str
             More views than the agent's own, for this frame alone.
         agent : str or None
 
@@ -292,7 +279,8 @@ class AgentOperations(Caller):
         frame : dict
             See `sailenv_ros.frame.frame.Frame.to_dict`; every array is the caller's own.
         """
-        wanted = (*self._own_views(agent), *views) if views else None
+        more = listed_views(views)
+        wanted = (*self._own_views(agent), *more) if more else None
         return self.capture(wanted, agent=agent).to_dict()
 
     def _own_views(self, agent: str | None) -> tuple[str, ...]:

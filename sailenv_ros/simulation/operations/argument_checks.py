@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import MAX_RADIANCE
+from sailenv_ros.types.listed_views import Views
 from sailenv_ros.types.validation import SEED, Bounds, checked_flag, is_integer, is_number, vector
 from sailenv_ros.types.views import checked_views
 
@@ -87,9 +88,22 @@ def pose(what: str, value: object) -> Pose:
     return value
 
 
-def pose_of(position: ArrayLike, rotation: ArrayLike, given: Pose | None) -> Pose:
-    """Return the pose that is given, or that of a position [m] and roll, pitch, yaw [deg]."""
-    return Pose.from_rpy_deg(position, rotation) if given is None else given
+def pose_of(position: ArrayLike | None, rotation: ArrayLike | None, given: Pose | None) -> Pose:
+    """Return the pose that is given, or that of a position [m] and roll, pitch, yaw [deg].
+
+    Raises
+    ------
+    InvalidRequest
+        If both are given.
+    """
+    if given is None:
+        zero = (0.0, 0.0, 0.0)
+        return Pose.from_rpy_deg(
+            zero if position is None else position, zero if rotation is None else rotation
+        )
+    if position is not None or rotation is not None:
+        raise InvalidRequest("pose", given, "left out where position or rotation is given")
+    return given
 
 
 def scale(what: str, value: Any) -> tuple[float, float, float]:
@@ -118,8 +132,8 @@ def behaviour(what: str, value: object) -> Mapping[str, Any]:
     return value
 
 
-def view_names(what: str, value: Iterable[str]) -> tuple[str, ...]:
-    """Check names of views."""
+def view_names(what: str, value: Views) -> tuple[str, ...]:
+    """Check names of views, or the name of one."""
     return checked_views(value)
 
 

@@ -85,6 +85,9 @@ class ClockOperations(Caller):
             Simulated time afterwards [ns].
         """
         if core.clock.runs_by_itself:
-            raise InvalidState("the simulation is running; pause it first, then step")
+            raise InvalidState(
+                "the simulation's clock is running: pause it before stepping, or make the "
+                'simulation with mode="lockstep", where time moves by step alone'
+            )
         core.advance_to(core.world.step_count + count, every_frame=True)
         return core.world.sim_time_ns

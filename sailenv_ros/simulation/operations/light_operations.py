@@ -39,11 +39,6 @@ class LightOperations(Caller):
         """The scene's lights, as announced."""
         return self.info.lights
 
-    @property
-    def lights_names(self) -> list[str]:
-        """Names of the scene's lights."""
-        return [light.name for light in self.lights]
-
     @operation(light_name=check.text)
     @staticmethod
     def get_light(core: HasWorld, light_name: str) -> Light:

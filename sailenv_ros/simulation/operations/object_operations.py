@@ -46,15 +46,10 @@ class ObjectOperations(Caller):
     Positions are in metres, rotations are roll, pitch, yaw about fixed axes in degrees.
     """
 
-    @property
-    def spawnable_objects_names(self) -> list[str]:
-        """Names of the catalogue that `spawn_object` takes."""
-        return list(self.info.spawnables)
-
     @operation(
         name=check.text,
-        position=vector,
-        rotation=vector,
+        position=check.optional(vector),
+        rotation=check.optional(vector),
         scale=check.scale,
         pose=check.optional(check.pose),
         object_name=check.text,
@@ -66,8 +61,8 @@ class ObjectOperations(Caller):
     def spawn_object(
         core: HasEditor,
         name: str,
-        position: ArrayLike = (0.0, 0.0, 0.0),
-        rotation: ArrayLike = (0.0, 0.0, 0.0),
+        position: ArrayLike | None = None,
+        rotation: ArrayLike | None = None,
         remove_dynamics: bool | None = None,
         scale: ArrayLike = (1.0, 1.0, 1.0),
         use_parent: bool = True,
@@ -83,11 +78,11 @@ class ObjectOperations(Caller):
         Parameters
         ----------
         name : str
-            One of `spawnable_objects_names`, a display name, or what `send_obj_zip` returned.
-        position : (3,) array-like
-            Of the asset's origin, world frame [m].
-        rotation : (3,) array-like
-            Roll, pitch, yaw about fixed axes [deg].
+            One of `info.spawnables`, a display name, or what `send_obj_zip` returned.
+        position : (3,) array-like or None
+            Of the asset's origin, world frame [m]; None is the world's origin.
+        rotation : (3,) array-like or None
+            Roll, pitch, yaw about fixed axes [deg]; None turns nothing.
         remove_dynamics : bool or None
             True if physics shall never move it; None means True unless it has behaviours or a
             mass.
@@ -96,7 +91,7 @@ class ObjectOperations(Caller):
         use_parent : bool
             No effect: objects have no parents here. Scripts of the SAILenv client pass it.
         pose : Pose or None
-            Instead of position and rotation.
+            Instead of position and rotation, not beside them.
         object_name : str
             Unique in the scene; empty makes one of the asset's.
         category : str
@@ -160,7 +155,7 @@ class ObjectOperations(Caller):
         rotation : (3,) array-like or None
             Roll, pitch, yaw about fixed axes [deg]; None leaves it turned as it is.
         pose : Pose or None
-            Instead of position and rotation.
+            Instead of position and rotation, not beside them.
         teleport : bool
             False is motion, which flow shows; True gives the object no flow in the next frame.
         """
@@ -168,12 +163,14 @@ class ObjectOperations(Caller):
         if pose is None:
             here = core.world.body(number).pose()
             at = here.position_m if position is None else position
-            pose = (
+            to = (
                 Pose(vector("position", at), here.orientation_xyzw)
                 if rotation is None
                 else Pose.from_rpy_deg(at, rotation)
             )
-        core.world.put_body(number, pose, teleport=teleport)
+        else:
+            to = check.pose_of(position, rotation, pose)
+        core.world.put_body(number, to, teleport=teleport)
 
     @operation(obj=check.object_reference)
     @staticmethod

@@ -23,7 +23,6 @@ from sailenv_ros.simulation.operations.object_operations import ObjectOperations
 from sailenv_ros.simulation.operations.operation import Operation
 from sailenv_ros.simulation.operations.sailenv_names import SailenvNames
 from sailenv_ros.simulation.operations.saving_operations import SavingOperations
-from sailenv_ros.simulation.operations.scene_tables import SceneTables
 from sailenv_ros.simulation.operations.space_operations import SpaceOperations
 from sailenv_ros.simulation.operations.viewpoint_operations import ViewpointOperations
 
@@ -50,8 +49,8 @@ class WorldOperations(
     """Every operation on the world and its agents."""
 
 
-class Operations(SailenvNames, WorldOperations, ModelOperations, SceneTables, FramePictures):
-    """Every operation; what `Simulation` and `Agent` have in common."""
+class Operations(SailenvNames, WorldOperations, ModelOperations, FramePictures):
+    """Every operation; what `Simulation` and `Agent` have in common, see `docs/operations.md`."""
 
 
 def _declared() -> dict[str, Operation[..., Any]]:

@@ -1,4 +1,4 @@
-"""Lights and surroundings by the names of the original SAILenv client, for its scripts.
+"""Names of the original SAILenv client for what has another name here, for its scripts.
 
 Colours are red, green, blue from 0 to 255 (sRGB) here.
 """
@@ -7,8 +7,12 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from sailenv_ros.simulation.operations.agent_operations import AgentOperations, set_following
 from sailenv_ros.simulation.operations.environment import EnvironmentOperations
 from sailenv_ros.simulation.operations.light_operations import LightOperations
+from sailenv_ros.simulation.operations.operation import operation
+from sailenv_ros.simulation.operations.scene_tables import SceneTables
+from sailenv_ros.simulation.operations.targets import HasAgents
 from sailenv_ros.types.colour import linear_from_srgb8, srgb8_from_linear
 from sailenv_ros.types.lights import LightType
 
@@ -17,8 +21,38 @@ __all__ = ["SailenvNames"]
 Vector3 = tuple[float, float, float]
 
 
-class SailenvNames(LightOperations, EnvironmentOperations):
-    """Getters and setters of single attributes; `set_light` and others change several at once."""
+class SailenvNames(AgentOperations, LightOperations, EnvironmentOperations, SceneTables):
+    """Duplicates that exist for scripts of the SAILenv client; `docs/porting.md` lists them."""
+
+    # -- agents and tables -----------------------------------------------------------------
+
+    def get_position(self, *, agent: str | None = None) -> Vector3:
+        """Return an agent's world coordinates [m]."""
+        return self.get_pose(agent=agent).position_m
+
+    def get_rotation(self, *, agent: str | None = None) -> Vector3:
+        """Return an agent's roll, pitch, yaw about fixed axes [deg]."""
+        return self.get_pose(agent=agent).rpy_deg
+
+    @operation()
+    @staticmethod
+    def toggle_follow(core: HasAgents, *, agent: str | None = None) -> bool:
+        """Switch between following and not; return the new state."""
+        return set_following(core, not core.agents[agent].spec.following, agent)
+
+    def get_categories(self) -> dict[int, str]:
+        """Return `categories`."""
+        return self.categories
+
+    @property
+    def spawnable_objects_names(self) -> list[str]:
+        """Names of the catalogue that `spawn_object` takes."""
+        return list(self.info.spawnables)
+
+    @property
+    def lights_names(self) -> list[str]:
+        """Names of the scene's lights."""
+        return [light.name for light in self.lights]
 
     # -- lights ----------------------------------------------------------------------------
 

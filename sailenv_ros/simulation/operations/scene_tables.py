@@ -1,4 +1,4 @@
-"""The scene as it was announced last, by the names of the SAILenv client."""
+"""The scene as it was announced last, in tables."""
 
 from __future__ import annotations
 
@@ -35,7 +35,3 @@ class SceneTables(Caller):
     def instances(self) -> dict[int, SceneObject]:
         """The objects of the scene by their ids, the values of the instance view."""
         return dict(self.info.objects)
-
-    def get_categories(self) -> dict[int, str]:
-        """Return `categories`, by the name that the SAILenv client has for it."""
-        return self.categories

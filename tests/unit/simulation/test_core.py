@@ -332,7 +332,7 @@ def test_at_most_sixteen_agents(core: SynchronousSimulation) -> None:
 def test_a_running_simulation_is_not_stepped_by_hand() -> None:
     """step is for paused and lockstep simulations."""
     core, renderer = make_core(mode="realtime")
-    with pytest.raises(InvalidState, match="pause it first"):
+    with pytest.raises(InvalidState, match="pause it before stepping"):
         core.step(1)
     core.pause()
     assert core.step(2) == 8_333_333

@@ -16,9 +16,9 @@ from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.light_files import is_baked, store_baked, store_draft
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.light_cache import LightChoice
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.light_choice import LightChoice
 from sailenv_ros.types.scene_info import TimeMode
 from sailenv_ros.types.snapshot import SceneContents
 from tests.support.bake_scenes import COARSE

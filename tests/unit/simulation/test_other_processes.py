@@ -73,7 +73,7 @@ def test_a_fork_is_refused_at_once(simulation: Simulation, use: str) -> None:
     assert isinstance(error, WrongProcess), error
     assert isinstance(error, SimulationClosed)
     assert str(error) == (
-        f"a Simulation works in the process that made it alone ({os.getpid()}) and cannot be "
+        f"this Simulation works in the process that made it alone ({os.getpid()}) and cannot be "
         "copied, sent to another one or inherited by a fork: make it in the worker"
     )
 
@@ -84,7 +84,7 @@ def test_an_inherited_stream_and_an_inherited_frame_refuse_too(simulation: Simul
     with simulation.stream("eye", ["depth"]) as stream:
         told = in_a_fork(lambda: stream.get(30.0))
         assert isinstance(told, WrongProcess)
-        assert str(told).startswith("a FrameStream works in the process")
+        assert str(told).startswith("this FrameStream works in the process")
         assert stream.get(30.0)["depth"].shape == (12, 16)
     assert isinstance(in_a_fork(lambda: frame.amodal), WrongProcess)
     assert frame.amodal.height == 12
@@ -112,7 +112,7 @@ def test_it_cannot_be_copied_or_sent(
     simulation: Simulation, copied: Callable[[Any], object]
 ) -> None:
     """In the same words as in a fork."""
-    with pytest.raises(WrongProcess, match=r"a Simulation works.*make it in the worker"):
+    with pytest.raises(WrongProcess, match=r"this Simulation works.*make it in the worker"):
         copied(simulation)
 
 

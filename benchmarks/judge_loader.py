@@ -1,0 +1,109 @@
+"""Has a data set read by PyTorch's DataLoader with its default collate function, by processes.
+
+    sailenv dataset make benchmarks/judge_loader.yaml -o set
+    pip install torch
+    python -m benchmarks.judge_loader set --workers 2
+
+For both formats, and for workers that are forked and that are spawned, every batch must have the
+values of the frames. Then samples a second are measured, and the processor time of all processes
+for one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import resource
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sailenv_ros import dataset
+from sailenv_ros.types.views import VIEWS
+
+
+def judge(folder: Path, form: str, method: str, workers: int) -> int:
+    """Compare all batches with the frames; return how many samples there were."""
+    data = importlib.import_module("torch.utils.data")
+    frames = dataset.open(folder)
+    samples: Any = dataset.open(folder, format=form)  # type: ignore[call-overload]
+    assert frames[0].number == samples[0]["number"]  # opened before the fork
+    seen = 0
+    loader = data.DataLoader(
+        samples, batch_size=16, num_workers=workers, multiprocessing_context=method, timeout=120
+    )
+    for batch in loader:
+        for row, number in enumerate(batch["number"].tolist()):
+            one = frames[seen]
+            assert one.number == number, (one.number, number)
+            for view, values in one.frame.items():
+                read = batch[view][row].numpy()
+                if form == "torch" and VIEWS[view].channels > 1:
+                    read = np.moveaxis(read, 0, -1)
+                assert np.array_equal(read, values, equal_nan=values.dtype.kind == "f"), view
+            matrix = batch["world_from_camera"][row].numpy()
+            assert np.array_equal(matrix, one.frame.camera.world_from_camera)
+            assert batch["split"][row] == one.split
+            seen += 1
+    assert seen == len(frames), (seen, len(frames))
+    return seen
+
+
+def processor_s() -> float:
+    """Return the processor time of this process and of those that it has waited for [s]."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+def speed(folder: Path, form: str, method: str, workers: int, passes: int) -> tuple[float, float]:
+    """Return samples a second of passes in random order, and processor time of a sample [ms].
+
+    The first pass, in which workers start and look for what is where in the files, counts in the
+    second figure alone.
+    """
+    before = processor_s()
+    data = importlib.import_module("torch.utils.data")
+    samples: Any = dataset.open(folder, format=form)  # type: ignore[call-overload]
+    loader = data.DataLoader(
+        samples,
+        batch_size=16,
+        shuffle=True,
+        num_workers=workers,
+        multiprocessing_context=method,
+        timeout=120,
+        persistent_workers=True,
+    )
+    times = []
+    for _ in range(passes + 1):
+        began, seen = time.perf_counter(), 0
+        for batch in loader:
+            seen += len(batch["number"])
+        times.append(time.perf_counter() - began)
+    del loader, batch
+    cost_s = (processor_s() - before) / (seen * len(times))
+    return seen * passes / sum(times[1:]), 1e3 * cost_s
+
+
+def main() -> None:
+    """Judge both formats by both methods, then measure."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--passes", type=int, default=5, help="that are timed")
+    args = parser.parse_args()
+    for form in ("numpy", "torch"):
+        for method in ("fork", "spawn"):
+            seen = judge(args.folder, form, method, args.workers)
+            rate, cost_ms = speed(args.folder, form, method, args.workers, args.passes)
+            print(
+                f"{form} by {method}: {seen} samples equal; {rate:.0f} samples/s, "
+                f"{cost_ms:.2f} ms of processor time each",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,171 @@
+"""Files of a data set → frames by their records: WebDataset's tar files, or MCAP bags."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import tarfile
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.dataset.recipe import DatasetRecipe
+from sailenv_ros.dataset.shard_plan import ShardPlan
+from sailenv_ros.errors import RecordingError
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.pictures.codecs import decode_picture
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.views import VIEWS
+
+if TYPE_CHECKING:
+    from sailenv_ros.recording.frames import RecordedFrames
+    from sailenv_ros.recording.reader import RecordingReader
+
+__all__ = ["FrameSource", "frame_source"]
+
+_Place: TypeAlias = tuple[int, int]
+"""First byte of a member in its tar file, and its size [B]."""
+
+
+def frame_source(folder: Path, recipe: DatasetRecipe) -> FrameSource:
+    """Return what reads the frames of a data set.
+
+    Raises
+    ------
+    RecordingError
+        If it has neither of the formats that keep frames exactly.
+    """
+    if "webdataset" in recipe.formats:
+        return _TarSource(folder, recipe)
+    if "mcap" in recipe.formats:
+        return _BagSource(folder, recipe)
+    raise RecordingError(
+        f"{folder} keeps frames as {', '.join(recipe.formats)} alone, for which there are readers "
+        "of their own; frames are read here from webdataset or mcap"
+    )
+
+
+class FrameSource(ABC):
+    """Base of the sources from which frames are read."""
+
+    def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
+        self._folder = folder
+        self._plan = ShardPlan(recipe)
+
+    @abstractmethod
+    def frame(self, record: Mapping[str, Any]) -> tuple[Frame, tuple[Mapping[str, Any], ...]]:
+        """Return a frame and its objects."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close all files."""
+
+
+class _TarSource(FrameSource):
+    """Reads each file at places of its own, so processes and threads do not disturb each other."""
+
+    def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
+        super().__init__(folder, recipe)
+        self._places: dict[Path, Mapping[str, _Place]] = {}
+
+    def frame(self, record: Mapping[str, Any]) -> tuple[Frame, tuple[Mapping[str, Any], ...]]:
+        shard = self._plan.shard_of_clip(record["clip"])
+        path = self._folder / "webdataset" / f"{record['split']}-{shard:05d}.tar"
+        name = f"{record['number']:08d}"
+        try:
+            with path.open("rb", buffering=0) as file:
+                places = self._places_in(path)
+                told = json.loads(_read(file, places[f"{name}.json"]))
+                views = {}
+                for view in VIEWS:
+                    for ending, decode in (("png", _from_png), ("npy", _from_npy)):
+                        place = places.get(f"{name}.{view}.{ending}")
+                        if place is not None:
+                            views[view] = decode(view, _read(file, place))
+            frame = Frame(
+                agent=told["agent"],
+                scene=told["scene"],
+                epoch=told["epoch"],
+                revision=0,
+                sequence=told["sequence"],
+                stamp_ns=told["stamp_ns"],
+                dt_ns=told["dt_ns"],
+                camera=Camera(
+                    intrinsics=CameraIntrinsics(**told["lens"]),
+                    pose=Pose(tuple(told["position"]), tuple(told["orientation_xyzw"])),
+                ),
+                depth_range_m=told["depth_range_m"],
+                views=views,
+            )
+        except (OSError, tarfile.TarError, KeyError, ValueError, TypeError) as problem:
+            raise RecordingError(f"{path} cannot be read: {problem}") from None
+        return frame, tuple(told.get("objects", ()))
+
+    def _places_in(self, path: Path) -> Mapping[str, _Place]:
+        if path not in self._places:
+            with tarfile.TarFile(path) as tar:
+                self._places[path] = {
+                    one.name: (one.offset_data, one.size) for one in tar.getmembers()
+                }
+        return self._places[path]
+
+    def close(self) -> None:
+        """Forget what is where; no file is open."""
+        self._places.clear()
+
+
+class _BagSource(FrameSource):
+    def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
+        super().__init__(folder, recipe)
+        self._several = len(recipe.cameras) > 1
+        self._open: tuple[Path, RecordingReader, RecordedFrames] | None = None
+
+    def frame(self, record: Mapping[str, Any]) -> tuple[Frame, tuple[Mapping[str, Any], ...]]:
+        name = f"{record['clip']:06d}" + (f"_{record['camera']}" if self._several else "")
+        path = self._folder / "mcap" / record["split"] / name / "bag"
+        if self._open is None or self._open[0] != path:
+            # These need the message packages of ROS, which tar files do not.
+            from sailenv_ros.recording.frames import RecordedFrames
+            from sailenv_ros.recording.reader import RecordingReader
+
+            self.close()
+            reader = RecordingReader(path)
+            self._open = path, reader, RecordedFrames(reader)
+        return self._open[2][record["time"]], ()
+
+    def close(self) -> None:
+        """Close the bag."""
+        if self._open is not None:
+            self._open[1].close()
+            self._open = None
+
+
+def _read(file: io.FileIO, place: _Place) -> bytes:
+    first, size = place
+    data = os.pread(file.fileno(), size, first)
+    if len(data) != size:
+        raise OSError(f"it ends within the {size} bytes at {first}")
+    return data
+
+
+def _from_png(view: str, data: bytes) -> NDArray[Any]:
+    picture = decode_picture(data)
+    if VIEWS[view].dtype == np.bool_:
+        return np.asarray(picture > 0)
+    return picture
+
+
+def _from_npy(view: str, data: bytes) -> NDArray[Any]:
+    # np.load copies piece by piece, which takes as long as all the rest for a small picture.
+    file = io.BytesIO(data)
+    if np.lib.format.read_magic(file) != (1, 0):
+        raise ValueError(f"the view {view} is not an array of version 1.0")
+    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
+    values = np.frombuffer(data, dtype, offset=file.tell())
+    return values.reshape(shape, order="F" if in_columns else "C")

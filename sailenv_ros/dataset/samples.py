@@ -1,0 +1,123 @@
+"""Frames of a data set → samples as trainers batch them: mappings of arrays, numbers and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.dataset.reader import Dataset, DatasetFrame
+from sailenv_ros.errors import RecordingError, UnknownName
+from sailenv_ros.extras import need
+from sailenv_ros.types.views import VIEWS, ViewSpec
+
+__all__ = ["DatasetSamples", "SampleFormat"]
+
+SampleFormat: TypeAlias = Literal["numpy", "torch"]
+
+Sample: TypeAlias = dict[str, Any]
+
+
+class DatasetSamples(Sequence[Sample]):
+    """The frames of a data set as samples that PyTorch's `default_collate` makes batches of.
+
+    Each sample has the same keys, types and, with cameras of one size, shapes. Can be sent to
+    other processes.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    format : {'numpy', 'torch'}
+        ``numpy``: views as `VIEWS` says, category ids always as uint16. ``torch``: as tensors with
+        the channels first, ids as int32 (PyTorch hardly computes with uint16).
+
+    Raises
+    ------
+    UnknownName
+        If there is no such format.
+    MissingPackage
+        If it is ``torch``, and PyTorch is not installed.
+
+    Notes
+    -----
+    The keys are the recipe's views; ``number``, ``clip``, ``time``, ``stamp_ns`` and ``dt_ns``;
+    ``split``, ``camera`` and ``scene``; ``K`` (3, 3) and ``world_from_camera`` (4, 4), float64.
+    Arrays are the caller's own. Values that stand for nothing (inf, nan, 0) are as in frames.
+    """
+
+    def __init__(self, dataset: Dataset, format: SampleFormat) -> None:
+        if format not in get_args(SampleFormat):
+            raise UnknownName("format", format, ("frame", *get_args(SampleFormat)))
+        if format == "torch":
+            need("torch", "the format 'torch'")
+        self.dataset = dataset
+        self.format = format
+
+    def __len__(self) -> int:
+        return len(self.dataset)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(len(self)))]
+        return self._sample(self.dataset[index])
+
+    def __iter__(self) -> Iterator[Sample]:
+        return (self[number] for number in range(len(self)))
+
+    def close(self) -> None:
+        """Close the files; another look at a sample opens them again."""
+        self.dataset.close()
+
+    def __enter__(self) -> DatasetSamples:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    def _sample(self, one: DatasetFrame) -> Sample:
+        frame, views = one.frame, self.dataset.recipe.views
+        missing = [view for view in views if view not in frame]
+        if missing:
+            raise RecordingError(
+                f"{self.dataset.folder}: frame {one.number} lacks {', '.join(missing)}"
+            )
+        arrays: Mapping[str, NDArray[Any]] = {
+            **{view: frame[view] for view in VIEWS if view in views},
+            "K": frame.camera.intrinsics.K,
+            "world_from_camera": frame.camera.world_from_camera,
+        }
+        own = _OWN[self.format]
+        return {
+            **{name: own(VIEWS.get(name), values) for name, values in arrays.items()},
+            "number": one.number,
+            "clip": one.clip,
+            "time": one.time,
+            "stamp_ns": frame.stamp_ns,
+            "dt_ns": frame.dt_ns,
+            "split": one.split,
+            "camera": one.camera,
+            "scene": frame.scene,
+        }
+
+
+def _array(spec: ViewSpec | None, values: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy; of one type for all frames, whatever categories their scenes have."""
+    return values.astype(values.dtype if spec is None else spec.dtypes[-1])
+
+
+def _tensor(spec: ViewSpec | None, values: NDArray[Any]) -> Any:
+    """Return a copy as a tensor of a type that PyTorch computes with."""
+    import torch
+
+    is_id = spec is not None and spec.is_label and spec.dtype != np.bool_
+    tensor = torch.from_numpy(values.astype(np.int32 if is_id else values.dtype))
+    # Making a batch copies anyway, and brings the values into this order then.
+    return tensor.permute(2, 0, 1) if spec is not None and spec.channels > 1 else tensor
+
+
+_OWN: Mapping[str, Callable[[ViewSpec | None, NDArray[Any]], Any]] = {
+    "numpy": _array,
+    "torch": _tensor,
+}
