@@ -102,6 +102,7 @@ class _TarSource(FrameSource):
                 ),
                 depth_range_m=told["depth_range_m"],
                 views=views,
+                randomised=told.get("randomised"),
             )
         except (OSError, tarfile.TarError, KeyError, ValueError, TypeError) as problem:
             raise RecordingError(f"{path} cannot be read: {problem}") from None

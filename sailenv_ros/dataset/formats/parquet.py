@@ -1,8 +1,8 @@
 """Frames → Parquet: tables of pictures and objects, as Hugging Face's `datasets` loads them.
 
 A row is a frame. Pictures of 8 and 16 bits are PNG files, which `datasets` shows as images; other
-views are arrays of numbers. ``objects`` is a list, an entry for each visible object; ``randomised`` a
-JSON text of what was drawn at random, if anything was.
+views are arrays of numbers. ``objects`` is a list, an entry for each visible object; ``randomised``
+a JSON text of what was drawn at random, if anything was.
 """
 
 from __future__ import annotations

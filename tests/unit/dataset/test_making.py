@@ -15,6 +15,7 @@ from typing import Any
 
 import cv2
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from pycocotools.coco import COCO
 from rosbags.highlevel import AnyReader
@@ -302,7 +303,7 @@ def test_what_is_drawn_at_random_differs_from_scene_to_scene(tmp_path: Path) -> 
         "cameras": [{"type": "fixed", "position": [4, 0, 2], "look_at": [0, 0, 1.2]}],
         "clips": {"train": 4},
         "clip": {"frames": 1, "per_scene": 1},
-        "formats": ["webdataset"],
+        "formats": ["webdataset", "coco", "parquet"],
         "randomise": [
             {
                 "name": "paint", "type": "material", "of": "red cube",
@@ -317,7 +318,16 @@ def test_what_is_drawn_at_random_differs_from_scene_to_scene(tmp_path: Path) -> 
     with open_dataset(tmp_path / "one") as dataset:
         cube = next(one["id"] for one in dataset[0].objects if one["name"] == "red cube")
         colours = [one.frame["rgb"][one.frame["instance"] == cube].mean(axis=0) for one in dataset]
+        records = {one.number: one.frame.randomised for one in dataset}
     assert np.abs(np.diff(colours, axis=0)).max(axis=1).min() > 5.0
+    # Each format says what was drawn, so that a frame can be made again.
+    assert all("paint" in json.dumps(record) for record in records.values()), records
+    coco = tmp_path / "one" / "coco" / "train" / "annotations.json"
+    listed = json.loads(coco.read_text())["images"]
+    assert {image["number"]: image["randomised"] for image in listed} == records
+    (path,) = (tmp_path / "one" / "parquet" / "data").iterdir()
+    rows = pq.read_table(path).to_pylist()
+    assert {row["number"]: json.loads(row["randomised"]) for row in rows} == records
 
 
 def test_a_camera_of_the_scene_faces_what_it_does_there(tmp_path: Path) -> None:
