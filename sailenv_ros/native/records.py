@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.native.library import NativeLibrary, native_library, raise_for_status
 
-__all__ = ["RecordKernel"]
+__all__ = ["FieldType", "RecordKernel"]
 
 FieldType = Literal["array", "integer", "number"]
 
