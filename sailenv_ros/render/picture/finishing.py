@@ -1,30 +1,34 @@
-"""From what a renderer drew to views: the finished picture and the annotations.
+"""What every renderer does around its drawing: checks, the past's depth, finished views.
 
-Surfaces and radiance come in, the wanted views go out. Every back end ends with this.
+A renderer draws surfaces and radiance; the wanted views go out.
 """
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import RenderError
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderedViews
-from sailenv_ros.render.picture.annotate import annotate
+from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.post_pass import PostPass
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
-from sailenv_ros.types.views import VIEWS
+from sailenv_ros.types.views import VIEWS, checked_views
 
-__all__ = ["Finisher"]
+__all__ = ["DrawingRenderer"]
 
 
-class Finisher:
-    """Makes views of what was drawn.
+class DrawingRenderer(ABC):
+    """A renderer without its drawing; see `RenderBackend`.
 
     Parameters
     ----------
@@ -35,42 +39,45 @@ class Finisher:
     def __init__(self, threads: int | None = None) -> None:
         self._threads = thread_count() if threads is None else threads
         self._post = PostPass(self._threads)
+        self._mirrors = FlatMirrors()
+        self._closed = False
 
-    def finish(
+    @property
+    @abstractmethod
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that it can make, in the order of `frame.VIEWS`."""
+
+    def render(
         self,
-        arrays: dict[str, NDArray[Any]],
         snapshot: WorldSnapshot,
         previous: Observation | None,
         camera: Camera,
-        wanted: frozenset[str],
-        still: Callable[[], NDArray[np.bool_]],
-        timings: dict[str, float],
+        views: Iterable[str],
     ) -> RenderedViews:
-        """Make the wanted views.
-
-        Parameters
-        ----------
-        arrays : dict of str to array
-            ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
-            radiance (see `PostPass.finished`), and with supersampling perhaps ``samples``; other
-            views that are made already.
-        still : callable
-            Says which instances have baked light where they are.
-        timings : dict of str to float
-            Wall time of each stage [s]; this one's are added.
-        """
+        """Make the wanted views of one camera; see `RenderBackend.render`."""
+        if self._closed:
+            raise RenderError("the renderer was closed")
+        wanted = frozenset(checked_views(views, supported=self.supported_views))
+        keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
+        timings: dict[str, float] = {}
+        with self._drawing_context():
+            if keeps_depth and previous is not None and previous.depth is None:
+                then = (previous.snapshot, previous.camera)
+                past = self._draw(*then, frozenset({"depth"}), {})["surface"]
+                previous = with_depth(previous, past)
+            arrays = self._draw(snapshot, camera, wanted, timings)
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if "rgb" in wanted:
+            still, samples = self._at_baked_pose(snapshot), arrays.pop("samples", None)
             arrays["rgb"] = self._post.finished(
-                arrays["rgb"], surface, snapshot, camera, still(), arrays.pop("samples", None)
+                arrays["rgb"], surface, snapshot, camera, still, samples
             )
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
         truth = annotate(surface, snapshot, previous, camera, wanted, self._threads)
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
-        keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         depth: NDArray[np.float32] = truth["depth"]
         return RenderedViews(
             views={name: arrays[name] for name in wanted},
@@ -78,3 +85,39 @@ class Finisher:
             depth=depth if "depth" not in wanted else depth.copy() if keeps_depth else None,
             timings_s=timings,
         )
+
+    def close(self) -> None:
+        """Free everything; a second call does nothing."""
+        if not self._closed:
+            self._closed = True
+            self._release()
+
+    def _drawing_context(self) -> contextlib.AbstractContextManager[object]:
+        """Return what `_draw` runs in."""
+        return contextlib.nullcontext()
+
+    @abstractmethod
+    def _draw(
+        self,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        wanted: frozenset[str],
+        timings: dict[str, float],
+    ) -> dict[str, NDArray[Any]]:
+        """Draw surfaces, and what else is wanted.
+
+        Returns
+        -------
+        arrays : dict of str to array
+            ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
+            radiance (see `PostPass.finished`), and with supersampling perhaps ``samples``; other
+            views that are made already. The wall time of each stage [s] is added to `timings`.
+        """
+
+    @abstractmethod
+    def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+        """Tell which instances have baked light where they are."""
+
+    @abstractmethod
+    def _release(self) -> None:
+        """Free everything."""
