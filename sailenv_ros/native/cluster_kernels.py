@@ -12,7 +12,7 @@ from sailenv_ros.native.library import Kernel, checked
 
 __all__ = ["gather_seen_indices"]
 
-_SEEN = Kernel("seen_indices", "array", "integer", "array", "array", "array")
+_SEEN = Kernel("seen_indices", "aiaaa")
 
 
 def gather_seen_indices(

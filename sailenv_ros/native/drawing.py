@@ -27,12 +27,12 @@ from sailenv_ros.native.render_types import (
 
 __all__ = ["ROW_PADDING", "AmodalDrawing", "Drawing", "mip_chain", "structure_sizes"]
 
-_PICTURE = Kernel("draw_picture", "integer", *("array",) * 7)
-_SHADOW = Kernel("draw_shadow_map", "integer", *("array",) * 4, "integer", *("array",) * 3)
-_AMODAL = Kernel("draw_amodal", "integer", *("array",) * 5, "integer", "array")
-_AMODAL_CROPS = Kernel("copy_amodal", "array", "integer", "array")
-_MIPS = Kernel("mip_chain", "array", "integer", "array")
-_STRUCTURES = Kernel("structure_sizes", "array")
+_PICTURE = Kernel("draw_picture", "iaaaaaaa")
+_SHADOW = Kernel("draw_shadow_map", "iaaaaiaaa")
+_AMODAL = Kernel("draw_amodal", "iaaaaaia")
+_AMODAL_CROPS = Kernel("copy_amodal", "aia")
+_MIPS = Kernel("mip_chain", "aia")
+_STRUCTURES = Kernel("structure_sizes", "a")
 
 
 ROW_PADDING = 8
@@ -74,8 +74,8 @@ class _Scratch:
 class Drawing(_Scratch):
     """Draws pictures and shadow maps; parameters and errors as `_Scratch`."""
 
-    _MAKE = Kernel("make_scratch", "array")
-    _FREE = Kernel("free_scratch", "array")
+    _MAKE = Kernel("make_scratch", "a")
+    _FREE = Kernel("free_scratch", "a")
 
     def picture(
         self,
@@ -182,8 +182,8 @@ class Drawing(_Scratch):
 class AmodalDrawing(_Scratch):
     """Draws objects, each alone; parameters and errors as `_Scratch`."""
 
-    _MAKE = Kernel("make_amodal_scratch", "array")
-    _FREE = Kernel("free_amodal_scratch", "array")
+    _MAKE = Kernel("make_amodal_scratch", "a")
+    _FREE = Kernel("free_amodal_scratch", "a")
 
     def draw(
         self,

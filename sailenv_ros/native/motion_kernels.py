@@ -20,40 +20,28 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.lens import LENS
 from sailenv_ros.native.library import checked
-from sailenv_ros.native.records import FieldType, RecordKernel
+from sailenv_ros.native.records import Fields, RecordKernel
 
 __all__ = ["MOTION_OUTPUTS", "move_points", "transform_points"]
 
-_PIXELS: Mapping[str, FieldType] = {
-    **{"height": "integer", "width": "integer", "depth": "array", "instance": "array"},
-    **{"row_of_instance": "array", "rows": "integer"},
-}
+_PIXELS: tuple[Fields, ...] = (
+    ("integer", "height width"),
+    ("array", "depth instance row_of_instance"),
+    ("integer", "rows"),
+)
 _MOVE = RecordKernel(
     "motion",
-    **_PIXELS,
-    motions="array",
-    displacements="array",
-    from_lens="array",
-    to_lens="array",
-    to_height="integer",
-    to_width="integer",
-    to_depth="array",
-    to_instance="array",
-    tolerance="number",
-    duration="number",
-    flow="array",
-    scene_flow="array",
-    valid="array",
-    occluded="array",
-    out_of_view="array",
-    hidden="array",
+    *_PIXELS,
+    ("array", "motions displacements from_lens to_lens"),
+    ("integer", "to_height to_width"),
+    ("array", "to_depth to_instance"),
+    ("number", "tolerance duration"),
+    ("array", "flow scene_flow valid occluded out_of_view hidden"),
 )
 _TRANSFORM = RecordKernel(
     "transform_points",
-    **_PIXELS,
-    transforms="array",
-    lens="array",
-    points="array",
+    *_PIXELS,
+    ("array", "transforms lens points"),
 )
 
 MOTION_OUTPUTS: Mapping[str, tuple[Any, tuple[int, ...]]] = {

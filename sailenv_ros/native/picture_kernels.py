@@ -26,37 +26,15 @@ __all__ = [
 
 _AMBIENT = RecordKernel(
     "ambient_visibility",
-    height="integer",
-    width="integer",
-    surface="array",
-    baked="array",
-    pattern="array",
-    lens="array",
-    radius_m="number",
-    least_reach_px="number",
-    reach_px="number",
-    bias="number",
-    scale="number",
-    same_surface="number",
-    step="integer",
-    inverse="array",
-    visibility="array",
+    ("integer", "height width"),
+    ("array", "surface baked pattern lens"),
+    ("number", "radius_m least_reach_px reach_px bias scale same_surface"),
+    ("integer", "step"),
+    ("array", "inverse visibility"),
 )
-_GATHER = Kernel(
-    "gather_light",
-    *("integer", "integer", "integer", "array", "number", "number", "number", "integer", "array"),
-    "array",
-)
-_RESOLVE = Kernel(
-    "resolve",
-    *("integer", "integer", "integer", "integer", "array", "array", "array", "array", "number"),
-    *("integer", "array"),
-)
-_PICTURE = Kernel(
-    "make_picture",
-    *("integer", "integer", "integer", "array", "array", "array", "array", "array", "number"),
-    "array",
-)
+_GATHER = Kernel("gather_light", "iiiannniaa")
+_RESOLVE = Kernel("resolve", "iiiiaaaania")
+_PICTURE = Kernel("make_picture", "iiiaaaaana")
 
 
 class AmbientSettings(NamedTuple):

@@ -23,52 +23,26 @@ WIDTH = 8
 TREE_NODE = structure(("planes", "<f4", (6, WIDTH)), ("children", "<i4", WIDTH))
 
 RAY_SHAPE = structure(
-    ("nodes_at", ADDRESS),
-    ("triangles_at", ADDRESS),
-    ("order_at", ADDRESS),
-    ("places_at", ADDRESS),
-    ("two_sided_at", ADDRESS),
-    ("count", "<i8"),
-    ("first_triangle", "<i8"),
+    ("nodes_at triangles_at order_at places_at two_sided_at", ADDRESS),
+    ("count first_triangle", "<i8"),
 )
 
 RAY_INSTANCE = structure(
-    ("shape_at", ADDRESS),
-    ("radiance_at", ADDRESS),
+    ("shape_at radiance_at", ADDRESS),
     ("body_from_world", "<f4", 12),
-    ("sphere", "<f4", 4),
-    ("chart", "<f4", 4),
-    ("has_chart", "<i4"),
-    ("before", "<i4"),
-    ("after", "<i4"),
-    ("padding", "<i4"),
+    ("sphere chart", "<f4", 4),
+    ("has_chart before after padding", "<i4"),
 )
 
 RAY_SCENE = structure(
-    ("nodes_at", ADDRESS),
-    ("order_at", ADDRESS),
-    ("resting_at", ADDRESS),
-    ("changed_at", ADDRESS),
-    ("glass_at", ADDRESS),
-    ("passes_at", ADDRESS),
-    ("sky_at", ADDRESS),
-    ("patches_at", ADDRESS),
-    ("before_at", ADDRESS),
-    ("after_at", ADDRESS),
-    ("changed_count", "<i8"),
-    ("patch_count", "<i8"),
-    ("resting_count", "<i8"),
-    ("sky_height", "<i4"),
-    ("sky_width", "<i4"),
-    ("height", "<i4"),
-    ("width", "<i4"),
-    ("channels", "<i4"),
-    ("padding", "<i4"),
+    ("nodes_at order_at resting_at changed_at glass_at passes_at sky_at patches_at", ADDRESS),
+    ("before_at after_at", ADDRESS),
+    ("changed_count patch_count resting_count", "<i8"),
+    ("sky_height sky_width height width channels padding", "<i4"),
 )
 
 RAY_LIGHT = structure(
     ("lamp", LAMP),
-    ("across", "<f4", 3),
-    ("up", "<f4", 3),
+    ("across up", "<f4", 3),
     ("radius", "<f4"),
 )

@@ -37,13 +37,14 @@ ADDRESS = "<u8"
 
 
 def structure(*fields: tuple[Any, ...]) -> np.dtype[np.void]:
-    """Return a structure with these fields, laid out as C++ does."""
-    return np.dtype(list(fields), align=True)
+    """Return a structure as C++ lays it out: of names with spaces between, their type and shape."""
+    return np.dtype(
+        [(name, *kind) for names, *kind in fields for name in names.split()], align=True
+    )
 
 
 CLUSTER = structure(
-    ("first_index", "<i8"),
-    ("index_count", "<i8"),
+    ("first_index index_count", "<i8"),
     ("centre", "<f8", 3),
     ("radius", "<f8"),
     ("axis", "<f8", 3),
@@ -55,53 +56,26 @@ TEXTURE = structure(("texels_at", ADDRESS), ("log2_size", "<i8"))
 PART_DOUBLE_SIDED, PART_MASKED, PART_FINISH_MAP, PART_NORMAL_MAP = 1, 2, 4, 8
 
 PART = structure(
-    ("corner_x_at", ADDRESS),
-    ("corner_y_at", ADDRESS),
-    ("corner_z_at", ADDRESS),
-    ("corner_indices_at", ADDRESS),
-    ("vertex_indices_at", ADDRESS),
-    ("vertices_at", ADDRESS),
-    ("clusters_at", ADDRESS),
-    ("colour_map_at", ADDRESS),
-    ("detail_map_at", ADDRESS),
-    ("corner_count", "<i4"),
-    ("cluster_count", "<i4"),
-    ("sphere", "<f4", 4),
-    ("colour", "<f4", 4),
+    ("corner_x_at corner_y_at corner_z_at corner_indices_at vertex_indices_at", ADDRESS),
+    ("vertices_at clusters_at colour_map_at detail_map_at", ADDRESS),
+    ("corner_count cluster_count", "<i4"),
+    ("sphere colour", "<f4", 4),
     ("base", "<f4", 3),
-    ("roughness", "<f4"),
-    ("metallic", "<f4"),
-    ("alpha_cutoff", "<f4"),
-    ("emission", "<f4"),
-    ("cutoff_fall", "<f4"),
-    ("least_cutoff", "<f4"),
+    ("roughness metallic alpha_cutoff emission cutoff_fall least_cutoff", "<f4"),
     ("chart", "<f4", 4),
-    ("flags", "<i4"),
-    ("instance", "<i4"),
-    ("id", "<i4"),
-    ("has_chart", "<i4"),
+    ("flags instance id has_chart", "<i4"),
 )
 
 INSTANCES = structure(
-    ("world_from_body_at", ADDRESS),
-    ("scales_at", ADDRESS),
-    ("drawn_at", ADDRESS),
-    ("at_baked_pose_at", ADDRESS),
+    ("world_from_body_at scales_at drawn_at at_baked_pose_at", ADDRESS),
     ("count", "<i8"),
 )
 
 DRAW_LIST = structure(("parts_at", ADDRESS), ("count", "<i8"))
 
 LAYER_SUM = structure(
-    ("count", "<i8"),
-    ("terms", "<i8"),
-    ("layers_at", ADDRESS),
-    ("channels_at", ADDRESS),
-    ("factors_at", ADDRESS),
-    ("more_at", ADDRESS),
-    ("shown_at", ADDRESS),
-    ("texels_at", ADDRESS),
-    ("states_at", ADDRESS),
+    ("count terms", "<i8"),
+    ("layers_at channels_at factors_at more_at shown_at texels_at states_at", ADDRESS),
 )
 
 REFLECTION_POINT = structure(
@@ -110,62 +84,43 @@ REFLECTION_POINT = structure(
 )
 
 LIGHT = structure(
-    ("main_colour", "<f4", 3),
-    ("main_towards", "<f4", 3),
+    ("main_colour main_towards", "<f4", 3),
     ("map_from_world", "<f4", 12),
     ("texel_m", "<f4"),
     ("shadow_size", "<i4"),
-    ("shadow_at", ADDRESS),
-    ("static_shadow_at", ADDRESS),
+    ("shadow_at static_shadow_at", ADDRESS),
     ("ambient", "<f4", 3),
     ("sky_share", "<f4"),
-    ("sky_zenith", "<f4", 3),
-    ("sky_horizon", "<f4", 3),
-    ("sky_ground", "<f4", 3),
-    ("background", "<f4", 3),
+    ("sky_zenith sky_horizon sky_ground background", "<f4", 3),
     ("background_plain", "<i4"),
     ("sky_map_at", ADDRESS),
-    ("sky_width", "<i4"),
-    ("sky_height", "<i4"),
+    ("sky_width sky_height", "<i4"),
     ("exposure", "<f4"),
     ("lamp_count", "<i4"),
     ("lamps_at", ADDRESS),
-    ("baked", "<i4"),
-    ("reflecting", "<i4"),
+    ("baked reflecting", "<i4"),
     ("light_map_at", ADDRESS),
-    ("light_map_width", "<i4"),
-    ("light_map_height", "<i4"),
+    ("light_map_width light_map_height", "<i4"),
     ("instance_light_at", ADDRESS),
-    ("main_baked", "<f4"),
-    ("main_clear", "<f4"),
-    ("edge_index_at", ADDRESS),
-    ("edge_blocks_at", ADDRESS),
-    ("reflections_at", ADDRESS),
-    ("reflection_edge", "<i4"),
-    ("reflection_layers", "<i4"),
-    ("reflection_scale", "<f4"),
-    ("layers_per_roughness", "<f4"),
-    ("reflection_points_at", ADDRESS),
-    ("reflection_table_at", ADDRESS),
-    ("room_low", "<f4", 3),
-    ("room_high", "<f4", 3),
+    ("main_baked main_clear", "<f4"),
+    ("edge_index_at edge_blocks_at reflections_at", ADDRESS),
+    ("reflection_edge reflection_layers", "<i4"),
+    ("reflection_scale layers_per_roughness", "<f4"),
+    ("reflection_points_at reflection_table_at", ADDRESS),
+    ("room_low room_high", "<f4", 3),
 )
 
 VIEW = structure(
-    ("camera_from_world", "<f8", 16),
-    ("world_from_camera", "<f8", 16),
+    ("camera_from_world world_from_camera", "<f8", 16),
     ("lens", LENS),
-    ("width", "<i8"),
-    ("height", "<i8"),
-    ("smooth_edges", "<i8"),
+    ("width height smooth_edges", "<i8"),
 )
 
 MOST_ATTRIBUTES = 8
 """Views that are attributes of surfaces, at most."""
 
 OUTPUTS = structure(
-    ("surface_at", ADDRESS),
-    ("radiance_at", ADDRESS),
+    ("surface_at radiance_at", ADDRESS),
     ("attributes_at", ADDRESS, MOST_ATTRIBUTES),
 )
 

@@ -20,23 +20,13 @@ __all__ = ["annotate_pixels", "convert_views", "measure_instances"]
 
 _ANNOTATE = RecordKernel(
     "annotate",
-    height="integer",
-    width="integer",
-    surface="array",
-    category_of_instance="array",
-    lens="array",
-    depth="array",
-    category="array",
-    instance="array",
+    ("integer", "height width"),
+    ("array", "surface category_of_instance lens depth category instance"),
 )
 _OUTPUTS: dict[str, Any] = {"depth": np.float32, "category": np.uint8, "instance": np.uint16}
-_MEASURE = Kernel("measure_instances", "integer", "integer", *("array",) * 7)
+_MEASURE = Kernel("measure_instances", "iiaaaaaaa")
 _IDS = 65536
-_CLIENT = Kernel(
-    "client_views",
-    *("integer", "integer", "array", "array", "number", "number"),
-    *("array", "array", "array", "integer", "array", "array"),
-)
+_CLIENT = Kernel("client_views", "iiaannaaaiaa")
 
 
 def annotate_pixels(
