@@ -46,6 +46,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Asset, Model
+from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -166,16 +167,16 @@ class SceneLibrary:
     def build(
         self,
         scene: str | Path,
-        seed: int,
-        epoch: int,
-        next_revision: Callable[[], int],
+        seed: int = 0,
+        epoch: int = 1,
+        next_revision: Callable[[], int] | None = None,
         *,
         more: SceneOverlay = NOTHING_MORE,
     ) -> World:
         """Build the world of a scene, with `more` objects and lessons than it has by itself.
 
         Uses the furniture that is built by now. See `load`, `scene.entries.checked_objects` and
-        `world.build.build_world` for errors.
+        `world.build.build_world` for errors, `World` for epoch and revisions.
         """
         if not self._packs.are_newest:
             self.refresh()
@@ -208,6 +209,14 @@ class SceneLibrary:
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self.path(scene)
         return world
+
+    def snapshot(self, scene: str | Path) -> WorldSnapshot:
+        """Return a scene as it begins; errors as of `build`."""
+        world = self.build(scene)
+        try:
+            return world.snapshot()
+        finally:
+            world.close()
 
     def refresh(self) -> None:
         """Take up what was built since this was made: furniture, skies and the user's packs."""
