@@ -1,4 +1,4 @@
-"""Participants beside the simulator of a module, which its fixture `node` starts."""
+"""Participants beside the simulator of a module: its fixture `node`, or that of a keeper."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ from collections.abc import Iterator
 import pytest
 
 from sailenv_msgs.srv import Reset
+from sailenv_ros import Agent
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
+
+LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": ""}
+SMALL = {"width": 160, "height": 120}
 
 
 @pytest.fixture(scope="module")
@@ -24,3 +28,20 @@ def probe(participant: Probe) -> Iterator[Probe]:
     participant.done(Reset, "reset", Reset.Request(keep_seed=True))
     yield participant
     participant.listen_no_more()
+
+
+@pytest.fixture(scope="module")
+def keeper(request: pytest.FixtureRequest) -> Iterator[Agent]:
+    """One lockstep simulator for the tests of a module, held by an Agent of its own."""
+    module = request.module
+    size = getattr(module, "SMALL", SMALL)
+    with Agent(**size, namespace=module.NAMESPACE, simulator=LOCKSTEP) as keeper:
+        yield keeper
+
+
+@pytest.fixture
+def agent(request: pytest.FixtureRequest, keeper: Agent) -> Iterator[Agent]:
+    """A small agent that stands in the scene as it begins."""
+    keeper.reset()
+    with Agent(**SMALL, namespace=request.module.NAMESPACE) as agent:
+        yield agent
