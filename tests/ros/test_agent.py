@@ -353,7 +353,7 @@ from sailenv_ros import Agent
 rclpy.init()
 node = rclpy.create_node("mine")
 lens = dict(width=64, height=48, cx_offset_px=8.0, cy_offset_px=-5.0)
-with Agent(**lens, namespace=NAMESPACE, name="beside") as agent:
+with Agent(**lens, namespace="/tested", name="beside") as agent:
     got = []
     node.create_subscription(CameraInfo, "/tested/beside/camera_info", got.append, 3)
     for _ in range(100):
@@ -514,14 +514,14 @@ def work(inherited, all_are_here, answers):
     except SimulationClosed as error:
         answers.put(str(error))
     inherited.close()
-    with Agent(width=64, height=48, namespace=NAMESPACE, start_timeout_s=20) as own:
+    with Agent(width=64, height=48, namespace="/tested", start_timeout_s=20) as own:
         all_are_here.wait(30)
         answers.put(own.get_frame()["main"].shape)
 
 warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 on forks beside threads
 forking = multiprocessing.get_context("fork")
 answers = forking.Queue()
-with Agent(width=64, height=48, namespace=NAMESPACE) as agent:
+with Agent(width=64, height=48, namespace="/tested") as agent:
     agent.get_frame()
     for _ in range(2):
         job = (agent, forking.Barrier(2), answers)
