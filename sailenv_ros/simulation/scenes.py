@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
 from hashlib import blake2b
@@ -24,11 +25,7 @@ from sailenv_ros.behaviours import (
 )
 from sailenv_ros.behaviours.durations import lesson_errors
 from sailenv_ros.light.bake.settings import BAKE_VERSION
-from sailenv_ros.scene.entries import (
-    checked_lessons,
-    checked_objects,
-    checked_scene,
-)
+from sailenv_ros.scene.entries import checked_lessons, checked_objects, checked_scene
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.scene_catalogue import SceneCatalogue
 from sailenv_ros.scene.serialisation import light_entry
@@ -184,9 +181,8 @@ class SceneLibrary:
         known = self._with_materials(self._knowledge_to_build, self.materials.beside(path))
         spec = load_scene(path, knowledge=known)
         self.materials.note(spec.name, path)
-        spec = spec.model_copy(
-            update={"objects": (*spec.objects, *self._added(more.objects, spec))}
-        )
+        objects = (*spec.objects, *self._added(more.objects, spec))
+        spec = spec.model_copy(update={"objects": objects})
         if more.lessons is not None:
             lessons = checked_lessons(more.lessons, spec.objects, known)
             spec = spec.model_copy(update={"lessons": lessons})
@@ -212,11 +208,8 @@ class SceneLibrary:
 
     def snapshot(self, scene: str | Path) -> WorldSnapshot:
         """Return a scene as it begins; errors as of `build`."""
-        world = self.build(scene)
-        try:
+        with closing(self.build(scene)) as world:
             return world.snapshot()
-        finally:
-            world.close()
 
     def refresh(self) -> None:
         """Take up what was built since this was made: furniture, skies and the user's packs."""

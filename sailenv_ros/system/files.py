@@ -180,13 +180,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def sync_file_system(folder: Path) -> None:
-    """Bring everything that was written to the file system of a folder to the disk.
-
-    Raises
-    ------
-    OSError
-        If the disk refuses it.
-    """
+    """Bring all that was written to a folder's file system to the disk; see `sync_folder`."""
     with _opened(folder) as fd:
         _syncfs(fd)
 
