@@ -37,6 +37,10 @@ _RESOLVE = Kernel("resolve", "iiiiaaaania")
 _PICTURE = Kernel("make_picture", "iiiaaaaana")
 
 
+Shade = tuple[NDArray[Any] | None, NDArray[Any] | None, NDArray[Any] | None]
+"""Visibility, 1 / depth there, and depth and ids; or nothing."""
+
+
 class AmbientSettings(NamedTuple):
     """How ambient visibility is found; the kernel rounds the numbers to single precision.
 
@@ -210,7 +214,7 @@ def resolve_samples(
     """
     height, width = samples.shape[0] // times, samples.shape[1] // times
     checked("samples", samples, np.float16, (times * height, times * width, 4))
-    shade = _checked_shade(visibility, inverse, surface, height, width, times)
+    shade = _checked_shade((visibility, inverse, surface), height, width, times)
     radiance = np.empty((height, width, 4), np.float16)
     _RESOLVE(
         *(threads, height, width, times, samples, *shade),
@@ -258,7 +262,7 @@ def make_picture(
     height, width = radiance.shape[:2]
     checked("radiance", radiance, np.float16, (height, width, 4))
     checked("table", table, np.uint8, (65536,))
-    shade = _checked_shade(visibility, inverse, surface, height, width)
+    shade = _checked_shade((visibility, inverse, surface), height, width)
     rgb = np.empty((height, width, 3), np.uint8)
     _PICTURE(
         *(threads, height, width, radiance, table, *shade),
@@ -267,15 +271,9 @@ def make_picture(
     return rgb
 
 
-def _checked_shade(
-    visibility: NDArray[np.uint8] | None,
-    inverse: NDArray[np.float32] | None,
-    surface: NDArray[np.float32] | None,
-    height: int,
-    width: int,
-    times: int = 1,
-) -> tuple[NDArray[Any] | None, NDArray[Any] | None, NDArray[Any] | None]:
+def _checked_shade(given: Shade, height: int, width: int, times: int = 1) -> Shade:
     """Return what a kernel takes of a picture's shade: nothing, unless all three are there."""
+    visibility, inverse, surface = given
     if visibility is None or inverse is None or surface is None:
         return None, None, None
     half = (height + 1) // 2, (width + 1) // 2

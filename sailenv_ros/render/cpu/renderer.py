@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +17,11 @@ from sailenv_ros.native.library import native_library
 from sailenv_ros.native.render_types import PART, VIEW, record
 from sailenv_ros.render.cpu.frame_light import FrameLight
 from sailenv_ros.render.cpu.part_table import PartTable
-from sailenv_ros.render.picture.finishing import DrawingRenderer
+from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.flat_mirrors import Window
 from sailenv_ros.types.camera import Camera
-from sailenv_ros.types.snapshot import WorldSnapshot
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
 __all__ = ["NativeRenderer", "native_view"]
@@ -82,16 +81,10 @@ class NativeRenderer(DrawingRenderer):
     def _release(self) -> None:
         self._drawing.close()
 
-    def _draw(
-        self,
-        snapshot: WorldSnapshot,
-        camera: Camera,
-        wanted: frozenset[str],
-        timings: dict[str, float],
-    ) -> dict[str, NDArray[Any]]:
+    def _draw(self, observed: Observation, wanted: frozenset[str], timings: Timings) -> Arrays:
         """Draw surfaces, and what else is wanted."""
         began = time.perf_counter()
-        table = self._table
+        snapshot, camera, table = observed.snapshot, observed.camera, self._table
         table.show(snapshot.contents)
         marked = time.perf_counter()
         timings["upload"] = marked - began
@@ -106,7 +99,7 @@ class NativeRenderer(DrawingRenderer):
         # With supersampling the picture is drawn apart: ground truth is of pixel centres.
         sampled = light is not None and camera.picture.supersampling > 1
         height, width = camera.intrinsics.height, camera.intrinsics.width
-        arrays: dict[str, NDArray[Any]] = {"surface": np.empty((height, width, 2), np.float32)}
+        arrays: Arrays = {"surface": np.empty((height, width, 2), np.float32)}
         for view in _ATTRIBUTES:
             if view in wanted:
                 arrays[view] = np.empty(VIEWS[view].shape(height, width), VIEWS[view].dtype)
@@ -148,7 +141,7 @@ class NativeRenderer(DrawingRenderer):
         snapshot: WorldSnapshot,
         camera: Camera,
         light: NDArray[np.void],
-        arrays: dict[str, NDArray[Any]],
+        arrays: Arrays,
     ) -> None:
         """Put into the picture what its flat mirrors show."""
         mirrors = self._mirrors.seen(snapshot, camera)

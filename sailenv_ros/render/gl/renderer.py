@@ -10,7 +10,6 @@ import itertools
 import time
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import moderngl
 import numpy as np
@@ -27,12 +26,12 @@ from sailenv_ros.render.gl.materials import MaterialBuffers
 from sailenv_ros.render.gl.picture_buffers import PictureBuffers
 from sailenv_ros.render.gl.programs import ProgramCache
 from sailenv_ros.render.gl.scene_light import SceneLight
-from sailenv_ros.render.picture.finishing import DrawingRenderer
+from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.render.scene.flat_mirrors import SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.snapshot import WorldSnapshot
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
 __all__ = ["Renderer"]
@@ -116,14 +115,9 @@ class Renderer(DrawingRenderer):
                     resource.close()
         self._context.release()
 
-    def _draw(
-        self,
-        snapshot: WorldSnapshot,
-        camera: Camera,
-        wanted: frozenset[str],
-        timings: dict[str, float],
-    ) -> dict[str, NDArray[Any]]:
+    def _draw(self, observed: Observation, wanted: frozenset[str], timings: Timings) -> Arrays:
         """Run the passes and read back what they left."""
+        snapshot, camera = observed.snapshot, observed.camera
         marks = [("", time.perf_counter())]
 
         def mark(stage: str) -> None:
@@ -147,7 +141,7 @@ class Renderer(DrawingRenderer):
         outputs = tuple(view for view in self._outputs if view in wanted)
         targets = self._surfaces(snapshot, camera, shaded=shaded and not apart, outputs=outputs)
         mark("geometry")
-        arrays: dict[str, NDArray[Any]] = {}
+        arrays: Arrays = {}
         sampled = camera.picture.supersampling > 1
         mirrors: list[SeenMirror] = []
         if illumination is not None:
@@ -227,7 +221,7 @@ class Renderer(DrawingRenderer):
         mirrors: list[SeenMirror],
         camera: Camera,
         illumination: Illumination,
-        arrays: dict[str, NDArray[Any]],
+        arrays: Arrays,
         samples: NDArray[np.float32] | None,
     ) -> None:
         """Put into the picture what its flat mirrors show."""

@@ -9,7 +9,7 @@ import contextlib
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,13 @@ from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, checked_views
 
-__all__ = ["DrawingRenderer"]
+__all__ = ["Arrays", "DrawingRenderer", "Timings"]
+
+Arrays: TypeAlias = dict[str, NDArray[Any]]
+"""What was drawn, by the names of views and of what views are made of."""
+
+Timings: TypeAlias = dict[str, float]
+"""Wall time of each stage [s]."""
 
 
 class DrawingRenderer(ABC):
@@ -59,13 +65,12 @@ class DrawingRenderer(ABC):
             raise RenderError("the renderer was closed")
         wanted = frozenset(checked_views(views, supported=self.supported_views))
         keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
-        timings: dict[str, float] = {}
+        timings: Timings = {}
         with self._drawing_context():
             if keeps_depth and previous is not None and previous.depth is None:
-                then = (previous.snapshot, previous.camera)
-                past = self._draw(*then, frozenset({"depth"}), {})["surface"]
+                past = self._draw(previous, frozenset({"depth"}), {})["surface"]
                 previous = with_depth(previous, past)
-            arrays = self._draw(snapshot, camera, wanted, timings)
+            arrays = self._draw(Observation(snapshot=snapshot, camera=camera), wanted, timings)
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if "rgb" in wanted:
@@ -97,21 +102,15 @@ class DrawingRenderer(ABC):
         return contextlib.nullcontext()
 
     @abstractmethod
-    def _draw(
-        self,
-        snapshot: WorldSnapshot,
-        camera: Camera,
-        wanted: frozenset[str],
-        timings: dict[str, float],
-    ) -> dict[str, NDArray[Any]]:
-        """Draw surfaces, and what else is wanted.
+    def _draw(self, observed: Observation, wanted: frozenset[str], timings: Timings) -> Arrays:
+        """Draw surfaces as a camera sees them, and what else is wanted.
 
         Returns
         -------
         arrays : dict of str to array
             ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
             radiance (see `PostPass.finished`), and with supersampling perhaps ``samples``; other
-            views that are made already. The wall time of each stage [s] is added to `timings`.
+            views that are made already. The time of each stage is added to `timings`.
         """
 
     @abstractmethod
