@@ -24,7 +24,6 @@ from sailenv_content.scene_import.categories_by_name import category_of_name
 from sailenv_content.scene_import.default_light import add_daylight
 from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_content.scene_import.scene_parts import asset_of_parts
-from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.errors import AssetError
@@ -220,18 +219,10 @@ def _placed(parts: Sequence[RawPart]) -> tuple[Pose, list[RawPart]]:
     points = np.concatenate([p.mesh.positions[np.unique(p.mesh.triangles)] for p in parts])
     low, high = points.min(axis=0), points.max(axis=0)
     origin = np.array([*(0.5 * (low + high))[:2], low[2]])
-    moved = [
-        dataclasses.replace(
-            part,
-            mesh=RawMesh(
-                positions=part.mesh.positions - origin,
-                uvs=part.mesh.uvs,
-                triangles=part.mesh.triangles,
-                normals=part.mesh.normals,
-            ),
-        )
-        for part in parts
-    ]
+    moved = []
+    for part in parts:
+        mesh = dataclasses.replace(part.mesh, positions=part.mesh.positions - origin)
+        moved.append(dataclasses.replace(part, mesh=mesh))
     return Pose((float(origin[0]), float(origin[1]), float(origin[2]))), moved
 
 
