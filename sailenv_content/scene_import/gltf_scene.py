@@ -32,6 +32,7 @@ from sailenv_ros.types.geometry import Pose
 __all__ = ["import_gltf"]
 
 Matrix = NDArray[np.float64]
+Tree = Mapping[str, Any]
 
 LUMENS_PER_WATT = 683.0
 MOST_NODES = 20_000
@@ -91,7 +92,7 @@ def _json(path: Path) -> dict[str, Any]:
     return tree
 
 
-def _check_files(path: Path, tree: Mapping[str, Any]) -> None:
+def _check_files(path: Path, tree: Tree) -> None:
     """Refuse what would be read from elsewhere: only files beside the glTF are."""
     home = path.resolve().parent
     for entry in (*_list(tree, "buffers"), *_list(tree, "images")):
@@ -102,14 +103,14 @@ def _check_files(path: Path, tree: Mapping[str, Any]) -> None:
             raise AssetError(path.name, f"it names {uri!r}, which is not beside it")
 
 
-def _list(tree: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+def _list(tree: Tree, key: str) -> list[dict[str, Any]]:
     found = tree.get(key, [])
     if not isinstance(found, list) or not all(isinstance(entry, dict) for entry in found):
         raise AssetError("glTF", f"its {key} are no list of objects")
     return found
 
 
-def _node_poses(path: Path, tree: Mapping[str, Any]) -> list[Matrix | None]:
+def _node_poses(path: Path, tree: Tree) -> list[Matrix | None]:
     """Return the (4, 4) pose of each node in the file's world; None for those of no scene."""
     nodes = _list(tree, "nodes")
     if len(nodes) > MOST_NODES:
@@ -135,7 +136,7 @@ def _node_poses(path: Path, tree: Mapping[str, Any]) -> list[Matrix | None]:
     return poses
 
 
-def _local(path: Path, node: Mapping[str, Any]) -> Matrix:
+def _local(path: Path, node: Tree) -> Matrix:
     matrix = np.eye(4)
     try:
         if "matrix" in node:
@@ -229,13 +230,7 @@ def _placed(parts: Sequence[RawPart]) -> tuple[Pose, list[RawPart]]:
 # -- lights and cameras --------------------------------------------------------------------
 
 
-def _add_light(
-    tree: Mapping[str, Any],
-    node: Mapping[str, Any],
-    pose: Matrix,
-    scene: ImportedScene,
-    names: Names,
-) -> None:
+def _add_light(tree: Tree, node: Tree, pose: Matrix, scene: ImportedScene, names: Names) -> None:
     number = _extension(node).get("light")
     lights = _extension(tree).get("lights", [])
     if not isinstance(number, int) or not isinstance(lights, list) or not 0 <= number < len(lights):
@@ -274,13 +269,7 @@ def _add_light(
     scene.lights.append(entry)
 
 
-def _add_camera(
-    tree: Mapping[str, Any],
-    node: Mapping[str, Any],
-    pose: Matrix,
-    scene: ImportedScene,
-    names: Names,
-) -> None:
+def _add_camera(tree: Tree, node: Tree, pose: Matrix, scene: ImportedScene, names: Names) -> None:
     number, cameras = node.get("camera"), _list(tree, "cameras")
     if not isinstance(number, int) or not 0 <= number < len(cameras) or len(scene.agents) >= 16:
         return
@@ -299,7 +288,7 @@ def _add_camera(
     scene.agents.append(entry)
 
 
-def _extension(tree: Mapping[str, Any]) -> Mapping[str, Any]:
+def _extension(tree: Tree) -> Tree:
     extensions = tree.get("extensions")
     found = extensions.get("KHR_lights_punctual") if isinstance(extensions, dict) else None
     return found if isinstance(found, dict) else {}
