@@ -9,7 +9,6 @@ texels that have at least a twentieth of the mean. No light is read from the cac
 from __future__ import annotations
 
 import argparse
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -20,20 +19,10 @@ from sailenv_ros.light.bake.settings import BakeSettings
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.colour import LUMINANCE
-from sailenv_ros.types.snapshot import WorldSnapshot
 
 PASS_RAYS = 256
 LEAST = 0.05
 PERCENTILES = (50, 95, 99)
-
-
-def snapshot_of(scene: str) -> WorldSnapshot:
-    """Build a scene and return it as it begins."""
-    world = SceneLibrary().build(scene, 0, 0, itertools.count().__next__)
-    try:
-        return world.snapshot()
-    finally:
-        world.close()
 
 
 def bounced(light: BakedLight) -> NDArray[np.float64]:
@@ -54,7 +43,7 @@ def main() -> None:
     arguments = parser.parse_args()
     many = replace(BakeSettings(), rays=arguments.rays, pass_rays=PASS_RAYS)
     for scene in arguments.scene or ["room_03"]:
-        snapshot = snapshot_of(scene)
+        snapshot = SceneLibrary().snapshot(scene)
         seen, wanted = bounced(bake(snapshot)), bounced(bake(snapshot, settings=many))
         counted = wanted >= LEAST * wanted[wanted > 0.0].mean()
         error = np.abs(seen[counted] / wanted[counted] - 1.0)

@@ -79,15 +79,6 @@ def never_hashed(snapshot: WorldSnapshot) -> WorldSnapshot:
     return replace(snapshot, contents=replace(contents, instances=instances))
 
 
-def snapshot_of(library: SceneLibrary, scene: str) -> WorldSnapshot:
-    """Build a scene and return it as it begins."""
-    world = library.build(scene, seed=0, epoch=0, next_revision=itertools.count().__next__)
-    try:
-        return world.snapshot()
-    finally:
-        world.close()
-
-
 def measured(scene: str, snapshot: WorldSnapshot, workers: int) -> dict[str, Any]:
     """Bake a scene and say what it took."""
     stages = Stages()
@@ -196,7 +187,7 @@ def main() -> None:
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores")
     results = []
     # The furniture is in the user's cache, which is moved afterwards.
-    snapshots = {scene: snapshot_of(library, scene) for scene in args.scene or ["room_01"]}
+    snapshots = {scene: library.snapshot(scene) for scene in args.scene or ["room_01"]}
     with tempfile.TemporaryDirectory() as folder:
         os.environ["SAILENV_CACHE"] = folder
         for scene, snapshot in snapshots.items():

@@ -123,9 +123,7 @@ def _measure(kind: str, bodies: int, seconds: int) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder) / "scene.yaml"
         scene.write_text(json.dumps(scene_of(kind, bodies)))
-        world = SceneLibrary().build(
-            scene, seed=3, epoch=1, next_revision=itertools.count(1).__next__
-        )
+        world = SceneLibrary().build(scene, seed=3, epoch=1)
     first = world.snapshot().world_from_body
     world.step(240)
     wall_s, cpu_s, out_m, depth_m = 0.0, 0.0, 0.0, 0.0

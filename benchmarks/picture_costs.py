@@ -42,7 +42,7 @@ def main() -> None:
     _effects(arguments.frames)
     print("room, points: first picture [ms]; a frame [ms CPU]")
     for room, (eye, target) in VIEWS.items():
-        snapshot = _snapshot(room)
+        snapshot = SceneLibrary().snapshot(room)
         lens = CameraIntrinsics(width=width, height=height, vertical_fov_deg=62.0)
         camera = Camera(intrinsics=lens, pose=look_at(eye, target))
         renderers = {most: NativeRenderer() for most in (1, reflection_points.MOST)}
@@ -60,7 +60,7 @@ def main() -> None:
 
 
 def _effects(frames: int) -> None:
-    baked = _snapshot("room_01")
+    baked = SceneLibrary().snapshot("room_01")
     plain = replace(baked, contents=replace(baked.contents, baked=None))
     eye, target = VIEWS["room_01"]
     lens = CameraIntrinsics(width=640, height=480, vertical_fov_deg=62.0)
@@ -82,15 +82,6 @@ def _effects(frames: int) -> None:
         for effect, spent in times.items():
             print(f"{effect}, {name}: {1e3 * (full - statistics.median(spent)):.2f}")
         renderer.close()
-
-
-def _snapshot(room: str) -> WorldSnapshot:
-    counter = itertools.count(1)
-    world = SceneLibrary().build(room, 0, 1, lambda: next(counter))
-    try:
-        return world.snapshot()
-    finally:
-        world.close()
 
 
 def _cpu(renderer: NativeRenderer, snapshot: WorldSnapshot, camera: Camera) -> float:

@@ -60,7 +60,7 @@ def _export(folder: Path, seeds: range) -> int:
     for seed in seeds:
         name = f"{drawn_kind(seed, rules)}_{seed}"
         scene = f"generated:{drawn_kind(seed, rules)}:{seed}"
-        world = library.build(scene, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+        world = library.build(scene)
         try:
             objects = [_described(body) for body in world.bodies if body.collides]
         finally:

@@ -13,7 +13,6 @@ was left and the new one, in light that was baked before and refined after the m
 from __future__ import annotations
 
 import argparse
-import itertools
 import json
 import sys
 import tempfile
@@ -134,8 +133,7 @@ def _camera(
 
 
 def _snapshot(scene: str) -> WorldSnapshot:
-    counter = itertools.count(1)
-    world = SceneLibrary().build(scene, 0, 1, lambda: next(counter))
+    world = SceneLibrary().build(scene)
     try:
         # The traced sky is as bright as it is.
         environment = replace(world.contents.environment, sky_blend=False)

@@ -71,7 +71,7 @@ def main() -> int:
     arguments = _arguments()
     rows, missing = [], 0
     for room in arguments.rooms:
-        snapshot = _snapshot(room)
+        snapshot = SceneLibrary().snapshot(room)
         baked = snapshot.contents.baked
         if baked is None:
             print(f"{room}: not baked; sailenv scene bake {room}", file=sys.stderr)
@@ -145,15 +145,6 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--no-bake", action="store_true", help="pass over what is not in the cache")
     parser.add_argument("--output", type=Path, default=Path("build/moved"))
     return parser.parse_args()
-
-
-def _snapshot(room: str) -> WorldSnapshot:
-    counter = itertools.count(1)
-    world = SceneLibrary().build(room, 0, 1, lambda: next(counter))
-    try:
-        return world.snapshot()
-    finally:
-        world.close()
 
 
 # -- moves ---------------------------------------------------------------------------------------

@@ -59,8 +59,7 @@ class BaselineScene:
     """
 
     def __init__(self, scene: str, width: int, height: int) -> None:
-        counter = itertools.count(1)
-        self._world = SceneLibrary().build(scene, 0, 1, lambda: next(counter))
+        self._world = SceneLibrary().build(scene)
         self._mover = next(iter(self._world.movers.values()))
         self._lens = CameraIntrinsics(width=width, height=height)
 

@@ -6,7 +6,6 @@ it is seen, azimuths and distances differ.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -97,11 +96,10 @@ class Stage:
         self._wide_lens = replace(
             self._lens, width=2 * width, height=2 * height, vertical_fov_deg=wide
         )
-        counter = itertools.count(1)
         library = SceneLibrary()
         self._snapshots: dict[str, WorldSnapshot] = {}
         for room in rooms:
-            world = library.build(room, 0, 1, lambda: next(counter))
+            world = library.build(room)
             try:
                 world.step(SETTLE_STEPS)
                 self._snapshots[room] = world.snapshot()

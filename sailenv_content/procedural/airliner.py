@@ -5,15 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sailenv_content.procedural.forms import (
-    Floats,
-    lathe,
-    loft,
-    merged,
-    moved,
-    standing,
-    upright_ring,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.prints import Sheet
 from sailenv_content.procedural.shapes import painted_part, printed_part
 from sailenv_ros.assets.meshes import RawMesh
@@ -45,13 +37,13 @@ def airliner() -> list[RawPart]:
     ]
     fin = _surface([(-0.318, 0.0, 0.030, 0.160), (-0.462, 0.0, 0.215, 0.058)], 0.09, upright=True)
     pieces = [
-        painted_part("wing paint", merged([*wings, *tailplanes]), "#8b9198", roughness=0.35),
+        painted_part("wing paint", forms.merged([*wings, *tailplanes]), "#8b9198", roughness=0.35),
         printed_part("fin paint", fin, _fin_print().texture(), roughness=0.3),
         printed_part("fuselage paint", _fuselage(), _livery().texture(), roughness=0.25),
     ]
     for side in sides:
         pieces += _engine(side)
-    return standing(pieces, LENGTH_M)
+    return forms.standing(pieces, LENGTH_M)
 
 
 def _fuselage() -> RawMesh:
@@ -64,11 +56,11 @@ def _fuselage() -> RawMesh:
     for s in np.cos(np.linspace(0.0, np.pi / 2.0, 18)):
         radius = max(1e-4, RADIUS * (1.0 - (1.0 - s) ** 2) ** 0.62)
         rings.append(_ring(0.5 - NOSE * s, radius, -0.016 * (1.0 - s) ** 2))
-    return loft(rings)
+    return forms.loft(rings)
 
 
-def _ring(x: float, radius: float, z: float) -> Floats:
-    return upright_ring((x, 0.0, z), radius, radius, 40)
+def _ring(x: float, radius: float, z: float) -> forms.Floats:
+    return forms.upright_ring((x, 0.0, z), radius, radius, 40)
 
 
 def _livery() -> Sheet:
@@ -166,7 +158,7 @@ def _surface(sections: ArrayLike, thickness: float, *, upright: bool = False) ->
         section = [x - chord * along, y + zero, z + zero]
         section[1 if upright else 2] = section[1 if upright else 2] + chord * across
         rings.append(np.stack(section, axis=-1))
-    return loft(rings)
+    return forms.loft(rings)
 
 
 def _engine(side: float) -> list[RawPart]:
@@ -175,17 +167,17 @@ def _engine(side: float) -> list[RawPart]:
     outside = [(0.0200, 0.105), (0.0255, 0.085), (0.0300, 0.055), (0.0320, 0.025), (0.0310, 0.006),
                (0.0290, 0.0), (0.0265, 0.006), (0.0255, 0.018)]  # fmt: skip
     # The lathe turns about z; what is high there lies in front.
-    nacelle = lathe([(r, -h) for r, h in outside], 36)
-    fan = lathe([(0.0256, -0.017), (0.006, -0.015), (0.0, -0.006)], 36)
-    core = lathe([(0.0, -0.135), (0.008, -0.118), (0.0155, -0.104), (0.0195, -0.100)], 28)
+    nacelle = forms.lathe([(r, -h) for r, h in outside], 36)
+    fan = forms.lathe([(0.0256, -0.017), (0.006, -0.015), (0.0, -0.006)], 36)
+    core = forms.lathe([(0.0, -0.135), (0.008, -0.118), (0.0155, -0.104), (0.0195, -0.100)], 28)
     pylon = _surface(
         [(0.090, y, z + 0.024, 0.115), (0.058, y, z + 0.052, 0.090)], 0.10, upright=True
     )
     return [
         painted_part(
-            "nacelle paint", moved(nacelle, (x, y, z), (0, 90, 0)), "#173a7c", roughness=0.25
+            "nacelle paint", forms.moved(nacelle, (x, y, z), (0, 90, 0)), "#173a7c", roughness=0.25
         ),
-        painted_part("fan", moved(fan, (x, y, z), (0, 90, 0)), "#1b1d20", roughness=0.35),
-        painted_part("core metal", moved(core, (x, y, z), (0, 90, 0)), "#6e6f72"),
+        painted_part("fan", forms.moved(fan, (x, y, z), (0, 90, 0)), "#1b1d20", roughness=0.35),
+        painted_part("core metal", forms.moved(core, (x, y, z), (0, 90, 0)), "#6e6f72"),
         painted_part("pylon paint", pylon, "#8b9198", roughness=0.35),
     ]

@@ -4,17 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    curve,
-    lathe,
-    loft,
-    merged,
-    moved,
-    rectangle,
-    slab,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.prints import Sheet
 from sailenv_content.procedural.shapes import box, painted_part, printed_part
 from sailenv_ros.assets.model_files import RawPart
@@ -44,11 +34,13 @@ def toothpaste() -> list[RawPart]:
         .box(0, 0.42, 1, 0.60, (0.13, 0.42, 0.66))
         .box(0, 0.60, 1, 0.64, (0.85, 0.20, 0.2))
     )
-    cap = lathe([(0.0, 0.0), (0.0105, 0.0), (0.0105, 0.002), (0.0098, 0.020), (0.0, 0.0205)], 24)
-    cap = moved(cap, (0.052, 0.0, 0.0175), (0.0, 90.0, 0.0))
-    return standing(
+    cap = forms.lathe(
+        [(0.0, 0.0), (0.0105, 0.0), (0.0105, 0.002), (0.0098, 0.020), (0.0, 0.0205)], 24
+    )
+    cap = forms.moved(cap, (0.052, 0.0, 0.0175), (0.0, 90.0, 0.0))
+    return forms.standing(
         [
-            printed_part("tube", loft(np.array(rings)), skin.texture(), roughness=0.3),
+            printed_part("tube", forms.loft(np.array(rings)), skin.texture(), roughness=0.3),
             painted_part("cap plastic", cap, "#e6e8ea"),
         ]
     )
@@ -56,16 +48,18 @@ def toothpaste() -> list[RawPart]:
 
 def soap() -> list[RawPart]:
     """Return a bar of soap in a dish."""
-    dish = slab(rectangle(0.085, 0.120, 0.030), 0.006, 0.002)
-    rim = rectangle(0.085, 0.120, 0.030)
+    dish = forms.slab(forms.rectangle(0.085, 0.120, 0.030), 0.006, 0.002)
+    rim = forms.rectangle(0.085, 0.120, 0.030)
     path = np.c_[0.96 * rim, np.full(len(rim), 0.010)]
-    bar = moved(
-        slab(rectangle(0.052, 0.080, 0.020), 0.024, 0.009, steps=6), (0, 0, 0.006), (0, 0, 8)
+    bar = forms.moved(
+        forms.slab(forms.rectangle(0.052, 0.080, 0.020), 0.024, 0.009, steps=6),
+        (0, 0, 0.006),
+        (0, 0, 8),
     )
-    return standing(
+    return forms.standing(
         [
             painted_part("dish ceramic", dish, "#e4e4e0"),
-            painted_part("rim ceramic", tube(path, 0.0055, sides=12, closed=True), "#e4e4e0"),
+            painted_part("rim ceramic", forms.tube(path, 0.0055, sides=12, closed=True), "#e4e4e0"),
             painted_part("soap", bar, "#a9bf8f", roughness=0.35),
         ]
     )
@@ -73,7 +67,7 @@ def soap() -> list[RawPart]:
 
 def hair_drier() -> list[RawPart]:
     """Return a hair drier that lies on its side."""
-    barrel = lathe(
+    barrel = forms.lathe(
         [
             (0.0, -0.085),
             (0.026, -0.085),
@@ -88,7 +82,7 @@ def hair_drier() -> list[RawPart]:
         ],
         40,
     )
-    barrel = moved(barrel, turn_deg=(0.0, 90.0, 0.0))
+    barrel = forms.moved(barrel, turn_deg=(0.0, 90.0, 0.0))
     nozzle = []
     for x, wide, tall in (
         (0.083, 0.0295, 0.0295),
@@ -98,8 +92,8 @@ def hair_drier() -> list[RawPart]:
     ):
         turn = np.linspace(0, 2 * np.pi, 32, endpoint=False)
         nozzle.append(np.stack([np.full(32, x), tall * np.cos(turn), wide * np.sin(turn)], -1))
-    handle = tube(
-        curve(
+    handle = forms.tube(
+        forms.curve(
             [
                 (-0.030, -0.025, 0.0),
                 (-0.034, -0.070, 0.0),
@@ -111,8 +105,8 @@ def hair_drier() -> list[RawPart]:
         np.interp(np.arange(24), [0, 5, 18, 22, 23], [0.0205, 0.0180, 0.0165, 0.0150, 0.0100]),
         sides=20,
     )
-    cord = tube(
-        curve(
+    cord = forms.tube(
+        forms.curve(
             [
                 (-0.052, -0.138, 0.0),
                 (-0.066, -0.175, -0.012),
@@ -127,8 +121,10 @@ def hair_drier() -> list[RawPart]:
         sides=8,
     )
     grille = [
-        moved(
-            lathe([(r, 0.0), (r + 0.0016, 0.0), (r + 0.0016, 0.003), (r, 0.003), (r, 0.0)], 28),
+        forms.moved(
+            forms.lathe(
+                [(r, 0.0), (r + 0.0016, 0.0), (r + 0.0016, 0.003), (r, 0.003), (r, 0.0)], 28
+            ),
             (-0.0885, 0, 0),
             (0, 90, 0),
         )
@@ -138,23 +134,25 @@ def hair_drier() -> list[RawPart]:
         box((0.012, 0.004, 0.010), (-0.0225, -0.070, 0.0)),
         box((0.010, 0.004, 0.010), (-0.026, -0.090, 0.0)),
     )
-    return standing(
+    return forms.standing(
         [
             painted_part("shell plastic", barrel, "#2b2c33"),
-            painted_part("nozzle plastic", loft(np.array(nozzle)), "#141416"),
+            painted_part("nozzle plastic", forms.loft(np.array(nozzle)), "#141416"),
             painted_part("grip plastic", handle, "#2b2c33"),
             painted_part("cord rubber", cord, "#161617"),
-            painted_part("grille metal", merged(grille), "#77797d"),
-            painted_part("switch plastic", merged(list(switch)), "#b5485c"),
+            painted_part("grille metal", forms.merged(grille), "#77797d"),
+            painted_part("switch plastic", forms.merged(list(switch)), "#b5485c"),
         ]
     )
 
 
 def sponge() -> list[RawPart]:
     """Return a washing-up sponge with its rough side up."""
-    body = slab(rectangle(0.062, 0.100, 0.006), 0.026, 0.004)
-    scour = moved(slab(rectangle(0.062, 0.100, 0.006), 0.009, 0.002), (0.0, 0.0, 0.0255))
-    return standing(
+    body = forms.slab(forms.rectangle(0.062, 0.100, 0.006), 0.026, 0.004)
+    scour = forms.moved(
+        forms.slab(forms.rectangle(0.062, 0.100, 0.006), 0.009, 0.002), (0.0, 0.0, 0.0255)
+    )
+    return forms.standing(
         [
             painted_part("foam", body, "#dcbf3f", roughness=1.0),
             painted_part("scourer", scour, "#3f6e45", roughness=1.0),

@@ -4,18 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    curve,
-    ellipsoid,
-    lathe,
-    loft,
-    merged,
-    moved,
-    panel,
-    rectangle,
-    slab,
-    standing,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.prints import Sheet
 from sailenv_content.procedural.shapes import Vector3, box, painted_part, printed_part
 from sailenv_ros.assets.meshes import RawMesh
@@ -42,8 +31,10 @@ def carton() -> list[RawPart]:
         )
     ]
     for angle in (0.0, 90.0, 180.0, 270.0):
-        face = moved(panel(tall, 2 * side, 0.0), turn_deg=(0.0, 90.0, 0.0))
-        face = moved(moved(face, (side + 0.0004, 0.0, tall / 2)), turn_deg=(0, 0, angle))
+        face = forms.moved(forms.panel(tall, 2 * side, 0.0), turn_deg=(0.0, 90.0, 0.0))
+        face = forms.moved(
+            forms.moved(face, (side + 0.0004, 0.0, tall / 2)), turn_deg=(0, 0, angle)
+        )
         parts.append(printed_part("print", face, front.texture(), roughness=0.4))
     a, b = np.array([side, side, tall]), np.array([side, -side, tall])
     c, d = a * [-1, 1, 1], b * [-1, 1, 1]
@@ -69,13 +60,13 @@ def carton() -> list[RawPart]:
     parts.append(
         painted_part("seam card", box((0.003, 2 * side, 0.020), (0, 0, ridge + 0.008)), "#e4e5e5")
     )
-    cap = lathe([(0.0135, 0.0), (0.0135, 0.010), (0.0125, 0.012), (0.0, 0.0122)], 28)
+    cap = forms.lathe([(0.0135, 0.0), (0.0135, 0.010), (0.0125, 0.012), (0.0, 0.0122)], 28)
     slope = float(np.degrees(np.arctan2(ridge - tall, side)))
-    cap = moved(
-        moved(cap, turn_deg=(0.0, slope, 0.0)), (side / 2 + 0.0005, 0.0, (tall + ridge) / 2)
+    cap = forms.moved(
+        forms.moved(cap, turn_deg=(0.0, slope, 0.0)), (side / 2 + 0.0005, 0.0, (tall + ridge) / 2)
     )
     parts.append(painted_part("cap plastic", cap, "#2a5da0"))
-    return standing(parts)
+    return forms.standing(parts)
 
 
 def cereal_box() -> list[RawPart]:
@@ -92,7 +83,7 @@ def cereal_box() -> list[RawPart]:
     front.box(0.06, 0.36, 0.36, 0.46, (0.95, 0.93, 0.86)).text(
         "whole grain", 0.21, 0.41, 0.03, (0.3, 0.3, 0.2)
     )
-    return standing(_printed_box((0.065, 0.190, 0.280), front, "#cf8a2c"))
+    return forms.standing(_printed_box((0.065, 0.190, 0.280), front, "#cf8a2c"))
 
 
 def tissue_box() -> list[RawPart]:
@@ -107,7 +98,7 @@ def tissue_box() -> list[RawPart]:
             )
         front.disc(float(x), float(y), 0.03, (0.93, 0.75, 0.40))
     parts = _printed_box((0.115, 0.225, 0.085), front, "#7fa3a6")
-    slit = moved(slab(rectangle(0.130, 0.040, 0.019), 0.0006), (0.0, 0.0, 0.085))
+    slit = forms.moved(forms.slab(forms.rectangle(0.130, 0.040, 0.019), 0.0006), (0.0, 0.0, 0.085))
     parts.append(painted_part("slit", slit, "#dfe6e6"))
     across = np.linspace(-1.0, 1.0, 25)
     rings = []
@@ -116,9 +107,9 @@ def tissue_box() -> list[RawPart]:
         fold = (0.006, 0.010, 0.013, 0.012, 0.009)[k] * np.sin(5.5 * across + 0.7 * k) + 0.004 * k
         top = z + (0.008 * np.sin(4.0 * across) - 0.016 * across**2 if k > 2 else 0.0 * across)
         rings.append(np.stack([fold, wide * across, top], -1))
-    tissue = loft(np.array(rings), closed=False, caps=False)
+    tissue = forms.loft(np.array(rings), closed=False, caps=False)
     parts.append(painted_part("tissue", tissue, "#f3f3f1", roughness=0.95, double_sided=True))
-    return standing(parts)
+    return forms.standing(parts)
 
 
 def gift_box() -> list[RawPart]:
@@ -131,7 +122,7 @@ def gift_box() -> list[RawPart]:
     ]
     loops = []
     for angle in (20.0, 110.0, 200.0, 290.0):
-        path = curve(
+        path = forms.curve(
             [
                 (0.0, 0, 0.100),
                 (0.030, 0, 0.128),
@@ -142,16 +133,20 @@ def gift_box() -> list[RawPart]:
             22,
         )
         rings = [[np.add(p, (0.0, s, 0.0)) for s in (-0.010, 0.010)] for p in path]
-        loops.append(moved(loft(np.array(rings), closed=False, caps=False), turn_deg=(0, 0, angle)))
-    return standing(
+        loops.append(
+            forms.moved(
+                forms.loft(np.array(rings), closed=False, caps=False), turn_deg=(0, 0, angle)
+            )
+        )
+    return forms.standing(
         [
             painted_part("wrapping paper", body, "#2f6f73", roughness=0.5),
             painted_part("lid wrapping paper", lid, "#357c80", roughness=0.5),
-            painted_part("ribbon", merged(bands), "#d9b14c", roughness=0.3),
-            painted_part("bow", merged(loops), "#d9b14c", roughness=0.3, double_sided=True),
+            painted_part("ribbon", forms.merged(bands), "#d9b14c", roughness=0.3),
+            painted_part("bow", forms.merged(loops), "#d9b14c", roughness=0.3, double_sided=True),
             painted_part(
                 "knot",
-                ellipsoid((0.011, 0.011, 0.008), (0, 0, 0.104), 16),
+                forms.ellipsoid((0.011, 0.011, 0.008), (0, 0, 0.104), 16),
                 "#cba243",
                 roughness=0.3,
             ),
@@ -166,8 +161,8 @@ def shoe_box() -> list[RawPart]:
         .text("42", 0.8, 0.45, 0.4, (0.1, 0.1, 0.1))
         .lines(0.08, 0.25, 0.6, 4, 0.17, (0.3, 0.3, 0.32))
     )
-    tag = moved(panel(0.035, 0.075, 0.0), turn_deg=(0.0, 90.0, 0.0))
-    return standing(
+    tag = forms.moved(forms.panel(0.035, 0.075, 0.0), turn_deg=(0.0, 90.0, 0.0))
+    return forms.standing(
         [
             painted_part(
                 "card", box((0.330, 0.190, 0.105), (0.0, 0.0, 0.0525)), "#b98252", roughness=0.8
@@ -175,7 +170,7 @@ def shoe_box() -> list[RawPart]:
             painted_part(
                 "lid card", box((0.338, 0.198, 0.032), (0.0, 0.0, 0.106)), "#33363b", roughness=0.7
             ),
-            printed_part("label", moved(tag, (0.1656, 0.0, 0.052)), label.texture()),
+            printed_part("label", forms.moved(tag, (0.1656, 0.0, 0.052)), label.texture()),
         ]
     )
 
@@ -184,7 +179,9 @@ def _printed_box(size: Vector3, front: Sheet, colour: str) -> list[RawPart]:
     depth, width, height = size
     parts = [painted_part("card", box(size, (0.0, 0.0, height / 2)), colour, roughness=0.45)]
     for angle in (0.0, 180.0):
-        face = moved(panel(height, width, 0.0), turn_deg=(0.0, 90.0, 0.0))
-        face = moved(moved(face, (depth / 2 + 0.0004, 0.0, height / 2)), turn_deg=(0, 0, angle))
+        face = forms.moved(forms.panel(height, width, 0.0), turn_deg=(0.0, 90.0, 0.0))
+        face = forms.moved(
+            forms.moved(face, (depth / 2 + 0.0004, 0.0, height / 2)), turn_deg=(0, 0, angle)
+        )
         parts.append(printed_part("print", face, front.texture(), roughness=0.35))
     return parts

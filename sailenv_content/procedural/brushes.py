@@ -6,19 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    capsule_outline,
-    curve,
-    ellipsoid,
-    lathe,
-    loft,
-    merged,
-    moved,
-    rectangle,
-    slab,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.shapes import box, painted_part
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
@@ -28,12 +16,12 @@ __all__ = ["comb", "hairbrush", "toothbrush", "toothbrush_cup"]
 
 def toothbrush(colour: str = "#2f7fb8") -> list[RawPart]:
     """Return a toothbrush that lies on its side, its bristles along x."""
-    return standing(_brush(colour))
+    return forms.standing(_brush(colour))
 
 
 def _brush(colour: str, mark: str = "") -> list[RawPart]:
     """Return a toothbrush along x, bristles up; `mark` ends the names of its materials."""
-    path = curve(
+    path = forms.curve(
         [
             (-0.095, 0, 0.004),
             (-0.060, 0, 0.0055),
@@ -59,25 +47,34 @@ def _brush(colour: str, mark: str = "") -> list[RawPart]:
         ]
     )
     tufts = [
-        lathe([(0.0, 0.0), (0.00125, 0.0), (0.00135, 0.0105), (0.0, 0.0108)], 8) for _ in range(27)
+        forms.lathe([(0.0, 0.0), (0.00125, 0.0), (0.00135, 0.0105), (0.0, 0.0108)], 8)
+        for _ in range(27)
     ]
     places = [(0.066 + 0.0034 * (k // 3), 0.0034 * (k % 3 - 1), 0.0055) for k in range(27)]
-    edge = [moved(t, p) for k, (t, p) in enumerate(zip(tufts, places, strict=True)) if (k // 3) % 3]
-    core = [
-        moved(t, p) for k, (t, p) in enumerate(zip(tufts, places, strict=True)) if not (k // 3) % 3
+    edge = [
+        forms.moved(t, p)
+        for k, (t, p) in enumerate(zip(tufts, places, strict=True))
+        if (k // 3) % 3
     ]
-    grip = [ellipsoid((0.010, 0.0066, 0.0046), (x, 0.0, 0.0052), 14) for x in (-0.050, -0.030)]
+    core = [
+        forms.moved(t, p)
+        for k, (t, p) in enumerate(zip(tufts, places, strict=True))
+        if not (k // 3) % 3
+    ]
+    grip = [
+        forms.ellipsoid((0.010, 0.0066, 0.0046), (x, 0.0, 0.0052), 14) for x in (-0.050, -0.030)
+    ]
     return [
-        painted_part(f"body plastic{mark}", loft(rings), "#eef0f1"),
-        painted_part(f"grip rubber{mark}", merged(grip), colour),
-        painted_part(f"bristles{mark}", merged(edge), "#f5f6f5", roughness=0.8),
-        painted_part(f"coloured bristles{mark}", merged(core), colour, roughness=0.8),
+        painted_part(f"body plastic{mark}", forms.loft(rings), "#eef0f1"),
+        painted_part(f"grip rubber{mark}", forms.merged(grip), colour),
+        painted_part(f"bristles{mark}", forms.merged(edge), "#f5f6f5", roughness=0.8),
+        painted_part(f"coloured bristles{mark}", forms.merged(core), colour, roughness=0.8),
     ]
 
 
 def toothbrush_cup() -> list[RawPart]:
     """Return a tumbler with two toothbrushes."""
-    cup = lathe(
+    cup = forms.lathe(
         [
             (0.0, 0.0),
             (0.030, 0.0),
@@ -95,32 +92,38 @@ def toothbrush_cup() -> list[RawPart]:
         ((17.0, 30.0, "#c2413b"), (-15.0, 75.0, "#2f8f6b")), 1
     ):
         for piece in _brush(colour, f" {number}"):
-            upright = moved(piece.mesh, (0.094, 0.0, -0.004), (0.0, 0.0, 0.0))
-            upright = moved(upright, turn_deg=(0.0, -90.0, 0.0))
-            placed = moved(upright, (0.017 * np.sign(-lean), 0.0, 0.0105), (0.0, lean, 0.0))
-            turned = moved(placed, turn_deg=(0.0, 0.0, around))
+            upright = forms.moved(piece.mesh, (0.094, 0.0, -0.004), (0.0, 0.0, 0.0))
+            upright = forms.moved(upright, turn_deg=(0.0, -90.0, 0.0))
+            placed = forms.moved(upright, (0.017 * np.sign(-lean), 0.0, 0.0105), (0.0, lean, 0.0))
+            turned = forms.moved(placed, turn_deg=(0.0, 0.0, around))
             parts.append(dataclasses.replace(piece, mesh=turned))
-    return standing(parts)
+    return forms.standing(parts)
 
 
 def hairbrush() -> list[RawPart]:
     """Return a paddle hairbrush that lies on its back."""
-    head = moved(slab(capsule_outline(0.110, 0.070, 16), 0.012, 0.005), (0.055, 0.0, 0.0))
-    handle = tube(
-        curve([(0.012, 0, 0.006), (-0.025, 0, 0.0065), (-0.07, 0, 0.0075), (-0.112, 0, 0.006)], 24),
+    head = forms.moved(
+        forms.slab(forms.capsule_outline(0.110, 0.070, 16), 0.012, 0.005), (0.055, 0.0, 0.0)
+    )
+    handle = forms.tube(
+        forms.curve(
+            [(0.012, 0, 0.006), (-0.025, 0, 0.0065), (-0.07, 0, 0.0075), (-0.112, 0, 0.006)], 24
+        ),
         np.interp(np.arange(24), [0, 4, 14, 20, 23], [0.0140, 0.0085, 0.0105, 0.0100, 0.0050]),
         sides=14,
     )
     flat = handle.positions * [1.0, 1.0, 0.72]
     handle = RawMesh(positions=flat, uvs=handle.uvs, triangles=handle.triangles)
-    cushion = moved(slab(capsule_outline(0.094, 0.056, 16), 0.005, 0.0024), (0.055, 0, 0.0105))
+    cushion = forms.moved(
+        forms.slab(forms.capsule_outline(0.094, 0.056, 16), 0.005, 0.0024), (0.055, 0, 0.0105)
+    )
     pins = []
     for x in np.arange(0.018, 0.094, 0.0085):
         for y in np.arange(-0.021, 0.022, 0.0070):
             if ((x - 0.055) / 0.045) ** 2 + (y / 0.027) ** 2 < 1.0:
                 pins.append(
-                    moved(
-                        lathe(
+                    forms.moved(
+                        forms.lathe(
                             [
                                 (0.0, 0.0),
                                 (0.0007, 0.0),
@@ -133,12 +136,12 @@ def hairbrush() -> list[RawPart]:
                         (x, y, 0.0145),
                     )
                 )
-    return standing(
+    return forms.standing(
         [
             painted_part("head wood", head, "#6b3f22", roughness=0.35),
             painted_part("handle wood", handle, "#6b3f22", roughness=0.35),
             painted_part("cushion rubber", cushion, "#c9b8a4"),
-            painted_part("pins", merged(pins), "#1d1a18"),
+            painted_part("pins", forms.merged(pins), "#1d1a18"),
         ]
     )
 
@@ -152,8 +155,14 @@ def comb() -> list[RawPart]:
         )
         for k in range(58)
     ]
-    spine = moved(slab(rectangle(0.012, 0.186, 0.005), 0.0036, 0.0014), (0.0, 0.0105, 0.0))
+    spine = forms.moved(
+        forms.slab(forms.rectangle(0.012, 0.186, 0.005), 0.0036, 0.0014), (0.0, 0.0105, 0.0)
+    )
     ends = [box((0.006, 0.027, 0.003), (s * 0.0895, -0.008, 0.0016)) for s in (1.0, -1.0)]
-    return standing(
-        [painted_part("horn plastic", merged([spine, *teeth, *ends]), "#3d2414", roughness=0.25)]
+    return forms.standing(
+        [
+            painted_part(
+                "horn plastic", forms.merged([spine, *teeth, *ends]), "#3d2414", roughness=0.25
+            )
+        ]
     )

@@ -25,19 +25,8 @@ from sailenv_ros.assets.model_files import RawPart
 __all__ = ["CLUTTER"]
 
 _MODULES = (
-    bath_things,
-    boxes,
-    brushes,
-    clothes,
-    cutlery,
-    food,
-    gadgets,
-    office_things,
-    pocket_things,
-    printed_things,
-    lying_books,
-    small_toys,
-    vessels,
+    *(bath_things, boxes, brushes, clothes, cutlery, food, gadgets, office_things, pocket_things),
+    *(printed_things, lying_books, small_toys, vessels),
 )
 
 CLUTTER: dict[str, Callable[[], list[RawPart]]] = {

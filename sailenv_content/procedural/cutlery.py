@@ -6,19 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from sailenv_content.procedural.forms import (
-    Floats,
-    circle,
-    curve,
-    ellipsoid,
-    lathe,
-    loft,
-    merged,
-    moved,
-    slab,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.shapes import painted_part
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
@@ -43,17 +31,17 @@ SAUCER = (
 
 def dinner_fork() -> list[RawPart]:
     """Return a fork that lies with its tines up, towards x."""
-    return standing([painted_part("fork steel", _fork(), STEEL, roughness=0.14)])
+    return forms.standing([painted_part("fork steel", _fork(), STEEL, roughness=0.14)])
 
 
 def dinner_spoon() -> list[RawPart]:
     """Return a spoon that lies, its bowl up, towards x."""
-    return standing([painted_part("spoon steel", _spoon(), STEEL, roughness=0.14)])
+    return forms.standing([painted_part("spoon steel", _spoon(), STEEL, roughness=0.14)])
 
 
 def cake_plate() -> list[RawPart]:
     """Return a slice of layered cake on a plate, with a fork on the plate's rim."""
-    plate = lathe(PLATE, 72)
+    plate = forms.lathe(PLATE, 72)
     parts = [painted_part("plate ceramic", plate, "#f1efe9")]
     layers = (
         ("sponge 1", 0.0, 0.018, "#5b3218"), ("cream 1", 0.018, 0.024, "#f3e6cb"),
@@ -63,33 +51,44 @@ def cake_plate() -> list[RawPart]:
     place, turn = (0.050, 0.012, 0.0055), (0.0, 0.0, 172.0)
     for name, low, high, colour in layers:
         grow = 0.0006 if name == "icing" else 0.0
-        wedge = slab(_wedge(0.098, 34.0, grow), high - low, 0.0015)
+        wedge = forms.slab(_wedge(0.098, 34.0, grow), high - low, 0.0015)
         parts.append(
             painted_part(
-                name, moved(moved(wedge, (0.0, 0.0, low)), place, turn), colour, roughness=0.75
+                name,
+                forms.moved(forms.moved(wedge, (0.0, 0.0, low)), place, turn),
+                colour,
+                roughness=0.75,
             )
         )
-    path = curve(
+    path = forms.curve(
         [
             (0.010 * (1 - t) * np.cos(13 * t), 0.010 * (1 - t) * np.sin(13 * t), 0.013 * t)
             for t in np.linspace(0.0, 1.0, 40)
         ],
         70,
     )
-    swirl = moved(tube(path, np.linspace(0.0046, 0.0030, 70), sides=10), (0.078, 0.0, 0.058))
-    cherry = ellipsoid((0.0085, 0.0085, 0.0080), (0.078, 0.0, 0.0765), 20)
-    parts.append(painted_part("whipped cream", moved(swirl, place, turn), "#fbf4e6", roughness=0.6))
-    parts.append(painted_part("cherry", moved(cherry, place, turn), "#a3101c", roughness=0.15))
-    fork = moved(moved(_fork(0.86), (-0.110, 0.0, 0.0)), (0.0, -0.048, 0.0), (0.0, 0.0, 6.0))
+    swirl = forms.moved(
+        forms.tube(path, np.linspace(0.0046, 0.0030, 70), sides=10), (0.078, 0.0, 0.058)
+    )
+    cherry = forms.ellipsoid((0.0085, 0.0085, 0.0080), (0.078, 0.0, 0.0765), 20)
+    parts.append(
+        painted_part("whipped cream", forms.moved(swirl, place, turn), "#fbf4e6", roughness=0.6)
+    )
+    parts.append(
+        painted_part("cherry", forms.moved(cherry, place, turn), "#a3101c", roughness=0.15)
+    )
+    fork = forms.moved(
+        forms.moved(_fork(0.86), (-0.110, 0.0, 0.0)), (0.0, -0.048, 0.0), (0.0, 0.0, 6.0)
+    )
     fork = _laid(fork, PLATE)
     parts.append(painted_part("fork steel", fork, STEEL, roughness=0.14))
-    return standing(parts)
+    return forms.standing(parts)
 
 
 def tea_cup() -> list[RawPart]:
     """Return a cup of tea on its saucer, with a spoon."""
-    saucer = lathe(SAUCER, 64)
-    cup = lathe(
+    saucer = forms.lathe(SAUCER, 64)
+    cup = forms.lathe(
         [
             (0.0, 0.0), (0.022, 0.0), (0.0235, 0.003), (0.022, 0.006), (0.033, 0.020),
             (0.0405, 0.042), (0.0430, 0.062), (0.0424, 0.0628), (0.0413, 0.0620), (0.0388, 0.042),
@@ -97,8 +96,8 @@ def tea_cup() -> list[RawPart]:
         ],
         56,
     )  # fmt: skip
-    handle = tube(
-        curve(
+    handle = forms.tube(
+        forms.curve(
             [(0.0, 0.0385, 0.052), (0.0, 0.056, 0.054), (0.0, 0.064, 0.042), (0.0, 0.055, 0.028),
              (0.0, 0.036, 0.024)],
             28,
@@ -107,10 +106,12 @@ def tea_cup() -> list[RawPart]:
         sides=12,
     )  # fmt: skip
     lift = (-0.006, 0.0, 0.0048)
-    tea = moved(slab(0.0412 * circle(48), 0.0008), (lift[0], 0.0, lift[2] + 0.0535))
-    china = merged([saucer, moved(merged([cup, handle]), lift)])
-    spoon = _laid(moved(_spoon(0.70), (-0.085, -0.056, 0.0), (0.0, 0.0, -4.0)), SAUCER)
-    return standing(
+    tea = forms.moved(
+        forms.slab(0.0412 * forms.circle(48), 0.0008), (lift[0], 0.0, lift[2] + 0.0535)
+    )
+    china = forms.merged([saucer, forms.moved(forms.merged([cup, handle]), lift)])
+    spoon = _laid(forms.moved(_spoon(0.70), (-0.085, -0.056, 0.0), (0.0, 0.0, -4.0)), SAUCER)
+    return forms.standing(
         [
             painted_part("china ceramic", china, "#f3f2ee"),
             painted_part("tea", tea, "#4a1d08", roughness=0.05),
@@ -125,16 +126,16 @@ def _laid(mesh: RawMesh, profile: ArrayLike) -> RawMesh:
     top = points[int(points[:, 0].argmax()) :][::-1]
     best, low = mesh, np.inf
     for pitch in np.linspace(-15.0, 15.0, 301):
-        turned = moved(mesh, turn_deg=(0.0, pitch, 0.0))
+        turned = forms.moved(mesh, turn_deg=(0.0, pitch, 0.0))
         x, y, z = turned.positions.T
         under = np.interp(np.hypot(x, y), top[:, 0], top[:, 1], right=0.0)
         lift = float((under - z).max()) + 1e-4
         if lift + z.mean() < low:
-            best, low = moved(turned, (0.0, 0.0, lift)), lift + float(z.mean())
+            best, low = forms.moved(turned, (0.0, 0.0, lift)), lift + float(z.mean())
     return best
 
 
-def _wedge(length: float, angle_deg: float, grow: float) -> Floats:
+def _wedge(length: float, angle_deg: float, grow: float) -> forms.Floats:
     """Return the outline of a slice of a round cake, its tip at the origin, towards x."""
     turn = np.radians(np.linspace(-angle_deg / 2.0, angle_deg / 2.0, 14))
     arc = (length + grow) * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
@@ -155,8 +156,8 @@ def _fork(scale: float = 1.0) -> RawMesh:
         y = (number - (TINES - 1) / 2.0) * 0.0066
         at = np.linspace(0.146, 0.196, 22)
         half = np.interp(at, [0.146, 0.150, 0.188, 0.196], [0.0024, 0.0022, 0.0015, 0.0006])
-        tines.append(moved(_bar(at, half, heights(at), 0.0011), (0.0, y, 0.0)))
-    return _scaled(merged([body, *tines]), scale)
+        tines.append(forms.moved(_bar(at, half, heights(at), 0.0011), (0.0, y, 0.0)))
+    return _scaled(forms.merged([body, *tines]), scale)
 
 
 def _spoon(scale: float = 1.0) -> RawMesh:
@@ -178,8 +179,8 @@ def _spoon(scale: float = 1.0) -> RawMesh:
         z = depth * (share**2.6 - 1.0) + (sheet if side > 0.0 else 0.0)
         flat = edge * (share - (0.012 if side > 0.0 else 0.0))
         rings.append(np.concatenate([flat, np.full((len(turn), 1), z)], axis=-1))
-    bowl = moved(loft(rings), (0.1635, 0.0, 0.0128))
-    return _scaled(merged([handle, bowl]), scale)
+    bowl = forms.moved(forms.loft(rings), (0.1635, 0.0, 0.0128))
+    return _scaled(forms.merged([handle, bowl]), scale)
 
 
 def _smooth(widths: ArrayLike) -> PchipInterpolator:
@@ -187,15 +188,15 @@ def _smooth(widths: ArrayLike) -> PchipInterpolator:
     return PchipInterpolator(at, half)
 
 
-def _bar(at: Floats, half: Floats, heights: Floats, thick: float) -> RawMesh:
+def _bar(at: forms.Floats, half: forms.Floats, heights: forms.Floats, thick: float) -> RawMesh:
     """Return a flat bar along x with soft edges, by half widths, heights and half its thickness."""
-    ring = circle(14)
+    ring = forms.circle(14)
     section = np.sign(ring) * np.abs(ring) ** 0.55
     rings = np.empty((len(at), len(ring), 3))
     rings[..., 0] = at[:, None]
     rings[..., 1] = half[:, None] * section[:, 0]
     rings[..., 2] = heights[:, None] + thick * section[:, 1]
-    return loft(rings)
+    return forms.loft(rings)
 
 
 def _scaled(mesh: RawMesh, scale: float) -> RawMesh:

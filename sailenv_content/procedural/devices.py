@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -221,12 +223,7 @@ def _key(width: float, at: tuple[float, float]) -> RawMesh:
 
 def _disc(radius: float, height: float, centre: Vector3) -> RawMesh:
     raw = raw_mesh(cylinder_mesh(radius, height))
-    return RawMesh(
-        positions=raw.positions + np.asarray(centre),
-        uvs=raw.uvs,
-        triangles=raw.triangles,
-        normals=raw.normals,
-    )
+    return dataclasses.replace(raw, positions=raw.positions + np.asarray(centre))
 
 
 def _face(wide: float, tall: float, centre: Vector3) -> RawMesh:

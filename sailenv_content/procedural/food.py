@@ -4,17 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    circle,
-    curve,
-    ellipsoid,
-    lathe,
-    loft,
-    merged,
-    moved,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.prints import Sheet
 from sailenv_content.procedural.shapes import Vector3, painted_part, printed_part
 from sailenv_ros.assets.meshes import RawMesh
@@ -31,7 +21,7 @@ def apple() -> list[RawPart]:
     height -= 0.013 * np.exp(-((radius / 0.011) ** 2)) * np.sign(np.sin(turn))
     profile = np.stack([radius * (1.0 + 0.06 * np.sin(turn)), height], -1)
     profile[[0, -1], 0] = 0.0
-    body = lathe(profile, 32)
+    body = forms.lathe(profile, 32)
     skin = Sheet(512, 256, (0.62, 0.10, 0.09)).shade((0.80, 0.62, 0.22), (0.55, 0.07, 0.08))
     generator = np.random.default_rng(5)
     for x in generator.uniform(0, 1, 420):
@@ -41,10 +31,10 @@ def apple() -> list[RawPart]:
         skin.line((x, y), (x + 0.003, y + reach), 0.005, (0.62 + shade, 0.16 + shade, 0.11))
     for x, y in generator.uniform((0, 0.2), (1, 1), (260, 2)):
         skin.disc(float(x), float(y), 0.004, (0.80, 0.55, 0.36))
-    stem = tube(
-        curve([(0, 0, 0.052), (0.001, 0, 0.066), (0.006, 0.002, 0.078)], 8), 0.0014, sides=7
+    stem = forms.tube(
+        forms.curve([(0, 0, 0.052), (0.001, 0, 0.066), (0.006, 0.002, 0.078)], 8), 0.0014, sides=7
     )
-    return standing(
+    return forms.standing(
         [
             printed_part("skin", body, skin.texture(), roughness=0.3),
             painted_part("stem", stem, "#4a3520"),
@@ -59,10 +49,10 @@ def orange() -> list[RawPart]:
     profile = np.stack([0.038 * np.cos(turn), 0.036 * np.sin(turn) + 0.036], -1)
     profile[-1, 1] -= 0.002
     profile[[0, -1], 0] = 0.0
-    navel = lathe([(0.0035, 0.0700), (0.0028, 0.0712), (0.0, 0.0714)], 10)
-    return standing(
+    navel = forms.lathe([(0.0035, 0.0700), (0.0028, 0.0712), (0.0, 0.0714)], 10)
+    return forms.standing(
         [
-            printed_part("peel", lathe(profile, 32), skin.texture(), roughness=0.45),
+            printed_part("peel", forms.lathe(profile, 32), skin.texture(), roughness=0.45),
             painted_part("navel", navel, "#5f6b2f"),
         ]
     )
@@ -77,8 +67,8 @@ def lemon() -> list[RawPart]:
     profile = np.stack([radius, 0.042 * along], -1)
     profile[[0, -1], 0] = 0.0
     skin = _speckled(512, ((0.93, 0.82, 0.18), (0.90, 0.76, 0.12)), 700, 8)
-    body = moved(lathe(profile, 28), turn_deg=(0.0, 90.0, 0.0))
-    return standing([printed_part("peel", body, skin.texture(), roughness=0.4)])
+    body = forms.moved(forms.lathe(profile, 28), turn_deg=(0.0, 90.0, 0.0))
+    return forms.standing([printed_part("peel", body, skin.texture(), roughness=0.4)])
 
 
 def banana() -> list[RawPart]:
@@ -91,18 +81,18 @@ def banana() -> list[RawPart]:
         along > 0.86, np.interp(along, [0.86, 0.93, 1.0], [0.0125, 0.0062, 0.0050]), radius
     )
     radius = np.where(along < 0.05, np.interp(along, [0.0, 0.05], [0.004, 0.0085]), radius)
-    body = tube(path, radius, sides=10)
+    body = forms.tube(path, radius, sides=10)
     skin = Sheet(256, 512, (0.90, 0.76, 0.20)).shade((0.62, 0.66, 0.24), (0.91, 0.75, 0.19))
     generator = np.random.default_rng(11)
     for x, y in generator.uniform((0, 0.15), (1, 0.95), (110, 2)):
         skin.disc(float(x), float(y), float(generator.uniform(0.002, 0.006)), (0.45, 0.30, 0.12))
     skin.box(0, 0.0, 1, 0.03, (0.28, 0.20, 0.10)).box(0, 0.97, 1, 1, (0.18, 0.13, 0.08))
-    return standing([printed_part("peel", body, skin.texture(), roughness=0.5)])
+    return forms.standing([printed_part("peel", body, skin.texture(), roughness=0.5)])
 
 
 def pear() -> list[RawPart]:
     """Return a pear that stands."""
-    profile = curve(
+    profile = forms.curve(
         [
             (0.006, 0, 0.002),
             (0.024, 0, 0.004),
@@ -116,10 +106,12 @@ def pear() -> list[RawPart]:
         26,
     )[:, [0, 2]]
     skin = _speckled(512, ((0.66, 0.62, 0.20), (0.72, 0.66, 0.25)), 600, 21)
-    stem = tube(curve([(0, 0, 0.093), (0.001, 0, 0.106), (0.008, 0, 0.118)], 8), 0.0016, sides=7)
-    return standing(
+    stem = forms.tube(
+        forms.curve([(0, 0, 0.093), (0.001, 0, 0.106), (0.008, 0, 0.118)], 8), 0.0016, sides=7
+    )
+    return forms.standing(
         [
-            printed_part("skin", lathe(profile, 32), skin.texture(), roughness=0.45),
+            printed_part("skin", forms.lathe(profile, 32), skin.texture(), roughness=0.45),
             painted_part("stem", stem, "#46341f"),
         ]
     )
@@ -127,8 +119,8 @@ def pear() -> list[RawPart]:
 
 def donut() -> list[RawPart]:
     """Return a doughnut with icing and sprinkles."""
-    ring = np.concatenate([0.029 * circle(48), np.zeros((48, 1))], axis=1)
-    dough = tube(ring, 0.0185, sides=20, closed=True)
+    ring = np.concatenate([0.029 * forms.circle(48), np.zeros((48, 1))], axis=1)
+    dough = forms.tube(ring, 0.0185, sides=20, closed=True)
     flat = dough.positions * [1.0, 1.0, 0.86]
     dough = RawMesh(positions=flat, uvs=dough.uvs, triangles=dough.triangles)
     turn = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
@@ -139,7 +131,7 @@ def donut() -> list[RawPart]:
         lean = np.pi / 2 + (angle - np.pi / 2) * (1.0 + drip * np.abs(angle - np.pi / 2) / 2.2)
         out, up = 0.0193 * np.cos(lean), 0.0193 * np.sin(lean) * 0.88
         rings.append(np.stack([(0.029 + out) * np.cos(turn), (0.029 + out) * np.sin(turn), up], -1))
-    icing = loft(np.array(rings), caps=False)
+    icing = forms.loft(np.array(rings), caps=False)
     generator = np.random.default_rng(17)
     colours = ("#e8d24a", "#5aa0d8", "#f4f2ee", "#63b86a")
     sprinkles: dict[str, list[RawMesh]] = {colour: [] for colour in colours}
@@ -147,17 +139,20 @@ def donut() -> list[RawPart]:
         around, lean = generator.uniform(0, 2 * np.pi), generator.uniform(0.6, 2.54)
         radius = 0.029 + 0.0196 * np.cos(lean)
         place = (radius * np.cos(around), radius * np.sin(around), 0.0196 * 0.88 * np.sin(lean))
-        rod = ellipsoid((0.0026, 0.0008, 0.0008), (0, 0, 0), 8)
+        rod = forms.ellipsoid((0.0026, 0.0008, 0.0008), (0, 0, 0), 8)
         tilt = 90.0 - np.degrees(lean)
-        bent = moved(rod, turn_deg=(0, 0, float(generator.uniform(0, 180))))
-        bent = moved(bent, turn_deg=(0.0, float(tilt), 0.0))
-        bent = moved(bent, turn_deg=(0.0, 0.0, float(np.degrees(around))))
-        sprinkles[colours[k % 4]].append(moved(bent, place))
-    return standing(
+        bent = forms.moved(rod, turn_deg=(0, 0, float(generator.uniform(0, 180))))
+        bent = forms.moved(bent, turn_deg=(0.0, float(tilt), 0.0))
+        bent = forms.moved(bent, turn_deg=(0.0, 0.0, float(np.degrees(around))))
+        sprinkles[colours[k % 4]].append(forms.moved(bent, place))
+    return forms.standing(
         [
             painted_part("dough", dough, "#b9793d", roughness=0.8),
             painted_part("icing", icing, "#cf6f93", roughness=0.3),
-            *(painted_part("sprinkle", merged(own), colour) for colour, own in sprinkles.items()),
+            *(
+                painted_part("sprinkle", forms.merged(own), colour)
+                for colour, own in sprinkles.items()
+            ),
         ]
     )
 

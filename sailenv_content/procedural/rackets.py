@@ -4,16 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    circle,
-    curve,
-    lathe,
-    loft,
-    merged,
-    moved,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.shapes import painted_part
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
@@ -33,18 +24,18 @@ PITCH_M = 0.019
 def tennis_racket() -> list[RawPart]:
     """Return a tennis racket that lies, its head towards x."""
     middle = LENGTH_M / 2.0 - HEAD_M[0] - FRAME_M
-    ring = circle(96)
+    ring = forms.circle(96)
     head = np.stack(
         [middle + HEAD_M[0] * ring[:, 0], HEAD_M[1] * ring[:, 1], np.zeros(96)], axis=-1
     )
     turn = np.degrees(np.arctan2(ring[:, 1], ring[:, 0]))
     accents = [
-        tube(head[(low <= turn) & (turn <= low + 34.0)], 1.06 * FRAME_M, sides=12)
+        forms.tube(head[(low <= turn) & (turn <= low + 34.0)], 1.06 * FRAME_M, sides=12)
         for low in (28.0, -62.0)
     ]
     shafts = [
-        tube(
-            curve(
+        forms.tube(
+            forms.curve(
                 [
                     (middle - 0.128, side * 0.0745, 0.0),
                     (middle - 0.185, side * 0.0390, 0.0),
@@ -58,16 +49,16 @@ def tennis_racket() -> list[RawPart]:
         )
         for side in (1.0, -1.0)
     ]
-    frame = merged([tube(head, FRAME_M, sides=12, closed=True), *shafts])
-    collar = moved(
-        lathe([(0.0160, 0.0), (0.0175, 0.004), (0.0175, 0.012), (0.0150, 0.016)], 24),
+    frame = forms.merged([forms.tube(head, FRAME_M, sides=12, closed=True), *shafts])
+    collar = forms.moved(
+        forms.lathe([(0.0160, 0.0), (0.0175, 0.004), (0.0175, 0.012), (0.0150, 0.016)], 24),
         (-0.146, 0.0, 0.0),
         (0.0, 90.0, 0.0),
     )
-    return standing(
+    return forms.standing(
         [
             painted_part("frame paint", _tall(frame), "#b3161d", roughness=0.25),
-            painted_part("accent paint", _tall(merged(accents)), "#f2f2ee", roughness=0.25),
+            painted_part("accent paint", _tall(forms.merged(accents)), "#f2f2ee", roughness=0.25),
             painted_part("strings", _strings(middle), "#f4f3ec", roughness=0.4),
             painted_part("grip tape", _grip(), "#17181a", roughness=0.8),
             painted_part("collar rubber", collar, "#17181a"),
@@ -88,15 +79,15 @@ def _strings(middle: float) -> RawMesh:
         reach = HEAD_M[0] * np.sqrt(1.0 - (y / HEAD_M[1]) ** 2)
         high = STRING_M * (0.6 if number % 2 else -0.6)
         strings.append(
-            tube([(middle - reach, y, high), (middle + reach, y, high)], STRING_M, sides=5)
+            forms.tube([(middle - reach, y, high), (middle + reach, y, high)], STRING_M, sides=5)
         )
     for number, x in enumerate(np.linspace(-0.84, 0.84, CROSSES) * HEAD_M[0]):
         reach = HEAD_M[1] * np.sqrt(1.0 - (x / HEAD_M[0]) ** 2)
         high = STRING_M * (0.6 if number % 2 else -0.6)
         strings.append(
-            tube([(middle + x, -reach, high), (middle + x, reach, high)], STRING_M, sides=5)
+            forms.tube([(middle + x, -reach, high), (middle + x, reach, high)], STRING_M, sides=5)
         )
-    return merged(strings)
+    return forms.merged(strings)
 
 
 def _grip() -> RawMesh:
@@ -114,4 +105,4 @@ def _grip() -> RawMesh:
                 [np.full(24, x), 0.92 * radius * np.cos(turn), 1.04 * radius * np.sin(turn)], -1
             )
         )
-    return loft(rings)
+    return forms.loft(rings)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from sailenv_ros.assets.meshes import RawMesh
@@ -38,12 +40,7 @@ def raw_mesh(mesh: Mesh) -> RawMesh:
 def box(size: Vector3, centre: Vector3) -> RawMesh:
     """Return a box."""
     raw = raw_mesh(box_mesh(size))
-    return RawMesh(
-        positions=raw.positions + np.asarray(centre),
-        uvs=raw.uvs,
-        triangles=raw.triangles,
-        normals=raw.normals,
-    )
+    return dataclasses.replace(raw, positions=raw.positions + np.asarray(centre))
 
 
 def rod(radius: float, length: float, centre: Vector3, end_radius: float | None = None) -> RawMesh:

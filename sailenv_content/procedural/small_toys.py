@@ -2,21 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    circle,
-    curve,
-    ellipsoid,
-    lathe,
-    merged,
-    moved,
-    panel,
-    rectangle,
-    slab,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.prints import Sheet
 from sailenv_content.procedural.shapes import painted_part, printed_part
 from sailenv_ros.assets.meshes import RawMesh
@@ -27,7 +17,7 @@ __all__ = ["alarm_clock", "rubber_duck", "tennis_ball", "toy_blocks"]
 
 def rubber_duck() -> list[RawPart]:
     """Return a rubber duck."""
-    body = ellipsoid((0.045, 0.035, 0.028), (0.0, 0.0, 0.026), 32)
+    body = forms.ellipsoid((0.045, 0.035, 0.028), (0.0, 0.0, 0.026), 32)
     points = body.positions.copy()
     tail = np.clip(-points[:, 0] / 0.045, 0.0, 1.0) ** 2
     points[:, 2] += 0.024 * tail
@@ -35,23 +25,26 @@ def rubber_duck() -> list[RawPart]:
     body = RawMesh(positions=points, uvs=body.uvs, triangles=body.triangles)
     wings = []
     for side in (1.0, -1.0):
-        wing = ellipsoid((0.024, 0.007, 0.014), (-0.006, side * 0.0335, 0.032), 20)
-        wings.append(moved(wing, (0, 0, 0), (0, 0, 0)))
-    bill = slab(
+        wing = forms.ellipsoid((0.024, 0.007, 0.014), (-0.006, side * 0.0335, 0.032), 20)
+        wings.append(forms.moved(wing, (0, 0, 0), (0, 0, 0)))
+    bill = forms.slab(
         np.array([(0.0, -0.012), (0.012, -0.011), (0.017, 0.0), (0.012, 0.011), (0.0, 0.012)]),
         0.008,
         0.0035,
     )
     parts = [
         painted_part("body rubber", m, "#edc21b", roughness=0.4)
-        for m in (body, ellipsoid((0.0265, 0.0255, 0.025), (0.022, 0.0, 0.068), 28), *wings)
+        for m in (body, forms.ellipsoid((0.0265, 0.0255, 0.025), (0.022, 0.0, 0.068), 28), *wings)
     ]
-    parts.append(painted_part("bill", moved(bill, (0.043, 0.0, 0.061)), "#dd6b1e", roughness=0.4))
+    parts.append(
+        painted_part("bill", forms.moved(bill, (0.043, 0.0, 0.061)), "#dd6b1e", roughness=0.4)
+    )
     eyes = [
-        ellipsoid((0.0022, 0.0036, 0.0042), (0.0440, s * 0.0118, 0.0755), 12) for s in (1.0, -1.0)
+        forms.ellipsoid((0.0022, 0.0036, 0.0042), (0.0440, s * 0.0118, 0.0755), 12)
+        for s in (1.0, -1.0)
     ]
-    parts.append(painted_part("eye", merged(eyes), "#0b0b0c", roughness=0.1))
-    return standing(parts)
+    parts.append(painted_part("eye", forms.merged(eyes), "#0b0b0c", roughness=0.1))
+    return forms.standing(parts)
 
 
 def toy_blocks() -> list[RawPart]:
@@ -62,30 +55,30 @@ def toy_blocks() -> list[RawPart]:
     for number, ((x, y, z, angle), colour, letter) in enumerate(
         zip(places, colours, "ABC", strict=True), 1
     ):
-        block = slab(rectangle(0.046, 0.046, 0.004), 0.046, 0.003)
-        placed = moved(block, (x, y, z), (0, 0, angle))
+        block = forms.slab(forms.rectangle(0.046, 0.046, 0.004), 0.046, 0.003)
+        placed = forms.moved(block, (x, y, z), (0, 0, angle))
         parts.append(painted_part(f"block {number} wood", placed, "#d8b384"))
         face = Sheet(128, 128, (0.85, 0.70, 0.50)).box(0.06, 0.06, 0.94, 0.94, colour)
         face.box(0.12, 0.12, 0.88, 0.88, (0.87, 0.73, 0.54)).text(letter, 0.5, 0.5, 0.56, colour)
         for k in range(4):
-            side = moved(panel(0.037, 0.037, 0.0), turn_deg=(0, 90, 0))
-            side = moved(moved(side, (0.0233, 0, 0.023)), turn_deg=(0, 0, 90.0 * k))
+            side = forms.moved(forms.panel(0.037, 0.037, 0.0), turn_deg=(0, 90, 0))
+            side = forms.moved(forms.moved(side, (0.0233, 0, 0.023)), turn_deg=(0, 0, 90.0 * k))
             parts.append(
                 printed_part(
                     f"letter {number}",
-                    moved(side, (x, y, z), (0, 0, angle)),
+                    forms.moved(side, (x, y, z), (0, 0, angle)),
                     face.texture(),
                     roughness=0.6,
                 )
             )
-        top = moved(panel(0.037, 0.037, 0.0463), (x, y, z), (0, 0, angle))
+        top = forms.moved(forms.panel(0.037, 0.037, 0.0463), (x, y, z), (0, 0, angle))
         parts.append(printed_part(f"letter {number}", top, face.texture(), roughness=0.6))
-    return standing(parts)
+    return forms.standing(parts)
 
 
 def tennis_ball() -> list[RawPart]:
     """Return a tennis ball with its seam."""
-    ball = ellipsoid((0.0327, 0.0327, 0.0327), (0, 0, 0.0327), 32)
+    ball = forms.ellipsoid((0.0327, 0.0327, 0.0327), (0, 0, 0.0327), 32)
     t = np.linspace(0, 2 * np.pi, 96, endpoint=False)
     a, b = 0.75, 0.25
     seam = np.stack(
@@ -97,11 +90,11 @@ def tennis_ball() -> list[RawPart]:
         -1,
     )
     seam = 0.0325 * seam / np.linalg.norm(seam, axis=1)[:, None] + [0, 0, 0.0327]
-    return standing(
+    return forms.standing(
         [
             painted_part("felt", ball, "#bfd434", roughness=1.0),
             painted_part(
-                "seam", tube(seam, 0.0011, sides=6, closed=True), "#ecefe2", roughness=0.8
+                "seam", forms.tube(seam, 0.0011, sides=6, closed=True), "#ecefe2", roughness=0.8
             ),
         ]
     )
@@ -124,7 +117,7 @@ def alarm_clock() -> list[RawPart]:
         (0.5, 0.5), (0.62, 0.16), 0.020, (0.08, 0.08, 0.08)
     )
     dial.disc(0.5, 0.5, 0.03, (0.08, 0.08, 0.08))
-    body = lathe(
+    body = forms.lathe(
         [
             (0.0, -0.025),
             (0.046, -0.025),
@@ -137,8 +130,8 @@ def alarm_clock() -> list[RawPart]:
         ],
         44,
     )
-    body = moved(body, (0.0, 0.0, 0.062), (0.0, 90.0, 0.0))
-    ring = circle(44)
+    body = forms.moved(body, (0.0, 0.0, 0.062), (0.0, 90.0, 0.0))
+    ring = forms.circle(44)
     face = RawMesh(
         positions=np.concatenate(
             [
@@ -153,46 +146,47 @@ def alarm_clock() -> list[RawPart]:
             [np.zeros(44, np.int64), 1 + (np.arange(44) + 1) % 44, 1 + np.arange(44)], -1
         ),
     )
-    face = RawMesh(
-        positions=face.positions,
-        uvs=np.stack([0.5 + 0.5 * face.positions[:, 1] / 0.0442, face.uvs[:, 1]], -1),
-        triangles=face.triangles,
-    )
+    across = 0.5 + 0.5 * face.positions[:, 1] / 0.0442
+    face = dataclasses.replace(face, uvs=np.stack([across, face.uvs[:, 1]], -1))
     parts = [
         painted_part("body paint", body, "#8f2621", roughness=0.25),
         printed_part("dial", face, dial.texture(), roughness=0.2),
     ]
     for side in (1.0, -1.0):
-        bell = lathe(
+        bell = forms.lathe(
             [(0.0215, 0.0), (0.0205, 0.008), (0.014, 0.016), (0.004, 0.0195), (0.0, 0.020)], 28
         )
         parts.append(
             painted_part(
                 "bell brass",
-                moved(moved(bell, turn_deg=(-32.0 * side, 0, 0)), (0, side * 0.031, 0.105)),
+                forms.moved(
+                    forms.moved(bell, turn_deg=(-32.0 * side, 0, 0)), (0, side * 0.031, 0.105)
+                ),
                 "#b9944a",
             )
         )
-        stem = tube([(0, side * 0.026, 0.098), (0, side * 0.034, 0.110)], 0.0024, sides=8)
-        foot = tube(
+        stem = forms.tube([(0, side * 0.026, 0.098), (0, side * 0.034, 0.110)], 0.0024, sides=8)
+        foot = forms.tube(
             [(0.0, side * 0.028, 0.026), (0.008, side * 0.046, 0.0035)], [0.0045, 0.0030], sides=10
         )
         parts += [
             painted_part("stem metal", stem, "#9b9da0"),
             painted_part("foot metal", foot, "#9b9da0"),
         ]
-    arch = tube(
-        curve([(0, -0.034, 0.128), (0, -0.020, 0.142), (0, 0.020, 0.142), (0, 0.034, 0.128)], 20),
+    arch = forms.tube(
+        forms.curve(
+            [(0, -0.034, 0.128), (0, -0.020, 0.142), (0, 0.020, 0.142), (0, 0.034, 0.128)], 20
+        ),
         0.0022,
         sides=8,
     )
-    hammer = tube([(0, 0, 0.110), (0, 0, 0.124)], [0.0018, 0.0018], sides=8)
+    hammer = forms.tube([(0, 0, 0.110), (0, 0, 0.124)], [0.0018, 0.0018], sides=8)
     parts += [
         painted_part("arch metal", arch, "#9b9da0"),
         painted_part(
             "hammer metal",
-            merged([hammer, ellipsoid((0.004, 0.006, 0.004), (0, 0, 0.125), 14)]),
+            forms.merged([hammer, forms.ellipsoid((0.004, 0.006, 0.004), (0, 0, 0.125), 14)]),
             "#8b8d90",
         ),
     ]
-    return standing(parts)
+    return forms.standing(parts)

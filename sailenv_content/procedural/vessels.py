@@ -4,18 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_content.procedural.forms import (
-    curve,
-    ellipsoid,
-    lathe,
-    loft,
-    merged,
-    moved,
-    rectangle,
-    slab,
-    standing,
-    tube,
-)
+from sailenv_content.procedural import forms
 from sailenv_content.procedural.prints import Sheet
 from sailenv_content.procedural.shapes import painted_part, printed_part
 from sailenv_ros.assets.model_files import RawPart
@@ -25,7 +14,7 @@ __all__ = ["can", "cookie_jar", "jam_jar", "shaker", "teapot", "tray"]
 
 def jam_jar() -> list[RawPart]:
     """Return a jar of jam with a chequered lid and a label."""
-    body = lathe(
+    body = forms.lathe(
         [
             (0.0, 0.0),
             (0.029, 0.0),
@@ -38,7 +27,7 @@ def jam_jar() -> list[RawPart]:
         ],
         36,
     )
-    lid = lathe(
+    lid = forms.lathe(
         [(0.031, 0.081), (0.0335, 0.082), (0.0335, 0.094), (0.031, 0.0965), (0.0, 0.0970)], 36
     )
     checks = Sheet(240, 120, (0.93, 0.92, 0.90))
@@ -58,18 +47,20 @@ def jam_jar() -> list[RawPart]:
     turn = np.linspace(np.radians(-62), np.radians(62), 20)
     arc = np.stack([0.0343 * np.cos(turn), 0.0343 * np.sin(turn)], -1)
     rings = [np.c_[arc, np.full(20, z)] for z in (0.018, 0.062)]
-    return standing(
+    return forms.standing(
         [
             painted_part("jam", body, "#5a0d14", roughness=0.08),
             printed_part("lid", lid, checks.texture(), roughness=0.35),
-            printed_part("label", loft(np.array(rings), closed=False, caps=False), label.texture()),
+            printed_part(
+                "label", forms.loft(np.array(rings), closed=False, caps=False), label.texture()
+            ),
         ]
     )
 
 
 def cookie_jar() -> list[RawPart]:
     """Return a stoneware jar with a wooden lid."""
-    body = lathe(
+    body = forms.lathe(
         [
             (0.0, 0.0),
             (0.050, 0.0),
@@ -83,11 +74,11 @@ def cookie_jar() -> list[RawPart]:
         ],
         40,
     )
-    band = lathe([(0.0577, 0.050), (0.0581, 0.051), (0.0581, 0.078), (0.0577, 0.079)], 40)
-    lid = lathe(
+    band = forms.lathe([(0.0577, 0.050), (0.0581, 0.051), (0.0581, 0.078), (0.0577, 0.079)], 40)
+    lid = forms.lathe(
         [(0.0, 0.118), (0.0530, 0.1242), (0.0530, 0.134), (0.0510, 0.137), (0.0, 0.138)], 40
     )
-    knob = lathe(
+    knob = forms.lathe(
         [
             (0.006, 0.137),
             (0.006, 0.146),
@@ -98,7 +89,7 @@ def cookie_jar() -> list[RawPart]:
         ],
         24,
     )
-    return standing(
+    return forms.standing(
         [
             painted_part("glaze ceramic", body, "#d9d2c2", roughness=0.2),
             painted_part("band ceramic", band, "#3d5a72"),
@@ -110,7 +101,7 @@ def cookie_jar() -> list[RawPart]:
 
 def can() -> list[RawPart]:
     """Return a can of lemonade."""
-    body = lathe(
+    body = forms.lathe(
         [
             (0.0255, 0.0),
             (0.0270, 0.002),
@@ -121,8 +112,8 @@ def can() -> list[RawPart]:
         ],
         36,
     )
-    ends = lathe([(0.0, 0.004), (0.021, 0.004), (0.0245, 0.0), (0.0262, 0.0005)], 36)
-    top = lathe(
+    ends = forms.lathe([(0.0, 0.004), (0.021, 0.004), (0.0245, 0.0), (0.0262, 0.0005)], 36)
+    top = forms.lathe(
         [
             (0.0325, 0.103),
             (0.0265, 0.1125),
@@ -140,11 +131,13 @@ def can() -> list[RawPart]:
             "cool lemon", x, 0.58, 0.055, (0.95, 0.95, 0.9)
         )
     print_.lines(0.44, 0.3, 0.56, 9, 0.045, (0.5, 0.35, 0.1))
-    tab = moved(slab(rectangle(0.013, 0.024, 0.006), 0.0010, 0.0004), (0.004, 0.0, 0.1128))
-    return standing(
+    tab = forms.moved(
+        forms.slab(forms.rectangle(0.013, 0.024, 0.006), 0.0010, 0.0004), (0.004, 0.0, 0.1128)
+    )
+    return forms.standing(
         [
             printed_part(
-                "print", moved(body, turn_deg=(0, 0, 90)), print_.texture(), roughness=0.3
+                "print", forms.moved(body, turn_deg=(0, 0, 90)), print_.texture(), roughness=0.3
             ),
             painted_part("end alu", ends, "#b9bbbd"),
             painted_part("top alu", top, "#c0c2c4"),
@@ -155,23 +148,25 @@ def can() -> list[RawPart]:
 
 def shaker() -> list[RawPart]:
     """Return a salt shaker of glazed ceramic with a steel top."""
-    body = lathe(
+    body = forms.lathe(
         [(0.0, 0.0), (0.021, 0.0), (0.0225, 0.003), (0.019, 0.030), (0.0165, 0.052), (0, 0.052)], 30
     )
-    top = lathe(
+    top = forms.lathe(
         [(0.0172, 0.050), (0.0178, 0.052), (0.0178, 0.062), (0.013, 0.070), (0.0, 0.073)], 30
     )
     holes = [
-        ellipsoid((0.0011, 0.0011, 0.0006), (0.0058 * np.cos(a), 0.0058 * np.sin(a), 0.0719), 8)
+        forms.ellipsoid(
+            (0.0011, 0.0011, 0.0006), (0.0058 * np.cos(a), 0.0058 * np.sin(a), 0.0719), 8
+        )
         for a in np.linspace(0, 2 * np.pi, 6, endpoint=False)
     ]
-    return standing(
+    return forms.standing(
         [
             painted_part("glaze ceramic", body, "#e3e0d8"),
             painted_part("top steel", top, "#b7b9bb"),
             painted_part(
                 "hole",
-                merged([*holes, ellipsoid((0.0011, 0.0011, 0.0006), (0, 0, 0.073), 8)]),
+                forms.merged([*holes, forms.ellipsoid((0.0011, 0.0011, 0.0006), (0, 0, 0.073), 8)]),
                 "#151515",
             ),
         ]
@@ -180,7 +175,7 @@ def shaker() -> list[RawPart]:
 
 def teapot() -> list[RawPart]:
     """Return a teapot of glazed stoneware."""
-    profile = curve(
+    profile = forms.curve(
         [
             (0.045, 0, 0.0),
             (0.060, 0, 0.010),
@@ -191,8 +186,8 @@ def teapot() -> list[RawPart]:
         ],
         26,
     )[:, [0, 2]]
-    body = lathe(np.concatenate([[[0.0, 0.0]], profile, [[0.0, 0.108]]]), 44)
-    lid = lathe(
+    body = forms.lathe(np.concatenate([[[0.0, 0.0]], profile, [[0.0, 0.108]]]), 44)
+    lid = forms.lathe(
         [
             (0.0415, 0.110),
             (0.0420, 0.113),
@@ -207,13 +202,15 @@ def teapot() -> list[RawPart]:
         ],
         36,
     )
-    spout = tube(
-        curve([(0.066, 0, 0.040), (0.096, 0, 0.056), (0.112, 0, 0.090), (0.132, 0, 0.108)], 22),
+    spout = forms.tube(
+        forms.curve(
+            [(0.066, 0, 0.040), (0.096, 0, 0.056), (0.112, 0, 0.090), (0.132, 0, 0.108)], 22
+        ),
         np.interp(np.arange(22), [0, 6, 16, 21], [0.022, 0.017, 0.0105, 0.0100]),
         sides=16,
     )
-    handle = tube(
-        curve(
+    handle = forms.tube(
+        forms.curve(
             [
                 (-0.066, 0, 0.088),
                 (-0.098, 0, 0.100),
@@ -226,8 +223,10 @@ def teapot() -> list[RawPart]:
         0.0075,
         sides=12,
     )
-    opening = moved(lathe([(0.0075, 0.0), (0.0, 0.0006)], 18), (0.1325, 0, 0.1085), (0, 52, 0))
-    return standing(
+    opening = forms.moved(
+        forms.lathe([(0.0075, 0.0), (0.0, 0.0006)], 18), (0.1325, 0, 0.1085), (0, 52, 0)
+    )
+    return forms.standing(
         [
             painted_part("glaze ceramic", m, "#2f5a5c", roughness=0.15)
             for m in (body, lid, spout, handle)
@@ -238,14 +237,16 @@ def teapot() -> list[RawPart]:
 
 def tray() -> list[RawPart]:
     """Return a wooden serving tray with handles."""
-    board = slab(rectangle(0.42, 0.28, 0.018), 0.010, 0.002)
-    outline = np.c_[rectangle(0.42, 0.28, 0.018), np.zeros(28)]
+    board = forms.slab(forms.rectangle(0.42, 0.28, 0.018), 0.010, 0.002)
+    outline = np.c_[forms.rectangle(0.42, 0.28, 0.018), np.zeros(28)]
     inner = outline * [0.935, 0.955, 1.0]
     low, high = np.array([0.0, 0.0, 0.004]), np.array([0.0, 0.0, 0.045])
-    wall = loft(np.array([outline + low, outline + high, inner + high, inner + low]), caps=False)
+    wall = forms.loft(
+        np.array([outline + low, outline + high, inner + high, inner + low]), caps=False
+    )
     grips = [
-        tube(
-            curve(
+        forms.tube(
+            forms.curve(
                 [
                     (-0.045, s * 0.205, 0.043),
                     (-0.040, s * 0.207, 0.070),
@@ -259,7 +260,7 @@ def tray() -> list[RawPart]:
         )
         for s in (1.0, -1.0)
     ]
-    return standing(
+    return forms.standing(
         [
             painted_part("board wood", board, "#9c6b3a"),
             painted_part("wall wood", wall, "#8a5c30"),

@@ -24,7 +24,6 @@ from sailenv_content.scene_import.categories_by_name import category_of_name
 from sailenv_content.scene_import.default_light import add_daylight
 from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_content.scene_import.scene_parts import asset_of_parts
-from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.errors import AssetError
@@ -33,6 +32,7 @@ from sailenv_ros.types.geometry import Pose
 __all__ = ["import_gltf"]
 
 Matrix = NDArray[np.float64]
+Tree = Mapping[str, Any]
 
 LUMENS_PER_WATT = 683.0
 MOST_NODES = 20_000
@@ -92,7 +92,7 @@ def _json(path: Path) -> dict[str, Any]:
     return tree
 
 
-def _check_files(path: Path, tree: Mapping[str, Any]) -> None:
+def _check_files(path: Path, tree: Tree) -> None:
     """Refuse what would be read from elsewhere: only files beside the glTF are."""
     home = path.resolve().parent
     for entry in (*_list(tree, "buffers"), *_list(tree, "images")):
@@ -103,14 +103,14 @@ def _check_files(path: Path, tree: Mapping[str, Any]) -> None:
             raise AssetError(path.name, f"it names {uri!r}, which is not beside it")
 
 
-def _list(tree: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+def _list(tree: Tree, key: str) -> list[dict[str, Any]]:
     found = tree.get(key, [])
     if not isinstance(found, list) or not all(isinstance(entry, dict) for entry in found):
         raise AssetError("glTF", f"its {key} are no list of objects")
     return found
 
 
-def _node_poses(path: Path, tree: Mapping[str, Any]) -> list[Matrix | None]:
+def _node_poses(path: Path, tree: Tree) -> list[Matrix | None]:
     """Return the (4, 4) pose of each node in the file's world; None for those of no scene."""
     nodes = _list(tree, "nodes")
     if len(nodes) > MOST_NODES:
@@ -136,7 +136,7 @@ def _node_poses(path: Path, tree: Mapping[str, Any]) -> list[Matrix | None]:
     return poses
 
 
-def _local(path: Path, node: Mapping[str, Any]) -> Matrix:
+def _local(path: Path, node: Tree) -> Matrix:
     matrix = np.eye(4)
     try:
         if "matrix" in node:
@@ -220,31 +220,17 @@ def _placed(parts: Sequence[RawPart]) -> tuple[Pose, list[RawPart]]:
     points = np.concatenate([p.mesh.positions[np.unique(p.mesh.triangles)] for p in parts])
     low, high = points.min(axis=0), points.max(axis=0)
     origin = np.array([*(0.5 * (low + high))[:2], low[2]])
-    moved = [
-        dataclasses.replace(
-            part,
-            mesh=RawMesh(
-                positions=part.mesh.positions - origin,
-                uvs=part.mesh.uvs,
-                triangles=part.mesh.triangles,
-                normals=part.mesh.normals,
-            ),
-        )
-        for part in parts
-    ]
+    moved = []
+    for part in parts:
+        mesh = dataclasses.replace(part.mesh, positions=part.mesh.positions - origin)
+        moved.append(dataclasses.replace(part, mesh=mesh))
     return Pose((float(origin[0]), float(origin[1]), float(origin[2]))), moved
 
 
 # -- lights and cameras --------------------------------------------------------------------
 
 
-def _add_light(
-    tree: Mapping[str, Any],
-    node: Mapping[str, Any],
-    pose: Matrix,
-    scene: ImportedScene,
-    names: Names,
-) -> None:
+def _add_light(tree: Tree, node: Tree, pose: Matrix, scene: ImportedScene, names: Names) -> None:
     number = _extension(node).get("light")
     lights = _extension(tree).get("lights", [])
     if not isinstance(number, int) or not isinstance(lights, list) or not 0 <= number < len(lights):
@@ -283,13 +269,7 @@ def _add_light(
     scene.lights.append(entry)
 
 
-def _add_camera(
-    tree: Mapping[str, Any],
-    node: Mapping[str, Any],
-    pose: Matrix,
-    scene: ImportedScene,
-    names: Names,
-) -> None:
+def _add_camera(tree: Tree, node: Tree, pose: Matrix, scene: ImportedScene, names: Names) -> None:
     number, cameras = node.get("camera"), _list(tree, "cameras")
     if not isinstance(number, int) or not 0 <= number < len(cameras) or len(scene.agents) >= 16:
         return
@@ -308,7 +288,7 @@ def _add_camera(
     scene.agents.append(entry)
 
 
-def _extension(tree: Mapping[str, Any]) -> Mapping[str, Any]:
+def _extension(tree: Tree) -> Tree:
     extensions = tree.get("extensions")
     found = extensions.get("KHR_lights_punctual") if isinstance(extensions, dict) else None
     return found if isinstance(found, dict) else {}

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.field_types import Number, optional
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 
@@ -54,8 +54,8 @@ class BehaviourParameters(BaseModel):
     start: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
         default=0.0, description="time after the object's appearance at which it begins [s]"
     )
-    seed: Annotated[int, Number(least=0, most=2**63 - 1, whole=True)] | None = Field(
-        default=None, description="of its random numbers, instead of the simulation's"
+    seed: Annotated[int, Number(least=0, most=2**63 - 1, whole=True)] | None = optional(
+        "of its random numbers, instead of the simulation's"
     )
 
     def to_json(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from sailenv_ros.behaviours.base import (
     RunningBehaviour,
     behaviour,
 )
-from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.field_types import Number, optional
 from sailenv_ros.scene.fields import JointLimits
 
 __all__ = ["JointMotion", "OpenAndClose", "joint_motion", "open_and_close", "running_motion"]
@@ -51,9 +51,8 @@ class OpenAndClose(BehaviourParameters):
     period: Annotated[float, Number(least=0.1, most=1e4, unit="s")] = Field(
         default=8.0, description="time to open and close once [s]"
     )
-    limits: JointLimits | None = Field(
-        default=None,
-        description="between which positions [rad] or [m]; the joint's own limits if left out",
+    limits: JointLimits | None = optional(
+        "between which positions [rad] or [m]; the joint's own limits if left out"
     )
 
     @property

@@ -19,7 +19,7 @@ from sailenv_ros.behaviours.base import (
     batch_behaviour,
 )
 from sailenv_ros.behaviours.steering import dots, lengths, random_direction
-from sailenv_ros.scene.field_types import Number, Text
+from sailenv_ros.scene.field_types import Number, Text, optional
 from sailenv_ros.scene.fields import Direction
 
 __all__ = ["UniformMovement", "uniform_movement_random_bounce"]
@@ -36,8 +36,8 @@ HIT_SHARE = 0.2
 class UniformMovement(BehaviourParameters):
     """Parameters of `uniform_movement_random_bounce`."""
 
-    start_direction: Direction | None = Field(
-        default=None, description="where it goes first, world frame; random if left out"
+    start_direction: Direction | None = optional(
+        "where it goes first, world frame; random if left out"
     )
     speed: Annotated[float, Number(above=0.0, most=MAX_SPEED_M_S, unit="m/s")] = Field(
         default=1.0, description="[m/s]"

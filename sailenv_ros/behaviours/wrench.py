@@ -16,7 +16,7 @@ from sailenv_ros.behaviours.base import (
     behaviour,
 )
 from sailenv_ros.behaviours.steering import vector3
-from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.field_types import Number, optional
 from sailenv_ros.scene.fields import Force, Position, Torque
 
 __all__ = ["Wrench", "wrench"]
@@ -27,13 +27,12 @@ class Wrench(BehaviourParameters):
 
     force: Force = Field(default=(0.0, 0.0, 0.0), description="world frame [N]")
     torque: Torque = Field(default=(0.0, 0.0, 0.0), description="world frame [N m]")
-    point: Position | None = Field(
-        default=None,
-        description="where the force acts, in the object's own frame, its scale applied [m]; left "
-        "out: at the centre of mass",
+    point: Position | None = optional(
+        "where the force acts, in the object's own frame, its scale applied [m]; left "
+        "out: at the centre of mass"
     )
-    duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = Field(
-        default=None, description="how long it acts [s], at least one step; left out: for ever"
+    duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
+        "how long it acts [s], at least one step; left out: for ever"
     )
 
     @property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import itertools
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -128,7 +127,7 @@ def _check(scenes: list[str], *, physics: bool, allow_modules: bool) -> int:
 
 
 def _physics_diagnostics(library: SceneLibrary, scene: str) -> Iterator[str]:
-    world = library.build(scene, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    world = library.build(scene)
     try:
         for overlap in overlaps(world):
             depth_mm = 1000.0 * overlap.depth_m

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import argparse
-import itertools
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -94,11 +93,7 @@ def _bake_one(
     """Bake a scene and say what was done."""
     if library.load(scene).room is None:
         return "it has no room; its light is worked out from frame to frame"
-    world = library.build(scene, seed=0, epoch=0, next_revision=itertools.count().__next__)
-    try:
-        snapshot = world.snapshot()
-    finally:
-        world.close()
+    snapshot = library.snapshot(scene)
     name = fingerprint(snapshot)
     if not force and load_baked(name) is not None:
         said = f"baked already ({baked_file(name)})"

@@ -15,7 +15,7 @@ from sailenv_ros.authoring.room_rules.rule_files import room_kinds
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered
-from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector, optional
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
 from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.rules import distinct, distinct_values
@@ -53,11 +53,9 @@ class SceneRecipe(SceneModel):
         _one_source,
     )
 
-    scene: str | None = Field(
-        default=None, description="a scene's name, or a file beside the recipe"
-    )
-    generate: Annotated[str, Choice(room_kinds())] | None = Field(
-        default=None, description="a kind of room to be generated, one scene of each seed"
+    scene: str | None = optional("a scene's name, or a file beside the recipe")
+    generate: Annotated[str, Choice(room_kinds())] | None = optional(
+        "a kind of room to be generated, one scene of each seed"
     )
     seeds: Annotated[
         tuple[_Seed, _Seed],

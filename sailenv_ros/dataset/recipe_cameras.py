@@ -9,7 +9,7 @@ from pydantic import Field
 
 from sailenv_ros.authoring.viewpoints.rule_table import camera_rules, checked_rule
 from sailenv_ros.errors import InvalidEntry
-from sailenv_ros.scene.field_types import Choice, Number, Text, Vector
+from sailenv_ros.scene.field_types import Choice, Number, Text, Vector, optional
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.placing import Aimed
 from sailenv_ros.scene.rules import at_most_one, few_samples, within_half
@@ -104,9 +104,8 @@ class AgentCamera(CameraModel):
     """Moves as an agent of the scene does, by its mover."""
 
     type: Literal["agent"] = Field(description="as an agent of the scene moves")
-    agent: Name | None = Field(
-        default=None,
-        description="which; if left out the scene's first, or its first mover where it has none",
+    agent: Name | None = optional(
+        "which; if left out the scene's first, or its first mover where it has none"
     )
 
 
@@ -182,10 +181,8 @@ class OrbitCamera(CameraModel):
     )
 
     type: Literal["orbit"] = Field(description="around an object or a point")
-    object: Name | None = Field(
-        default=None, description="an object's name or a category; one of these each time"
-    )
-    point: Position | None = Field(default=None, description="instead of an object [m]")
+    object: Name | None = optional("an object's name or a category; one of these each time")
+    point: Position | None = optional("instead of an object [m]")
     distance: Annotated[tuple[_Metres, _Metres], _ENDS] = Field(
         default=(0.8, 2.5), description="range of distances from its middle [m]"
     )

@@ -19,26 +19,8 @@ SHOWN_VIEWS = ("rgb", "depth", "instance", "category", "flow", "normals")
 def save_sheet(folder: str | Path, path: str | Path, *, split: str = "", frames: int = 12) -> int:
     """Write a contact sheet: a row for each of some frames from all over the data set.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Of the data set.
-    path : str or Path
-        A PNG or JPEG file.
-    split : str
-        Only that one; empty for all.
-    frames : int
-        At most so many.
-
-    Returns
-    -------
-    count : int
-        Frames that are shown.
-
-    Raises
-    ------
-    RecordingError
-        If the data set cannot be read, or has no frames.
+    Parameters, result and errors are those of `preview_page.save_preview`; `path` is a PNG or JPEG
+    file.
     """
     pictures = {}
     with open_dataset(folder, split) as dataset:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.library import checked
-from sailenv_ros.native.render_types import address
+from sailenv_ros.native.render_types import ADDRESS, address, structure
 
 __all__ = [
     "Emitters",
@@ -20,8 +20,6 @@ __all__ = [
     "SkyWindows",
     "TexelMap",
 ]
-
-_ADDRESS = "<u8"
 
 Floats = NDArray[np.float32]
 Integers = NDArray[np.int32]
@@ -44,13 +42,13 @@ class Record:
     """
 
     def __init__(self, arrays: dict[str, NDArray[Any]], numbers: Mapping[str, float]) -> None:
-        fields: list[Any] = [(name, _ADDRESS) for name in arrays]
+        fields: list[Any] = [(name, ADDRESS) for name in arrays]
         fields += [
             (name, "<f8" if isinstance(number, float) else "<i8")
             for name, number in numbers.items()
         ]
         self.arrays = arrays
-        self.record: NDArray[np.void] = np.zeros(1, np.dtype(fields, align=True))
+        self.record: NDArray[np.void] = np.zeros(1, structure(*fields))
         for name, array in arrays.items():
             self.record[name][0] = address(array)
         for name, number in numbers.items():

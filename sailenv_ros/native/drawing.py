@@ -1,12 +1,13 @@
-"""Pictures and shadow maps, drawn by the kernels of src/kernels/render.cpp.
+"""Pictures, shadow maps and objects alone, drawn by the kernels of render.cpp and amodal.cpp.
 
-Structures of `render_types` come in; arrays of the caller are filled. One `Drawing` holds the
-memory that frames are drawn in.
+Structures of `render_types` come in; arrays of the caller are filled. One `Drawing` or
+`AmodalDrawing` holds the memory that is drawn in.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,35 +25,26 @@ from sailenv_ros.native.render_types import (
     record,
 )
 
-__all__ = ["ROW_PADDING", "Drawing", "mip_chain", "structure_sizes"]
+__all__ = ["ROW_PADDING", "AmodalDrawing", "Drawing", "mip_chain", "structure_sizes"]
 
-_MAKE = Kernel("make_scratch", "array")
-_FREE = Kernel("free_scratch", "array")
-_PICTURE = Kernel(
-    "draw_picture", "integer", "array", "array", "array", "array", "array", "array", "array"
-)
-_SHADOW = Kernel(
-    "draw_shadow_map",
-    "integer",
-    "array",
-    "array",
-    "array",
-    "array",
-    "integer",
-    "array",
-    "array",
-    "array",
-)
-_MIPS = Kernel("mip_chain", "array", "integer", "array")
-_STRUCTURES = Kernel("structure_sizes", "array")
+_PICTURE = Kernel("draw_picture", "iaaaaaaa")
+_SHADOW = Kernel("draw_shadow_map", "iaaaaiaaa")
+_AMODAL = Kernel("draw_amodal", "iaaaaaia")
+_AMODAL_CROPS = Kernel("copy_amodal", "aia")
+_MIPS = Kernel("mip_chain", "aia")
+_STRUCTURES = Kernel("structure_sizes", "a")
 
 
 ROW_PADDING = 8
 """Numbers behind each row of a shadow map: rows are drawn in steps of eight."""
 
 
-class Drawing:
-    """Draws; belongs to one thread at a time.
+AMODAL_NUMBERS = 10
+"""Numbers of an object's result in `AmodalDrawing.draw`."""
+
+
+class _Scratch:
+    """The memory that kernels draw in; belongs to one thread at a time.
 
     Parameters
     ----------
@@ -65,10 +57,25 @@ class Drawing:
         If there is no native library.
     """
 
+    _MAKE: ClassVar[Kernel]
+    _FREE: ClassVar[Kernel]
+
     def __init__(self, threads: int) -> None:
         self._threads = threads
         self._handle = np.zeros(1, np.uint64)
-        _MAKE(self._handle)
+        self._MAKE(self._handle)
+
+    def close(self) -> None:
+        """Free the memory; a second call does nothing."""
+        if self._handle[0]:
+            self._FREE(self._handle)
+
+
+class Drawing(_Scratch):
+    """Draws pictures and shadow maps; parameters and errors as `_Scratch`."""
+
+    _MAKE = Kernel("make_scratch", "a")
+    _FREE = Kernel("free_scratch", "a")
 
     def picture(
         self,
@@ -171,10 +178,51 @@ class Drawing:
             nearness,
         )
 
-    def close(self) -> None:
-        """Free the memory; a second call does nothing."""
-        if self._handle[0]:
-            _FREE(self._handle)
+
+class AmodalDrawing(_Scratch):
+    """Draws objects, each alone; parameters and errors as `_Scratch`."""
+
+    _MAKE = Kernel("make_amodal_scratch", "a")
+    _FREE = Kernel("free_amodal_scratch", "a")
+
+    def draw(
+        self,
+        view: NDArray[np.void],
+        instances: NDArray[np.void],
+        parts: NDArray[np.void],
+        starts: NDArray[np.int64],
+    ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Draw objects, each on a canvas of three times the picture's width and height.
+
+        Parameters
+        ----------
+        view : (1,) VIEW
+        instances : (1,) INSTANCES
+        parts : (P,) PART
+        starts : (N + 1,) int64
+            Object k consists of the parts from ``starts[k]`` to ``starts[k + 1]``.
+
+        Returns
+        -------
+        results : (N, 10) int64
+            Pixels that it covers on the canvas, and in the picture; the box around the ones (left,
+            top, right, bottom, the last ones included), and around the others; -1 for none.
+        depths : (M,) float32
+            Of each object's box in the picture, row by row, one after the other [m]; ``inf`` where
+            it is not, NaN where it is nearer than near.
+        """
+        checked("view", view, VIEW, (1,))
+        checked("instances", instances, INSTANCES, (1,))
+        checked("starts", starts, np.int64, (None,))
+        count = len(starts) - 1
+        results = np.empty((count, AMODAL_NUMBERS), np.int64)
+        listed = _listed(parts)
+        _AMODAL(self._threads, self._handle, view, instances, listed, starts, count, results)
+        boxes = results[results[:, 1] > 0, 6:]
+        size = int(((boxes[:, 2] - boxes[:, 0] + 1) * (boxes[:, 3] - boxes[:, 1] + 1)).sum())
+        depths = np.empty(size, np.float32)
+        _AMODAL_CROPS(self._handle, size, depths)
+        return results, depths
 
 
 def mip_chain(texels: NDArray[np.uint8]) -> NDArray[np.uint32]:

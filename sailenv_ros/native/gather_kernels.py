@@ -25,26 +25,13 @@ __all__ = [
 Floats = NDArray[np.float32]
 Integers = NDArray[np.int32]
 
-_HEMISPHERE = Kernel("hemisphere_rays", "array", "integer", "array", "array", "array")
-_PANE = Kernel("pane_rays", "array", "array", "integer", "array", "array")
-_EMITTER = Kernel("emitter_rays", "array", "array", "integer", "array", "array")
-_EMITTER_WEIGHTS = Kernel(
-    "emitter_weights",
-    *("array", "array", "integer", "array", "array", "integer", "integer", "array"),
-)
-_WITHIN_CONES = Kernel(
-    "weights_within_cones",
-    *("array", "array", "integer", "array", "array", "integer", "integer"),
-    *("array", "array", "array", "array"),
-)
-_BY_CHANCE = Kernel(
-    "sky_by_chance",
-    *("array", "array", "integer", "array", "array", "array", "integer", "array"),
-)
-_BY_CHOICE = Kernel(
-    "sky_by_choice",
-    *("array", "array", "integer", "array", "array", "array", "integer", "integer", "array"),
-)
+_HEMISPHERE = Kernel("hemisphere_rays", "aiaaa")
+_PANE = Kernel("pane_rays", "aaiaa")
+_EMITTER = Kernel("emitter_rays", "aaiaa")
+_EMITTER_WEIGHTS = Kernel("emitter_weights", "aaiaaiia")
+_WITHIN_CONES = Kernel("weights_within_cones", "aaiaaiiaaaa")
+_BY_CHANCE = Kernel("sky_by_chance", "aaiaaaia")
+_BY_CHOICE = Kernel("sky_by_choice", "aaiaaaiia")
 
 
 def hemisphere_rays(points: LitPoints, pattern: Floats) -> tuple[Floats, Floats]:

@@ -14,7 +14,7 @@ import threading
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -47,13 +47,7 @@ LIBRARY_VARIABLE = "SAILENV_NATIVE_LIBRARY"
 INSTRUCTION_SET_VARIABLE = "SAILENV_INSTRUCTION_SET"
 THREADS_VARIABLE = "SAILENV_THREADS"
 
-ArgumentType = Literal["array", "integer", "number"]
-
-_TYPES: dict[str, Any] = {
-    "array": ctypes.c_void_p,
-    "integer": ctypes.c_int64,
-    "number": ctypes.c_double,
-}
+_TYPES: dict[str, Any] = {"a": ctypes.c_void_p, "i": ctypes.c_int64, "n": ctypes.c_double}
 _STATUS = {1: "refused its arguments", 2: "found no memory"}
 
 
@@ -108,7 +102,7 @@ class NativeLibrary:
         """Return an exported function of the instruction set, its types not declared yet."""
         return getattr(self._library, f"sailenv_{name}_{self.instruction_set}")
 
-    def function(self, name: str, types: tuple[ArgumentType, ...]) -> Any:
+    def function(self, name: str, types: str) -> Any:
         """Return the ctypes function of a kernel."""
         function = self.symbol(name)
         function.argtypes = [_TYPES[kind] for kind in types]
@@ -151,9 +145,10 @@ class Kernel:
     ----------
     name : str
         As in ``SAILENV_KERNEL(name)``.
-    *types : {'array', 'integer', 'number'}
-        Of each argument: an array (or None, where the kernel accepts a null pointer), an int64
-        number, a double. Check arrays with `checked` first: their memory is handed over as it is.
+    types : str
+        A letter for each argument: ``a`` an array (or None, where the kernel accepts a null
+        pointer), ``i`` an int64 number, ``n`` a double. Check arrays with `checked` first: their
+        memory is handed over as it is.
 
     Raises
     ------
@@ -161,10 +156,10 @@ class Kernel:
         When it is called: if there is no library, or the kernel refuses what it was given.
     """
 
-    def __init__(self, name: str, *types: ArgumentType) -> None:
+    def __init__(self, name: str, types: str) -> None:
         self.name = name
         self._types = types
-        self._arrays = tuple(number for number, kind in enumerate(types) if kind == "array")
+        self._arrays = tuple(number for number, kind in enumerate(types) if kind == "a")
         self._functions: dict[int, Any] = {}
 
     def __call__(self, *arguments: NDArray[Any] | float | None) -> None:

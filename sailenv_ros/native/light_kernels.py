@@ -12,10 +12,10 @@ __all__ = ["direct_light", "light_rays", "light_samples", "rectangle_form_factor
 
 Floats = NDArray[np.float32]
 
-_SAMPLES = Kernel("light_samples", "array", "array", "integer", "array", "array", "array", "array")
-_RAYS = Kernel("light_rays", "array", "array", "integer", "array", "array", "array")
-_DIRECT = Kernel("direct_light", "array", "array", "integer", "array", "array", "array", "array")
-_FORM_FACTORS = Kernel("form_factors", "array", "array", "integer", "array", "array", "array")
+_SAMPLES = Kernel("light_samples", "aaiaaaa")
+_RAYS = Kernel("light_rays", "aaiaaa")
+_DIRECT = Kernel("direct_light", "aaiaaaa")
+_FORM_FACTORS = Kernel("form_factors", "aaiaaa")
 
 
 def light_samples(

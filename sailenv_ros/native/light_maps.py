@@ -15,10 +15,8 @@ __all__ = ["LayeredMap", "blur_directions", "sum_texels"]
 RUN_TEXELS = 8
 """`LAYER_RUN` of src/kernels/layer_sum.h."""
 
-_SUM = Kernel("sum_texels", "integer", "array")
-_BLUR = Kernel(
-    "blur_directions", "integer", "integer", "array", "array", "integer", "array", "array"
-)
+_SUM = Kernel("sum_texels", "ia")
+_BLUR = Kernel("blur_directions", "iiaaiaa")
 
 
 class LayeredMap:

@@ -20,46 +20,28 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.lens import LENS
 from sailenv_ros.native.library import checked
-from sailenv_ros.native.records import RecordKernel
+from sailenv_ros.native.records import Fields, RecordKernel
 
 __all__ = ["MOTION_OUTPUTS", "move_points", "transform_points"]
 
+_PIXELS: tuple[Fields, ...] = (
+    ("integer", "height width"),
+    ("array", "depth instance row_of_instance"),
+    ("integer", "rows"),
+)
 _MOVE = RecordKernel(
     "motion",
-    height="integer",
-    width="integer",
-    depth="array",
-    instance="array",
-    row_of_instance="array",
-    rows="integer",
-    motions="array",
-    displacements="array",
-    from_lens="array",
-    to_lens="array",
-    to_height="integer",
-    to_width="integer",
-    to_depth="array",
-    to_instance="array",
-    tolerance="number",
-    duration="number",
-    flow="array",
-    scene_flow="array",
-    valid="array",
-    occluded="array",
-    out_of_view="array",
-    hidden="array",
+    *_PIXELS,
+    ("array", "motions displacements from_lens to_lens"),
+    ("integer", "to_height to_width"),
+    ("array", "to_depth to_instance"),
+    ("number", "tolerance duration"),
+    ("array", "flow scene_flow valid occluded out_of_view hidden"),
 )
 _TRANSFORM = RecordKernel(
     "transform_points",
-    height="integer",
-    width="integer",
-    depth="array",
-    instance="array",
-    row_of_instance="array",
-    rows="integer",
-    transforms="array",
-    lens="array",
-    points="array",
+    *_PIXELS,
+    ("array", "transforms lens points"),
 )
 
 MOTION_OUTPUTS: Mapping[str, tuple[Any, tuple[int, ...]]] = {
@@ -136,10 +118,7 @@ def move_points(
     NativeLibraryError
         If there is no library.
     """
-    height, width = depth.shape
-    checked("depth", depth, np.float32, (height, width))
-    checked("instance", instance, np.uint16, (height, width))
-    checked("row_of_instance", row_of_instance, np.uint16, (65536,))
+    pixels = _checked_pixels(depth, instance, row_of_instance, len(motions))
     checked("motions", motions, np.float64, (None, 3, 4))
     if displacements is not None:
         checked("displacements", displacements, np.float64, (len(motions), 3, 4))
@@ -153,15 +132,10 @@ def move_points(
         checked("to_instance", to_instance, np.uint16, (to_height, to_width))
     for name, array in outputs.items():
         dtype, channels = MOTION_OUTPUTS[name]
-        checked(name, array, dtype, (height, width, *channels))
+        checked(name, array, dtype, (*depth.shape, *channels))
     _MOVE(
         threads,
-        height=height,
-        width=width,
-        depth=depth,
-        instance=instance,
-        row_of_instance=row_of_instance,
-        rows=len(motions),
+        **pixels,
         motions=motions,
         displacements=displacements,
         from_lens=from_lens,
@@ -206,23 +180,33 @@ def transform_points(
     InvalidRequest, NativeLibraryError
         As `move_points`.
     """
-    height, width = depth.shape
-    checked("depth", depth, np.float32, (height, width))
-    checked("instance", instance, np.uint16, (height, width))
-    checked("row_of_instance", row_of_instance, np.uint16, (65536,))
+    pixels = _checked_pixels(depth, instance, row_of_instance, len(transforms))
     checked("transforms", transforms, np.float64, (None, 3, 4))
     checked("lens", lens, LENS, (1,))
-    points = np.empty((height, width, 3), np.float32)
+    points = np.empty((*depth.shape, 3), np.float32)
     _TRANSFORM(
         threads,
-        height=height,
-        width=width,
-        depth=depth,
-        instance=instance,
-        row_of_instance=row_of_instance,
-        rows=len(transforms),
+        **pixels,
         transforms=transforms,
         lens=lens,
         points=points,
     )
     return points
+
+
+def _checked_pixels(
+    depth: NDArray[np.float32],
+    instance: NDArray[np.uint16],
+    row_of_instance: NDArray[np.uint16],
+    rows: int,
+) -> dict[str, Any]:
+    """Return the fields `_PIXELS`."""
+    height, width = depth.shape
+    return {
+        "height": height,
+        "width": width,
+        "depth": checked("depth", depth, np.float32, (height, width)),
+        "instance": checked("instance", instance, np.uint16, (height, width)),
+        "row_of_instance": checked("row_of_instance", row_of_instance, np.uint16, (65536,)),
+        "rows": rows,
+    }

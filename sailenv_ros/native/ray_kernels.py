@@ -22,45 +22,23 @@ __all__ = [
     "light_share",
 ]
 
-_BUILD = Kernel("build_tree", "integer", "integer", "array", "array", "array", "array")
+_BUILD = Kernel("build_tree", "iiaaaa")
 _CAST = RecordKernel(
     "cast_rays",
-    nodes="array",
-    order="array",
-    model_from_world="array",
-    models="array",
-    shapes="array",
-    instances="integer",
-    origins="array",
-    directions="array",
-    nearest="array",
-    distance="array",
-    instance="array",
-    triangle="array",
-    weights="array",
-    count="integer",
+    ("array", "nodes order model_from_world models shapes"),
+    ("integer", "instances"),
+    ("array", "origins directions nearest distance instance triangle weights"),
+    ("integer", "count"),
 )
 _MEET = RecordKernel(
     "meet_light_rays",
-    solid="array",
-    origins="array",
-    directions="array",
-    triangle="array",
-    distance="array",
-    second="array",
-    third="array",
-    count="integer",
+    ("array", "solid origins directions triangle distance second third"),
+    ("integer", "count"),
 )
 _PASS = RecordKernel(
     "pass_light_rays",
-    solid="array",
-    glass="array",
-    passes="array",
-    origins="array",
-    directions="array",
-    lengths="array",
-    share="array",
-    count="integer",
+    ("array", "solid glass passes origins directions lengths share"),
+    ("integer", "count"),
 )
 
 Doubles = NDArray[np.float64]

@@ -5,11 +5,8 @@ Fields that end in `_at` hold addresses of arrays; whoever fills them keeps the 
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
 from sailenv_ros.native.lamp import LAMP
+from sailenv_ros.native.render_types import ADDRESS, structure
 
 __all__ = [
     "RAY_INSTANCE",
@@ -23,62 +20,29 @@ __all__ = [
 WIDTH = 8
 """Children of a node, and the most triangles of a leaf."""
 
-_ADDRESS = "<u8"
+TREE_NODE = structure(("planes", "<f4", (6, WIDTH)), ("children", "<i4", WIDTH))
 
-
-def _structure(*fields: tuple[Any, ...]) -> np.dtype[np.void]:
-    return np.dtype(list(fields), align=True)
-
-
-TREE_NODE = _structure(("planes", "<f4", (6, WIDTH)), ("children", "<i4", WIDTH))
-
-RAY_SHAPE = _structure(
-    ("nodes_at", _ADDRESS),
-    ("triangles_at", _ADDRESS),
-    ("order_at", _ADDRESS),
-    ("places_at", _ADDRESS),
-    ("two_sided_at", _ADDRESS),
-    ("count", "<i8"),
-    ("first_triangle", "<i8"),
+RAY_SHAPE = structure(
+    ("nodes_at triangles_at order_at places_at two_sided_at", ADDRESS),
+    ("count first_triangle", "<i8"),
 )
 
-RAY_INSTANCE = _structure(
-    ("shape_at", _ADDRESS),
-    ("radiance_at", _ADDRESS),
+RAY_INSTANCE = structure(
+    ("shape_at radiance_at", ADDRESS),
     ("body_from_world", "<f4", 12),
-    ("sphere", "<f4", 4),
-    ("chart", "<f4", 4),
-    ("has_chart", "<i4"),
-    ("before", "<i4"),
-    ("after", "<i4"),
-    ("padding", "<i4"),
+    ("sphere chart", "<f4", 4),
+    ("has_chart before after padding", "<i4"),
 )
 
-RAY_SCENE = _structure(
-    ("nodes_at", _ADDRESS),
-    ("order_at", _ADDRESS),
-    ("resting_at", _ADDRESS),
-    ("changed_at", _ADDRESS),
-    ("glass_at", _ADDRESS),
-    ("passes_at", _ADDRESS),
-    ("sky_at", _ADDRESS),
-    ("patches_at", _ADDRESS),
-    ("before_at", _ADDRESS),
-    ("after_at", _ADDRESS),
-    ("changed_count", "<i8"),
-    ("patch_count", "<i8"),
-    ("resting_count", "<i8"),
-    ("sky_height", "<i4"),
-    ("sky_width", "<i4"),
-    ("height", "<i4"),
-    ("width", "<i4"),
-    ("channels", "<i4"),
-    ("padding", "<i4"),
+RAY_SCENE = structure(
+    ("nodes_at order_at resting_at changed_at glass_at passes_at sky_at patches_at", ADDRESS),
+    ("before_at after_at", ADDRESS),
+    ("changed_count patch_count resting_count", "<i8"),
+    ("sky_height sky_width height width channels padding", "<i4"),
 )
 
-RAY_LIGHT = _structure(
+RAY_LIGHT = structure(
     ("lamp", LAMP),
-    ("across", "<f4", 3),
-    ("up", "<f4", 3),
+    ("across up", "<f4", 3),
     ("radius", "<f4"),
 )

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.native.library import NativeLibrary, native_library, raise_for_status
 
-__all__ = ["RecordKernel"]
+__all__ = ["Fields", "RecordKernel"]
 
 FieldType = Literal["array", "integer", "number"]
+Fields = tuple[FieldType, str]
 
 _TYPES: dict[str, Any] = {
     "array": ctypes.c_void_p,
@@ -47,17 +48,19 @@ class RecordKernel:
     ----------
     name : str
         As in ``SAILENV_KERNEL(name)`` and ``SAILENV_RECORD(..., name, ...)``.
-    **fields : {'array', 'integer', 'number'}
-        Of the structure, in its order: a pointer, an int64 number, a double.
+    *fields : tuple of str
+        Of the structure, in its order: a type, and the names of the fields of it that follow each
+        other, with spaces between. An 'array' is a pointer, an 'integer' an int64 number, a
+        'number' a double.
     """
 
-    def __init__(self, name: str, **fields: FieldType) -> None:
+    def __init__(self, name: str, *fields: Fields) -> None:
         self.name = name
-        self._fields = fields
+        self._fields = {field: kind for kind, names in fields for field in names.split()}
         self._structure: Any = type(
             f"{name}_record",
             (ctypes.Structure,),
-            {"_fields_": [(field, _TYPES[kind]) for field, kind in fields.items()]},
+            {"_fields_": [(field, _TYPES[kind]) for field, kind in self._fields.items()]},
         )
         self._functions: dict[int, Any] = {}
 

@@ -28,26 +28,12 @@ __all__ = [
 
 Floats = NDArray[np.float32]
 
-_GATHER = Kernel("gather_change", "integer", "array", "array", "array")
-_SMOOTH = Kernel(
-    "smooth_change",
-    *("integer", "array", "integer", "array", "array", "integer", "array", "array", "array"),
-)
-_PROBES = Kernel(
-    "gather_probe_change",
-    *("integer", "array", "integer", "array", "integer", "array", "integer", "array", "array"),
-)
-_DELTA = Kernel(
-    "direct_light_delta",
-    *("integer", "array", "array", "integer", "array", "array", "array", "array", "integer"),
-    *("array", "array", "array", "array"),
-)
-_INTERPOLATE = Kernel(
-    "light_of_probes",
-    *("integer", "integer", "integer", "integer", "integer", "array", "array", "array"),
-    *("integer", "array", "array", "array"),
-)
-_SPREAD = Kernel("spread_change", "integer", "array", "array", "array", "array", "array")
+_GATHER = Kernel("gather_change", "iaaa")
+_SMOOTH = Kernel("smooth_change", "iaiaaiaaa")
+_PROBES = Kernel("gather_probe_change", "iaiaiaiaa")
+_DELTA = Kernel("direct_light_delta", "iaaiaaaaiaaaa")
+_INTERPOLATE = Kernel("light_of_probes", "iiiiiaaaiaaa")
+_SPREAD = Kernel("spread_change", "iaaaaa")
 
 
 def gather_change(

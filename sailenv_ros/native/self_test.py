@@ -9,7 +9,7 @@ from sailenv_ros.native.library import Kernel
 
 __all__ = ["run_self_test"]
 
-_KERNEL = Kernel("self_test", "integer", "integer", "integer", "array", "array")
+_KERNEL = Kernel("self_test", "iiiaa")
 
 
 def run_self_test(

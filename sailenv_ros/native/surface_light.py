@@ -23,26 +23,12 @@ __all__ = [
 Floats = NDArray[np.float32]
 Integers = NDArray[np.int32]
 
-_MET = Kernel("met_texels", "array", "integer", "array", "array", "array", "array", "array")
-_MEAN = Kernel(
-    "mean_radiance_met",
-    *("integer", "integer", "array", "integer", "integer", "array", "array"),
-)
-_ADD = Kernel(
-    "add_radiance_met",
-    *("integer", "array", "array", "array", "integer", "integer", "array", "integer", "array"),
-)
-_PROBES = Kernel(
-    "probe_radiance",
-    *("integer", "array", "integer", "integer", "array", "array", "array", "integer", "integer"),
-    *("array", "array"),
-)
-_SOURCES = Kernel(
-    "patch_sources",
-    *("integer", "array", "array", "integer", "integer", "array", "array", "array", "array"),
-    "array",
-)
-_HAND_ON = Kernel("hand_on", "integer", "integer", "array", "array", "integer", "array", "array")
+_MET = Kernel("met_texels", "aiaaaaa")
+_MEAN = Kernel("mean_radiance_met", "iiaiiaa")
+_ADD = Kernel("add_radiance_met", "iaaaiiaia")
+_PROBES = Kernel("probe_radiance", "iaiiaaaiiaa")
+_SOURCES = Kernel("patch_sources", "iaaiiaaaaa")
+_HAND_ON = Kernel("hand_on", "iiaaiaa")
 
 
 def met_texels(

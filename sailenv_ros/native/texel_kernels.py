@@ -28,17 +28,12 @@ Integers = NDArray[np.int32]
 BLOCK_POINTS = 4
 """Points of a texel's block along a side; `SIDE` of texel_coverage.cpp."""
 
-_COVER = Kernel("cover_texels", "integer", "integer", "number", "array", "array", "array", "array")
-_NEAREST = Kernel(
-    "nearest_triangles",
-    *("array", "array", "integer", "array", "integer", "array", "array", "array"),
-)
-_BORDERED = Kernel("bordered_blocks", "array", "array", "array")
-_DENOISE = Kernel(
-    "denoise_texels", "integer", "array", "integer", "array", "array", "array", "array"
-)
-_DILATE = Kernel("dilate_texels", "array", "integer", "array", "array", "integer", "array", "array")
-_STAND_INS = Kernel("texel_stand_ins", "array", "integer", "array", "array", "array", "array")
+_COVER = Kernel("cover_texels", "iinaaaa")
+_NEAREST = Kernel("nearest_triangles", "aaiaiaaa")
+_BORDERED = Kernel("bordered_blocks", "aaa")
+_DENOISE = Kernel("denoise_texels", "iaiaaaa")
+_DILATE = Kernel("dilate_texels", "aiaaiaa")
+_STAND_INS = Kernel("texel_stand_ins", "aiaaaa")
 
 
 def cover_texels(places: Floats, side: int, reach: float) -> tuple[Integers, Floats]:

@@ -46,9 +46,50 @@ from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.types.views import VIEWS
 
-__all__ = ["RecordedFrames", "recorded_agents"]
+__all__ = ["RecordedFrames", "frame_of_info", "recorded_agents"]
 
 _log = logging.getLogger(__name__)
+
+
+def frame_of_info(
+    info: Any,
+    views: Mapping[str, NDArray[Any]],
+    intrinsics: CameraIntrinsics,
+    scene_info: SceneInfo | None,
+    draw_amodal: DrawAmodal | None = None,
+) -> Frame:
+    """Make one frame of its info and its arrays, which nobody else has.
+
+    Parameters
+    ----------
+    info : sailenv_msgs/FrameInfo
+    views : mapping of str to array
+        In any order.
+    intrinsics : CameraIntrinsics
+        Of the agent that the frame is of.
+    scene_info : SceneInfo or None
+        The one of the frame's revision, if it is known.
+    draw_amodal : callable or None
+        As `Frame` has it.
+    """
+    return Frame(
+        agent=info.agent,
+        scene=info.scene,
+        epoch=info.epoch,
+        revision=info.revision,
+        sequence=info.sequence,
+        stamp_ns=ns_from_stamp(info.header.stamp),
+        dt_ns=info.dt_ns,
+        camera=camera_of_frame_info(info, intrinsics),
+        depth_range_m=info.depth_range_m,
+        views={view: views[view] for view in VIEWS if view in views},
+        timings_s={"render": info.render_s},
+        info=scene_info,
+        draw_amodal=draw_amodal,
+        states=states_of_frame_info(info),
+        randomised=randomised_of_frame_info(info),
+        lesson=lesson_of_frame_info(info),
+    )
 
 
 def recorded_agents(reader: RecordingReader) -> dict[str, str]:
@@ -160,23 +201,9 @@ class RecordedFrames(Sequence[Frame]):
             return [self[number] for number in range(*index.indices(len(self)))]
         info, images = self.messages(index)
         scene_info = self.scene_info(index)
-        return Frame(
-            agent=self.agent,
-            scene=info.scene,
-            epoch=info.epoch,
-            revision=info.revision,
-            sequence=info.sequence,
-            stamp_ns=ns_from_stamp(info.header.stamp),
-            dt_ns=info.dt_ns,
-            camera=camera_of_frame_info(info, self._intrinsics(info, scene_info)),
-            views={view: view_from_image(view, image) for view, image in images.items()},
-            timings_s={"render": info.render_s},
-            info=scene_info,
-            states=states_of_frame_info(info),
-            randomised=randomised_of_frame_info(info),
-            lesson=lesson_of_frame_info(info),
-            draw_amodal=self._amodal_reader(index),
-        )
+        views = {view: view_from_image(view, image) for view, image in images.items()}
+        intrinsics = self._intrinsics(info, scene_info)
+        return frame_of_info(info, views, intrinsics, scene_info, self._amodal_reader(index))
 
     def __iter__(self) -> Iterator[Frame]:
         return (self[number] for number in range(len(self)))
@@ -199,11 +226,6 @@ class RecordedFrames(Sequence[Frame]):
             return known[-1]
         newer = [info for _, info in self._infos if info.revision >= entry.info.revision]
         return newer[0] if newer else (known[-1] if known else None)
-
-    def intrinsics(self, index: int) -> CameraIntrinsics:
-        """Return the intrinsics of the camera that a frame was seen by."""
-        info = self._entries[self.position(index)].info
-        return self._intrinsics(info, self.scene_info(index))
 
     def _amodal_reader(self, index: int) -> DrawAmodal | None:
         """Return what reads the amodal masks of a frame; None if they were not recorded."""

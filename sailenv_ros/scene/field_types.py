@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, fields
 from typing import Any
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from sailenv_ros.scene.messages import nearest, shown
@@ -26,10 +26,16 @@ __all__ = [
     "Switch",
     "Text",
     "field_error",
+    "optional",
 ]
 
 FIELD_ERROR = "scene_error"
 """Pydantic's type of the errors whose message is a finished sentence of ours."""
+
+
+def optional(description: str) -> Any:
+    """Return a field that may be left out, and is None then."""
+    return Field(default=None, description=description)
 
 
 def field_error(sentence: str) -> PydanticCustomError:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from pydantic import Field
-
+from sailenv_ros.scene.field_types import optional
 from sailenv_ros.scene.fields import Orientation, Position, Rotation, Rule, SceneModel
 from sailenv_ros.scene.rules import at_most_one, away_from_position, unit_quaternion
 from sailenv_ros.types.geometry import Pose, look_at, quat_xyzw_from_rpy_deg
@@ -20,12 +19,8 @@ class Turned(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (at_most_one("rotation", "orientation"), unit_quaternion)
 
-    rotation: Rotation | None = Field(
-        default=None, description="[roll, pitch, yaw] about the fixed axes x, y, z [deg]"
-    )
-    orientation: Orientation | None = Field(
-        default=None, description="unit quaternion [x, y, z, w], instead of rotation"
-    )
+    rotation: Rotation | None = optional("[roll, pitch, yaw] about the fixed axes x, y, z [deg]")
+    orientation: Orientation | None = optional("unit quaternion [x, y, z, w], instead of rotation")
 
     def pose_at(self, position_m: Vector3) -> Pose:
         """Return the pose at a position [m]."""
@@ -43,9 +38,7 @@ class Aimed(Turned):
         away_from_position,
     )
 
-    look_at: Position | None = Field(
-        default=None, description="the point that it faces [m], instead of rotation"
-    )
+    look_at: Position | None = optional("the point that it faces [m], instead of rotation")
 
     def pose_at(self, position_m: Vector3) -> Pose:
         """Return the pose at a position [m]."""

@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number, Switch, Text
+from sailenv_ros.scene.field_types import Number, Switch, Text, optional
 from sailenv_ros.scene.fields import Acceleration, Name, Rule, SceneModel
 from sailenv_ros.scene.lesson_rules import pupils_exist, stays_its_lesson, visitors_stand_alone
 from sailenv_ros.scene.randomise.random_rules import random_targets_exist
@@ -90,7 +90,7 @@ class CategorySpec(SceneModel):
     )
     colour: (
         Annotated[str, Text("#[0-9a-fA-F]{6}", "a colour such as '#ff8800' (quoted)")] | None
-    ) = Field(default=None, description="of its pictures (sRGB); chosen by the id if left out")
+    ) = optional("of its pictures (sRGB); chosen by the id if left out")
 
     def to_category(self) -> Category:
         """Return the data type that labels take."""
@@ -145,13 +145,11 @@ class SceneSpec(SceneModel):
     lights: tuple[LightSpec, ...] = Field(
         default=(), max_length=64, description="what shines, besides the environment"
     )
-    room: RoomSpec | None = Field(
-        default=None, description="walls, floor and ceiling around the origin, with openings"
-    )
+    room: RoomSpec | None = optional("walls, floor and ceiling around the origin, with openings")
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), max_length=10000, description="what the scene holds"
     )
-    mover: MoverSpec | None = Field(default=None, description="the track that agents follow")
+    mover: MoverSpec | None = optional("the track that agents follow")
     movers: tuple[MoverSpec, ...] = Field(
         default=(), max_length=16, description="several tracks, instead of mover"
     )
@@ -161,9 +159,7 @@ class SceneSpec(SceneModel):
     randomise: tuple[RandomThing, ...] = Field(
         default=(), max_length=1000, description="what is drawn at random, by its seed"
     )
-    lessons: LessonsSpec | None = Field(
-        default=None, description="objects that come and go one after another, in laps"
-    )
+    lessons: LessonsSpec | None = optional("objects that come and go one after another, in laps")
     categories: tuple[CategorySpec, ...] = Field(
         default=(), max_length=10000, description="categories that the fixed table lacks"
     )

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, optional
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.rules import (
@@ -59,8 +59,8 @@ class MoverSpec(Aimed):
     rules: ClassVar[tuple[Rule, ...]] = (*Aimed.rules, forces_or_waypoints)
 
     name: Name = Field(default="mover", description="unique among the movers of the scene")
-    position: Position | None = Field(
-        default=None, description="where it starts without waypoints [m]; (0, 0, 1) if left out"
+    position: Position | None = optional(
+        "where it starts without waypoints [m]; (0, 0, 1) if left out"
     )
     waypoints: tuple[WaypointSpec, ...] = Field(
         default=(), max_length=1000, description="its track, run through at equal times"
@@ -75,12 +75,10 @@ class MoverSpec(Aimed):
         default="waypoint",
         description="what moves it at the start: its waypoints, or commands and set poses",
     )
-    keep_looking_at: LookAtSpec | None = Field(
-        default=None, description="what it faces all the time, instead of where its track turns it"
+    keep_looking_at: LookAtSpec | None = optional(
+        "what it faces all the time, instead of where its track turns it"
     )
-    body: BodySpec | None = Field(
-        default=None, description="makes it a rigid body, moved by forces instead of waypoints"
-    )
+    body: BodySpec | None = optional("makes it a rigid body, moved by forces instead of waypoints")
 
     @property
     def waypoint_poses(self) -> tuple[Pose, ...]:
@@ -146,14 +144,10 @@ class AgentSpecModel(Turned):
     following: Annotated[bool, Switch()] = Field(
         default=True, description="true if it goes where its mover goes"
     )
-    mover: Name | None = Field(
-        default=None, description="the mover it follows; the scene's first if left out"
-    )
-    position: Position | None = Field(
-        default=None, description="where it starts when it does not follow [m]"
-    )
-    keep_looking_at: LookAtSpec | None = Field(
-        default=None, description="what it faces all the time, also where a mover carries it"
+    mover: Name | None = optional("the mover it follows; the scene's first if left out")
+    position: Position | None = optional("where it starts when it does not follow [m]")
+    keep_looking_at: LookAtSpec | None = optional(
+        "what it faces all the time, also where a mover carries it"
     )
 
     def to_agent_spec(self) -> AgentSpec:

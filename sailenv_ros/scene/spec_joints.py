@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number
+from sailenv_ros.scene.field_types import Choice, Number, optional
 from sailenv_ros.scene.fields import (
     Direction,
     JointCoordinate,
@@ -70,10 +70,9 @@ class JointSpec(SceneModel):
         description="hinge: turns about the axis (revolute); slide: moves along it (prismatic); "
         "fixed: goes with its parent"
     )
-    parent: Name | None = Field(
-        default=None,
-        description="name of the object that carries it, which is static or has a joint itself; "
-        "position and rotation then count from that object's. Left out: the world",
+    parent: Name | None = optional(
+        "name of the object that carries it, which is static or has a joint itself; "
+        "position and rotation then count from that object's. Left out: the world"
     )
     axis: Direction = Field(
         default=(0.0, 0.0, 1.0), description="direction of the axis in the object's own frame"
@@ -83,15 +82,13 @@ class JointSpec(SceneModel):
         description="a point of a hinge's axis in the object's own frame, which its scale does "
         "not change [m]",
     )
-    limits: JointLimits | None = Field(
-        default=None,
-        description="least and greatest position of the joint: [rad] of a hinge, [m] of a slide; "
-        "left out: it turns or moves without end",
+    limits: JointLimits | None = optional(
+        "least and greatest position of the joint: [rad] of a hinge, [m] of a slide; "
+        "left out: it turns or moves without end"
     )
-    position: JointCoordinate | None = Field(
-        default=None,
-        description="at the start [rad] or [m]; 0, where the object's position and rotation put "
-        "it, or the nearest limit, if left out",
+    position: JointCoordinate | None = optional(
+        "at the start [rad] or [m]; 0, where the object's position and rotation put "
+        "it, or the nearest limit, if left out"
     )
     velocity: JointCoordinate = Field(default=0.0, description="at the start [rad/s] or [m/s]")
     damping: Annotated[float, Number(least=0.0, most=1e6)] = Field(

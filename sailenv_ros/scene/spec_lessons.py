@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Switch
+from sailenv_ros.scene.field_types import Choice, Number, Switch, optional
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
 from sailenv_ros.scene.lesson_rules import after_needs_laps
 from sailenv_ros.scene.rules import distinct, distinct_values
@@ -23,20 +23,17 @@ class LessonSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (distinct_values("objects"),)
 
-    name: Name | None = Field(default=None, description="those of its objects if left out")
+    name: Name | None = optional("those of its objects if left out")
     objects: tuple[Name, ...] = Field(
         min_length=1,
         max_length=1000,
         description="names of the objects that come; they are nowhere outside of their lessons",
     )
-    duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = Field(
-        default=None,
-        description="how long it takes [s]; left out: until its objects have come to the end of "
-        "what moves them",
+    duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
+        "how long it takes [s]; left out: until its objects have come to the end of what moves them"
     )
-    pause: _Pause | None = Field(
-        default=None,
-        description="after it, without its objects [s]; that of the lessons if left out",
+    pause: _Pause | None = optional(
+        "after it, without its objects [s]; that of the lessons if left out"
     )
 
 
@@ -48,8 +45,8 @@ class LessonsSpec(SceneModel):
     sequence: tuple[LessonSpec, ...] = Field(
         min_length=1, max_length=1000, description="the lessons of a lap"
     )
-    laps: Annotated[int, Number(least=1, most=1_000_000, whole=True)] | None = Field(
-        default=None, description="how often the lessons are run through; left out: without end"
+    laps: Annotated[int, Number(least=1, most=1_000_000, whole=True)] | None = optional(
+        "how often the lessons are run through; left out: without end"
     )
     after: Annotated[After, Choice(get_args(After))] = Field(
         default="end",
@@ -65,8 +62,8 @@ class LessonsSpec(SceneModel):
         default=False,
         description="true: behaviours draw other random numbers in each lap; false: the same",
     )
-    seed: Annotated[int, Number(least=0, most=2**63 - 1, whole=True)] | None = Field(
-        default=None, description="of the orders and of varied laps, instead of the simulation's"
+    seed: Annotated[int, Number(least=0, most=2**63 - 1, whole=True)] | None = optional(
+        "of the orders and of varied laps, instead of the simulation's"
     )
 
     @property

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
-from pydantic import Field
-
+from sailenv_ros.scene.field_types import optional
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.rules import Entry, Faults
@@ -25,13 +24,10 @@ class LookAtSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (_looks_at_something,)
 
-    object: Name | None = Field(
-        default=None, description="an object of the scene; once it is gone, where it was last"
-    )
-    point: Position | None = Field(
-        default=None,
-        description="the point that is faced: of the world [m], or beside object in its own frame, "
-        "its scale applied; the object's origin if left out",
+    object: Name | None = optional("an object of the scene; once it is gone, where it was last")
+    point: Position | None = optional(
+        "the point that is faced: of the world [m], or beside object in its own frame, "
+        "its scale applied; the object's origin if left out"
     )
 
     def to_look_at(self) -> LookAt:

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Final, TypeAlias
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Text, Vector
+from sailenv_ros.scene.field_types import Choice, Number, Text, Vector, optional
 from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
 from sailenv_ros.scene.rules import at_most_one
 
@@ -36,31 +36,22 @@ class LookSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (at_most_one("material", "picture"),)
 
-    material: MaterialName | None = Field(
-        default=None,
-        description="a material of rooms such as oak_planks, or that of a model, as asset/material",
+    material: MaterialName | None = optional(
+        "a material of rooms such as oak_planks, or that of a model, as asset/material"
     )
-    picture: PictureName | None = Field(
-        default=None,
-        description="PNG or JPEG file that it shows, beside the scene file or in `pictures` there; "
-        "at most 8 MB and 16 million pixels",
+    picture: PictureName | None = optional(
+        "PNG or JPEG file that it shows, beside the scene file or in `pictures` there; "
+        "at most 8 MB and 16 million pixels"
     )
-    colour: LinearColour | None = Field(
-        default=None,
-        description="of the paint, wood or tiles, instead of the material's own; a picture is "
-        "multiplied by it",
+    colour: LinearColour | None = optional(
+        "of the paint, wood or tiles, instead of the material's own; a picture is multiplied by it"
     )
-    tint: LinearColour | None = Field(
-        default=None, description="the colour and its pattern are multiplied by it"
-    )
-    roughness: Fraction | None = Field(default=None, description="0 for a mirror, 1 for chalk")
-    metallic: Fraction | None = Field(
-        default=None, description="0 for paint, plastic, wood; 1 for bare metal"
-    )
-    emission: Radiance | None = Field(
-        default=None,
-        description="light that it emits of itself: radiance [W/(m2 sr)], in the pattern of its "
-        "colour; 0 for a screen that is off",
+    tint: LinearColour | None = optional("the colour and its pattern are multiplied by it")
+    roughness: Fraction | None = optional("0 for a mirror, 1 for chalk")
+    metallic: Fraction | None = optional("0 for paint, plastic, wood; 1 for bare metal")
+    emission: Radiance | None = optional(
+        "light that it emits of itself: radiance [W/(m2 sr)], in the pattern of its "
+        "colour; 0 for a screen that is off"
     )
     tile: (
         Annotated[
@@ -68,10 +59,9 @@ class LookSpec(SceneModel):
             Vector(2, "one length, or two [width, height], in [m]", one_for_all=True),
         ]
         | None
-    ) = Field(
-        default=None,
-        description="width and height of one picture or pattern on the surface [m]; the material's "
-        "own if left out, 1 m for a picture",
+    ) = optional(
+        "width and height of one picture or pattern on the surface [m]; the material's "
+        "own if left out, 1 m for a picture"
     )
     turn: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
         default=0.0, description="by which it is laid counter-clockwise, e.g. 90 for boards along y"

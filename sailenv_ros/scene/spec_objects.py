@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Switch, Text
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, optional
 from sailenv_ros.scene.fields import (
     DegreesPerSecond,
     Fraction,
@@ -77,15 +77,13 @@ class ObjectSpec(Turned):
         description="what it is: a name of the catalogue, e.g. cube or Chair 01"
     )
     position: Position = Field(default=(0.0, 0.0, 0.0), description="of the asset's origin [m]")
-    on: Name | None = Field(
-        default=None,
-        description="name of the object that carries it: position and turn then count from that "
-        "object's, and z from its upper side",
+    on: Name | None = optional(
+        "name of the object that carries it: position and turn then count from that "
+        "object's, and z from its upper side"
     )
-    wall: Annotated[WallName, Choice(WALLS)] | None = Field(
-        default=None,
-        description="wall of the room that it has at its back, instead of position: "
-        "north (+y), east (+x), south (-y) or west (-x)",
+    wall: Annotated[WallName, Choice(WALLS)] | None = optional(
+        "wall of the room that it has at its back, instead of position: "
+        "north (+y), east (+x), south (-y) or west (-x)"
     )
     at: Annotated[float, Number(least=-50.0, most=50.0, unit="m")] = Field(
         default=0.0,
@@ -109,7 +107,7 @@ class ObjectSpec(Turned):
             Number(above=0.0, most=1e6, unit="kg", hint="(static: true is for what never moves)"),
         ]
         | None
-    ) = Field(default=None, description="[kg]; the asset's own if left out")
+    ) = optional("[kg]; the asset's own if left out")
     gravity: Annotated[bool, Switch()] = Field(default=True, description="false for what floats")
     friction: Annotated[float, Number(least=0.0, most=10.0)] = Field(
         default=0.5, description="coefficient of sliding friction"
@@ -117,24 +115,19 @@ class ObjectSpec(Turned):
     restitution: Fraction = Field(
         default=0.0, description="bounce, from 0 (none) to 1 (all the speed is kept)"
     )
-    joint: JointSpec | None = Field(
-        default=None, description="hinge or slide on which it moves, or to what it is fixed"
+    joint: JointSpec | None = optional("hinge or slide on which it moves, or to what it is fixed")
+    category: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a category")] | None = (
+        optional("instead of the asset's category")
     )
-    category: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a category")] | None = Field(
-        default=None, description="instead of the asset's category"
+    part_of: Name | None = optional(
+        "name of the object that it is a part of: the truth about objects tells the "
+        "parent of each; nothing holds them together"
     )
-    part_of: Name | None = Field(
-        default=None,
-        description="name of the object that it is a part of: the truth about objects tells the "
-        "parent of each; nothing holds them together",
+    colour: LinearColour | None = optional(
+        "paints the whole object, instead of the asset's colours"
     )
-    colour: LinearColour | None = Field(
-        default=None, description="paints the whole object, instead of the asset's colours"
-    )
-    metallic: Fraction | None = Field(
-        default=None, description="0 for paint, plastic, wood; 1 for bare metal"
-    )
-    roughness: Fraction | None = Field(default=None, description="0 for a mirror, 1 for chalk")
+    metallic: Fraction | None = optional("0 for paint, plastic, wood; 1 for bare metal")
+    roughness: Fraction | None = optional("0 for a mirror, 1 for chalk")
     materials: tuple[MaterialSpec, ...] = Field(
         default=(),
         max_length=64,
@@ -154,8 +147,8 @@ class ObjectSpec(Turned):
         description="time at which it comes, nowhere before: since the scene's beginning, or since "
         "that of its lesson [s]",
     )
-    leave: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = Field(
-        default=None, description="time at which it goes, nowhere afterwards; counted as appear [s]"
+    leave: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
+        "time at which it goes, nowhere afterwards; counted as appear [s]"
     )
 
     @property

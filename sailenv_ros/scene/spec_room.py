@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from sailenv_ros.scene.field_types import Choice, Number, Switch, Vector
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Vector, optional
 from sailenv_ros.scene.fields import LinearColour, Name, Rule, SceneModel
 from sailenv_ros.scene.partition_rules import (
     along_an_axis,
@@ -128,10 +128,10 @@ class SurfaceSpec(LookSpec):
 class WallMaterialsSpec(SceneModel):
     """Walls that differ from the others."""
 
-    north: SurfaceSpec | None = Field(default=None, description="the wall towards +y")
-    east: SurfaceSpec | None = Field(default=None, description="the wall towards +x")
-    south: SurfaceSpec | None = Field(default=None, description="the wall towards -y")
-    west: SurfaceSpec | None = Field(default=None, description="the wall towards -x")
+    north: SurfaceSpec | None = optional("the wall towards +y")
+    east: SurfaceSpec | None = optional("the wall towards +x")
+    south: SurfaceSpec | None = optional("the wall towards -y")
+    west: SurfaceSpec | None = optional("the wall towards -x")
 
 
 class SkirtingSpec(SceneModel):
@@ -175,12 +175,12 @@ class WindowSpec(_OpeningBase):
     sill: Annotated[float, Number(least=0.0, most=50.0, unit="m")] = Field(
         default=WINDOW_SIZE_M[2], description="height of the opening's lower edge [m]"
     )
-    casements: Annotated[int, Number(least=1, most=8, whole=True)] | None = Field(
-        default=None, description="how many panes beside each other; by the width if left out"
+    casements: Annotated[int, Number(least=1, most=8, whole=True)] | None = optional(
+        "how many panes beside each other; by the width if left out"
     )
     colour: LinearColour = Field(default=(0.82, 0.82, 0.80), description="of frame and sill")
-    curtains: Annotated[CurtainSpec | None, _OrNone()] = Field(
-        default=None, description="true for plain ones, or their keys; none if left out"
+    curtains: Annotated[CurtainSpec | None, _OrNone()] = optional(
+        "true for plain ones, or their keys; none if left out"
     )
 
 
@@ -257,12 +257,10 @@ class PartitionSpec(SceneModel):
     thickness: Annotated[float, Number(least=0.05, most=1.0, unit="m")] = Field(
         default=0.12, description="[m]"
     )
-    north: SurfaceSpec | None = Field(
-        default=None, description="of its side towards +y; that of the walls if left out"
-    )
-    east: SurfaceSpec | None = Field(default=None, description="of its side towards +x")
-    south: SurfaceSpec | None = Field(default=None, description="of its side towards -y")
-    west: SurfaceSpec | None = Field(default=None, description="of its side towards -x")
+    north: SurfaceSpec | None = optional("of its side towards +y; that of the walls if left out")
+    east: SurfaceSpec | None = optional("of its side towards +x")
+    south: SurfaceSpec | None = optional("of its side towards -y")
+    west: SurfaceSpec | None = optional("of its side towards -x")
     doorways: tuple[DoorwaySpec, ...] = Field(
         default=(), max_length=16, description="openings to walk through"
     )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import count
-
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.rays.scene_geometry import SceneGeometry
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -36,8 +34,7 @@ def recorded_geometry(info: SceneInfo, library: SceneLibrary | None = None) -> S
         If the scene cannot be built.
     """
     library = library or SceneLibrary()
-    numbers = count(1)
-    world = library.build(info.scene, 0, 1, lambda: next(numbers))
+    world = library.build(info.scene)
     try:
         own = {drawn.instance.name: drawn for drawn in world.contents.instances}
         bodies = {body.placement.name: body.placement.asset for body in world.bodies}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import replace
 from functools import cached_property
 from hashlib import blake2b
@@ -25,11 +26,7 @@ from sailenv_ros.behaviours import (
 )
 from sailenv_ros.behaviours.durations import lesson_errors
 from sailenv_ros.light.bake.settings import BAKE_VERSION
-from sailenv_ros.scene.entries import (
-    checked_lessons,
-    checked_objects,
-    checked_scene,
-)
+from sailenv_ros.scene.entries import checked_lessons, checked_objects, checked_scene
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.scene_catalogue import SceneCatalogue
 from sailenv_ros.scene.serialisation import light_entry
@@ -47,6 +44,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Asset, Model
+from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
 from sailenv_ros.world.world import World
@@ -167,16 +165,16 @@ class SceneLibrary:
     def build(
         self,
         scene: str | Path,
-        seed: int,
-        epoch: int,
-        next_revision: Callable[[], int],
+        seed: int = 0,
+        epoch: int = 1,
+        next_revision: Callable[[], int] | None = None,
         *,
         more: SceneOverlay = NOTHING_MORE,
     ) -> World:
         """Build the world of a scene, with `more` objects and lessons than it has by itself.
 
         Uses the furniture that is built by now. See `load`, `scene.entries.checked_objects` and
-        `world.build.build_world` for errors.
+        `world.build.build_world` for errors, `World` for epoch and revisions.
         """
         if not self._packs.are_newest:
             self.refresh()
@@ -184,9 +182,8 @@ class SceneLibrary:
         known = self._with_materials(self._knowledge_to_build, self.materials.beside(path))
         spec = load_scene(path, knowledge=known)
         self.materials.note(spec.name, path)
-        spec = spec.model_copy(
-            update={"objects": (*spec.objects, *self._added(more.objects, spec))}
-        )
+        objects = (*spec.objects, *self._added(more.objects, spec))
+        spec = spec.model_copy(update={"objects": objects})
         if more.lessons is not None:
             lessons = checked_lessons(more.lessons, spec.objects, known)
             spec = spec.model_copy(update={"lessons": lessons})
@@ -209,6 +206,11 @@ class SceneLibrary:
         if spec.name not in self._catalogue.names:
             self._files[spec.name] = self.path(scene)
         return world
+
+    def snapshot(self, scene: str | Path) -> WorldSnapshot:
+        """Return a scene as it begins; errors as of `build`."""
+        with closing(self.build(scene)) as world:
+            return world.snapshot()
 
     def refresh(self) -> None:
         """Take up what was built since this was made: furniture, skies and the user's packs."""

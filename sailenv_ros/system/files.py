@@ -171,27 +171,25 @@ def sync_folder(folder: Path) -> None:
     OSError
         If the disk refuses it.
     """
-    fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    try:
-        os.fsync(fd)
-    except OSError as problem:
-        if problem.errno not in _UNSUPPORTED:  # some network file systems know no such thing
-            raise
-    finally:
-        os.close(fd)
+    with _opened(folder) as fd:
+        try:
+            os.fsync(fd)
+        except OSError as problem:
+            if problem.errno not in _UNSUPPORTED:  # some network file systems know no such thing
+                raise
 
 
 def sync_file_system(folder: Path) -> None:
-    """Bring everything that was written to the file system of a folder to the disk.
+    """Bring all that was written to a folder's file system to the disk; see `sync_folder`."""
+    with _opened(folder) as fd:
+        _syncfs(fd)
 
-    Raises
-    ------
-    OSError
-        If the disk refuses it.
-    """
+
+@contextmanager
+def _opened(folder: Path) -> Iterator[int]:
     fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        _syncfs(fd)
+        yield fd
     finally:
         os.close(fd)
 

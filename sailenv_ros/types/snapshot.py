@@ -146,7 +146,7 @@ class WorldSnapshot:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Observation:
-    """Earlier observation of one camera: the past that flow and occlusion refer to.
+    """Observation of one camera: one to draw, or the past that flow and occlusion refer to.
 
     Attributes
     ----------

@@ -35,9 +35,9 @@ def build_world(
     *,
     assets: AssetLibrary,
     categories: CategoryTable,
-    seed: int,
-    epoch: int,
-    next_revision: Callable[[], int],
+    seed: int = 0,
+    epoch: int = 1,
+    next_revision: Callable[[], int] | None = None,
     skies: Mapping[str, Path] | None = None,
     materials: MaterialLibrary | None = None,
 ) -> World:

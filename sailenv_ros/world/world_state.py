@@ -6,6 +6,7 @@ seed and calls give the same bytes.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 import numpy as np
@@ -51,8 +52,9 @@ class WorldState:
         Its name.
     epoch : int
         Number of this life of a scene; goes into every snapshot.
-    next_revision : callable
-        Gives a larger number at each call; called at each change of the contents.
+    next_revision : callable or None
+        Gives a larger number at each call; called at each change of the contents. None counts
+        from 1.
     placements : iterable of Placement
         Get instance ids 1, 2, 3 … in this order.
     movers : sequence of Mover
@@ -76,8 +78,8 @@ class WorldState:
         self,
         *,
         scene: str,
-        epoch: int,
-        next_revision: Callable[[], int],
+        epoch: int = 1,
+        next_revision: Callable[[], int] | None = None,
         placements: Iterable[Placement],
         movers: Sequence[Mover],
         categories: CategoryTable,
@@ -119,7 +121,7 @@ class WorldState:
             environment=environment or Environment(),
             bodies=self._bodies,
             described=lambda: self.described,
-            next_revision=next_revision,
+            next_revision=next_revision or itertools.count(1).__next__,
         )
 
     # -- time ------------------------------------------------------------------------------

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from sailenv_ros.frame.frame import Frame
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -16,6 +15,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Mesh
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.ray_cast import cast
+from tests.support.small_frame import small_frame
 from tests.support.tiny_scenes import (
     Thing,
     box_mesh,
@@ -256,10 +256,7 @@ def test_points_of_a_cloud_lie_on_the_meshes(native: NativeRenderer) -> None:
     """Within a tenth of a millimetre, by the distance to the nearest side of each box."""
     snapshot, camera = snapshot_of(crowd()), camera_at(width=160, height=120)
     views = native.render(snapshot, None, camera, ("depth", "instance")).views
-    frame = Frame(
-        agent="eye", scene="tiny", epoch=1, revision=1, sequence=1, stamp_ns=0, dt_ns=0,
-        camera=camera, views=views,
-    )  # fmt: skip
+    frame = small_frame(dict(views), camera=camera)
     cloud = frame.points()
     assert len(cloud) > 1000
     for row, drawn in enumerate(snapshot.contents.instances):

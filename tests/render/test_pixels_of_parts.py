@@ -31,7 +31,6 @@ def bed_world() -> World:
     return World(
         scene="sleep",
         epoch=1,
-        next_revision=lambda: 1,
         placements=[
             Placement(
                 name="bed",

@@ -7,10 +7,9 @@ import pytest
 
 from benchmarks.reference.curve import picture_of
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment
-from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 from tests.render.conftest import Render
+from tests.support.tiny_scenes import snapshot_of
 
 
 @pytest.mark.parametrize("radiance", [0.003, 0.02, 0.1, 0.4, 1.0, 3.0])
@@ -19,21 +18,7 @@ def test_radiance_becomes_the_same_picture(radiance: float, stops: float, render
     """A background of known radiance has the value that the benchmark's curve gives it."""
     colour = (radiance, radiance / 2.0, radiance / 3.0)
     surroundings = Environment(background="colour", background_colour=colour, exposure=stops)
-    contents = SceneContents(
-        scene="plain",
-        epoch=1,
-        revision=1,
-        instances=(),
-        categories=CategoryTable([]),
-        environment=surroundings,
-    )
-    snapshot = WorldSnapshot(
-        sim_time_ns=0,
-        step=0,
-        contents=contents,
-        world_from_body=np.zeros((0, 4, 4)),
-        histories=np.zeros(0, np.int64),
-    )
+    snapshot = snapshot_of([], environment=surroundings)
     camera = Camera(intrinsics=CameraIntrinsics(width=8, height=8))
     drawn = render(snapshot, camera, "rgb")["rgb"]
     expected = picture_of(np.array(colour), stops)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import numpy as np
@@ -34,14 +33,12 @@ def room() -> WorldSnapshot:
 
 
 def snapshot_of(scene: dict[str, Any]) -> WorldSnapshot:
-    counter = itertools.count(1)
     world = build_world(
         SceneSpec.model_validate({"version": 1, **scene}),
         assets=AssetLibrary(),
         categories=load_categories(),
         seed=0,
         epoch=1,
-        next_revision=lambda: next(counter),
     )
     snapshot = world.snapshot()
     world.close()

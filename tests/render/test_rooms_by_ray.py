@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 
 import cv2
@@ -25,8 +24,7 @@ WIDTH, HEIGHT = 320, 240
 @pytest.fixture(scope="module", params=["room_01", "room_02", "room_03"])
 def room(request: pytest.FixtureRequest) -> Iterator[WorldSnapshot]:
     """A room after a second, when things have moved."""
-    counter = itertools.count(1)
-    world = SceneLibrary().build(request.param, 0, 1, lambda: next(counter))
+    world = SceneLibrary().build(request.param)
     world.step(240)
     yield world.snapshot()
     world.close()

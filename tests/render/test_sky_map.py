@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -44,7 +43,6 @@ def world() -> Iterator[World]:
     world = World(
         scene="sky",
         epoch=1,
-        next_revision=itertools.count(1).__next__,
         placements=[
             Placement(name="cube", asset=cube, category_id=1, pose=Pose((0, 0, -50)), static=True)
         ],

@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -28,32 +27,17 @@ from sailenv_ros.errors import (
 )
 from sailenv_ros.system.presence import simulator_is_present
 from sailenv_ros.types.geometry import Pose, look_at
+from tests.ros.conftest import LOCKSTEP, SMALL
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
-LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": ""}
-SMALL = {"width": 160, "height": 120}
+NAMESPACE = "/tested"
 
 
 def domain() -> int:
     """Return the ROS domain that the tests run in."""
     return int(os.environ["ROS_DOMAIN_ID"])
-
-
-@pytest.fixture(scope="module")
-def simulator() -> Iterator[Agent]:
-    """One lockstep simulator for the tests of this module, held by an Agent of its own."""
-    with Agent(**SMALL, namespace="/tested", simulator=LOCKSTEP) as keeper:
-        yield keeper
-
-
-@pytest.fixture
-def agent(simulator: Agent) -> Iterator[Agent]:
-    """A small agent that stands in the scene as it begins."""
-    simulator.reset()
-    with Agent(**SMALL, namespace="/tested") as agent:
-        yield agent
 
 
 # -- frames --------------------------------------------------------------------------------
@@ -156,10 +140,10 @@ def test_views_agree_with_each_other(agent: Agent) -> None:
         assert agent.categories[category]
 
 
-def test_views_that_are_not_wanted_do_not_come(simulator: Agent) -> None:
+def test_views_that_are_not_wanted_do_not_come(keeper: Agent) -> None:
     """An Agent with one active view receives that alone, and views beyond the five on request."""
     switches = {f"{kind}_frame_active": False for kind in ("main", "object", "category", "flow")}
-    with Agent(**SMALL, **switches, views=["normals"], namespace="/tested") as agent:
+    with Agent(**SMALL, **switches, views=["normals"], namespace=NAMESPACE) as agent:
         frame = agent.get_frame()
     assert set(frame["sizes"]) == {"depth", "normals"}
     assert frame["normals"].shape == (120, 160, 3)
@@ -168,7 +152,7 @@ def test_views_that_are_not_wanted_do_not_come(simulator: Agent) -> None:
 
 def test_two_agents_of_different_size_see_their_own(agent: Agent) -> None:
     """Agents have sizes, poses and frames of their own, also when they ask at the same time."""
-    with Agent(width=64, height=48, namespace="/tested") as small:
+    with Agent(width=64, height=48, namespace=NAMESPACE) as small:
         small.set_follow(False)
         small.set_position((3.0, 0.0, 2.5))
         agent.set_follow(False)
@@ -325,7 +309,7 @@ def test_values_that_no_message_holds_are_refused(agent: Agent) -> None:
 def test_a_name_is_given_once(agent: Agent) -> None:
     """A second agent of one name is refused, and the first one is unharmed."""
     with pytest.raises(InvalidRequest, match="not in use"):
-        Agent(**SMALL, name=agent.id, namespace="/tested")
+        Agent(**SMALL, name=agent.id, namespace=NAMESPACE)
     assert agent.get_frame()["sequence"] == 1
 
 
@@ -344,26 +328,26 @@ def test_an_agent_can_be_deleted_and_registered_again(agent: Agent) -> None:
     assert agent.get_frame()["sequence"] == 1
 
 
-def test_closing_leaves_nothing_behind(simulator: Agent) -> None:
+def test_closing_leaves_nothing_behind(keeper: Agent) -> None:
     """A closed Agent is gone from the simulator; closing twice does nothing, asking raises."""
-    agent = Agent(**SMALL, namespace="/tested")
+    agent = Agent(**SMALL, namespace=NAMESPACE)
     agent.close()
     agent.close()
-    until(lambda: agent.id not in [spec.name for spec in simulator.info.agents], "its end")
+    until(lambda: agent.id not in [spec.name for spec in keeper.info.agents], "its end")
     with pytest.raises(SimulationClosed):
         agent.get_frame()
 
 
-def test_agents_that_come_and_go_leave_no_threads(simulator: Agent) -> None:
+def test_agents_that_come_and_go_leave_no_threads(keeper: Agent) -> None:
     """Twenty agents later there are as many threads as before."""
     before = threading.active_count()
     for _ in range(20):
-        with Agent(width=16, height=16, namespace="/tested") as agent:
+        with Agent(width=16, height=16, namespace=NAMESPACE) as agent:
             agent.get_frame()
     assert threading.active_count() == before
 
 
-def test_an_agent_lives_beside_the_users_own_node(simulator: Agent) -> None:
+def test_an_agent_lives_beside_the_users_own_node(keeper: Agent) -> None:
     """A user's rclpy, started before or after, is neither needed nor disturbed."""
     code = """
 import rclpy, sys
@@ -520,7 +504,7 @@ def test_a_simulator_that_cannot_start_says_why() -> None:
     assert not simulator_is_present(domain(), "/failing")
 
 
-def test_forked_workers_make_agents_of_their_own(simulator: Agent) -> None:
+def test_forked_workers_make_agents_of_their_own(keeper: Agent) -> None:
     """An inherited Agent refuses to work; those of the workers work side by side with it."""
     code = """
 import multiprocessing, warnings

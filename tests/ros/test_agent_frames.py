@@ -6,7 +6,6 @@ import gc
 import os
 import signal
 import threading
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -21,28 +20,13 @@ from sailenv_ros.errors import (
     SimulatorLost,
     UnknownName,
 )
+from tests.ros.conftest import LOCKSTEP, SMALL
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
-LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": ""}
-SMALL = {"width": 160, "height": 120}
-
-
-@pytest.fixture(scope="module")
-def keeper() -> Iterator[Agent]:
-    """One lockstep simulator for the tests of this module, held by an Agent of its own."""
-    with Agent(**SMALL, namespace="/streamed", simulator=LOCKSTEP) as keeper:
-        yield keeper
-
-
-@pytest.fixture
-def agent(keeper: Agent) -> Iterator[Agent]:
-    """A small agent in the scene as it begins."""
-    keeper.reset()
-    with Agent(**SMALL, namespace="/streamed") as agent:
-        yield agent
+NAMESPACE = "/streamed"
 
 
 def test_a_stream_gives_each_frame_of_its_rate(agent: Agent) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,22 +15,14 @@ from tests.support.upload_files import box_zip
 
 pytestmark = pytest.mark.ros
 
-LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": ""}
-SMALL = {"width": 160, "height": 120}
-
-
-@pytest.fixture(scope="module")
-def keeper() -> Iterator[Agent]:
-    """One lockstep simulator for the tests of this module, held by an Agent of its own."""
-    with Agent(**SMALL, namespace="/furnished", simulator=LOCKSTEP) as keeper:
-        keeper.set_follow(False)
-        yield keeper
+NAMESPACE = "/furnished"
 
 
 @pytest.fixture
 def agent(keeper: Agent) -> Agent:
     """The agent, in the scene as it begins, at its origin and level."""
     keeper.change_scene("optical")
+    keeper.set_follow(False)
     keeper.set_position((0.0, 0.0, 1.0), teleport=True)
     keeper.set_rotation((0.0, 0.0, 0.0), teleport=True)
     return keeper

@@ -13,6 +13,7 @@ from sailenv_ros import Agent, Simulation
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, InvalidState
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
+from tests.support.probed_scene import agent_in_scene
 
 pytestmark = pytest.mark.ros
 
@@ -30,24 +31,12 @@ randomise:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("scenes")
-    (folder / "yard.yaml").write_text(YARD, encoding="utf-8")
-    return folder
+    return tmp_path_factory.mktemp("scenes")
 
 
 @pytest.fixture(scope="module")
 def agent(folder: Path) -> Iterator[Agent]:
-    parameters = {
-        "scene": "yard",
-        "scene_paths": [str(folder)],
-        "mode": "lockstep",
-        "agent.name": "",
-        "gateway.port": 0,
-        "backend": "native",
-    }
-    with Agent(
-        width=64, height=48, following=False, namespace="/drawn", simulator=parameters
-    ) as agent:
+    with agent_in_scene(folder, YARD, "/drawn", backend="native") as agent:
         yield agent
 
 

@@ -20,27 +20,20 @@ from sailenv_ros.system.frame_memory import SEGMENTS
 from sailenv_ros.system.frame_socket import connect, receive, send
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.views import RENDERED_VIEWS as VIEWS
+from tests.ros.conftest import SMALL
 from tests.support.ros_probe import Probe
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
 NAMESPACE = "/direct"
-LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": ""}
-SMALL: dict[str, Any] = {"width": 160, "height": 120, "namespace": NAMESPACE}
-
-
-@pytest.fixture(scope="module")
-def keeper() -> Iterator[Agent]:
-    """One lockstep simulator for the tests of this module, held by an Agent of its own."""
-    with Agent(**SMALL, simulator=LOCKSTEP) as keeper:
-        yield keeper
+OWN: dict[str, Any] = {**SMALL, "namespace": NAMESPACE}
 
 
 @pytest.fixture
 def agent(keeper: Agent, monkeypatch: pytest.MonkeyPatch) -> Iterator[Agent]:
     """An agent whose frames come through shared memory, or it fails."""
-    with Agent(**SMALL) as agent:
+    with Agent(**OWN) as agent:
         agent.get_frame()  # the first comes by topics
 
         def not_by_topics(*_: object) -> None:
@@ -65,7 +58,7 @@ def test_frames_are_the_same_as_by_topics(keeper: Agent, monkeypatch: pytest.Mon
     frames = {}
     for way in ("0", "1"):
         monkeypatch.setenv("SAILENV_DIRECT_FRAMES", way)
-        with Agent(**SMALL, views=tuple(VIEWS), name="twice") as agent:
+        with Agent(**OWN, views=tuple(VIEWS), name="twice") as agent:
             agent.get_frame()
             agent.get_frame()
             frames[way] = agent.get_frame()

@@ -12,6 +12,7 @@ import pytest
 from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.types.geometry import Pose
+from tests.support.probed_scene import agent_in_scene
 
 pytestmark = pytest.mark.ros
 
@@ -30,24 +31,13 @@ agents:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("scenes")
-    (folder / "yard.yaml").write_text(TWO_MOVERS, encoding="utf-8")
-    return folder
+    return tmp_path_factory.mktemp("scenes")
 
 
 @pytest.fixture(scope="module")
 def keeper(folder: Path) -> Iterator[Agent]:
     """A lockstep simulator for the tests of this module, held by an Agent of its own."""
-    parameters = {
-        "scene": "yard",
-        "scene_paths": [str(folder)],
-        "mode": "lockstep",
-        "agent.name": "",
-        "gateway.port": 0,
-    }
-    with Agent(
-        width=64, height=48, following=False, namespace="/edited", simulator=parameters
-    ) as keeper:
+    with agent_in_scene(folder, TWO_MOVERS, "/edited") as keeper:
         yield keeper
 
 

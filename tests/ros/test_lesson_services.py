@@ -18,6 +18,7 @@ from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
+from tests.support.probed_scene import agent_in_scene
 from tests.support.ros_probe import LATCHED, Probe
 from tests.support.waiting import until
 
@@ -37,20 +38,8 @@ lessons:
 
 @pytest.fixture(scope="module")
 def agent(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Agent]:
-    folder: Path = tmp_path_factory.mktemp("scenes")
-    (folder / "class.yaml").write_text(CLASS, encoding="utf-8")
-    parameters = {
-        "scene": "class",
-        "scene_paths": [str(folder)],
-        "mode": "lockstep",
-        "agent.name": "",
-        "gateway.port": 0,
-        "viewer.port": 0,
-        "backend": "native",
-    }
-    with Agent(
-        width=64, height=48, following=False, namespace="/lessons", simulator=parameters
-    ) as agent:
+    folder = tmp_path_factory.mktemp("scenes")
+    with agent_in_scene(folder, CLASS, "/lessons", backend="native") as agent:
         yield agent
 
 
@@ -96,7 +85,7 @@ def test_lessons_are_begun_stopped_and_refused(agent: Agent) -> None:
     assert agent.get_frame()["lesson"] is None
     with pytest.raises(InvalidState, match="has no lessons"):
         agent.start_lessons()
-    agent.change_scene("class")
+    agent.change_scene("yard")
 
 
 def test_recorded_frames_tell_their_lessons(tmp_path: Path) -> None:

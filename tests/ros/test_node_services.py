@@ -50,21 +50,6 @@ def node() -> Iterator[NodeProcess]:
         yield node
 
 
-@pytest.fixture(scope="module")
-def participant(node: NodeProcess) -> Iterator[Probe]:
-    """A participant, whom the simulator has found."""
-    with Probe(NAMESPACE) as probe:
-        yield probe
-
-
-@pytest.fixture
-def probe(participant: Probe) -> Iterator[Probe]:
-    """The participant with no topic subscribed to; the scene stands at its beginning."""
-    participant.done(Reset, "reset", Reset.Request(keep_seed=True))
-    yield participant
-    participant.listen_no_more()
-
-
 @pytest.fixture
 def scene(probe: Probe) -> Topic:
     """scene_info, as it is and as it changes."""

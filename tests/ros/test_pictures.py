@@ -26,7 +26,6 @@ from tests.support.ros_probe import Probe
 pytestmark = [pytest.mark.ros, pytest.mark.gl]
 
 NAMESPACE = "/developed"
-LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": "", "gateway.port": 0}
 BRIGHT = PictureSettings(exposure=1.0)
 SMALL = {"width": 96, "height": 72}
 
@@ -45,13 +44,6 @@ OTHERS: dict[str, Any] = {
 
 TRUTH = ("depth_m", "category", "instance", "flow", "flow_valid", "occlusion", "normals")
 """Arrays of a frame that no picture's settings may touch."""
-
-
-@pytest.fixture(scope="module")
-def keeper() -> Iterator[Agent]:
-    """A lockstep simulator for the tests of this module, held by an Agent of its own."""
-    with Agent(**SMALL, namespace=NAMESPACE, simulator=LOCKSTEP) as keeper:
-        yield keeper
 
 
 @pytest.fixture

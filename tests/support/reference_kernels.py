@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.ambient_visibility import AmbientSettings
+from sailenv_ros.native.picture_kernels import AmbientSettings
 
 __all__ = [
     "annotate_pixels",
@@ -49,7 +49,7 @@ def annotate_pixels(
     *,
     threads: int,
 ) -> None:
-    """Fill in the views; see `native.annotation`."""
+    """Fill in the views; see `native.view_kernels`."""
     near_m, far_m = float(lens["near_m"][0]), float(lens["far_m"][0])
     z = surface[..., 0].astype(np.float64)
     beyond = z > far_m
@@ -73,7 +73,7 @@ def find_ambient_visibility(
     *,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats]:
-    """Compute the share of the light from around that arrives; see `native.ambient_visibility`."""
+    """Compute the share of the light from around that arrives; see `native.picture_kernels`."""
     focal, _, cx, cy, _, _ = lens[0].item()
     numbers = np.array([0.5 * focal, 0.5 * cx, 0.5 * cy, *settings], np.float32)
     samples = surface[::2, ::2]
@@ -210,7 +210,7 @@ def resolve_samples(
     keep_ambient_share: bool = False,
     threads: int,
 ) -> NDArray[np.float16]:
-    """Average the samples of each pixel; see `native.resolve`."""
+    """Average the samples of each pixel; see `native.picture_kernels`."""
     bits = samples.view(np.uint16)
     height, width = samples.shape[0] // times, samples.shape[1] // times
     weights = np.full(bits.shape[:2], F32(1.0 / (times * times)))
@@ -240,7 +240,7 @@ def gather_light(
     *,
     threads: int,
 ) -> NDArray[np.float16]:
-    """Spread light and add noise; see `native.light_gathering`."""
+    """Spread light and add noise; see `native.picture_kernels`."""
     light = radiance[..., :3].astype(F32)
     if bloom > 0.0:
         part = F32(1.0) / F32(BLOOM_LEVELS)

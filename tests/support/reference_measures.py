@@ -16,7 +16,7 @@ GREATEST_FLOW = 1e7
 def measure_with_numpy(
     instance: NDArray[np.uint16], flow: NDArray[np.float32] | None
 ) -> tuple[NDArray[np.uint16], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
-    """Measure what is seen of each instance; as `native.instance_measures.measure_instances`."""
+    """Measure what is seen of each instance; as `native.view_kernels.measure_instances`."""
     height, width = instance.shape
     counts = np.bincount(instance.reshape(-1), minlength=1)
     counts[0] = 0

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import json
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
 from typing import Any
 
 import aiohttp
@@ -92,3 +93,22 @@ async def connected(
         ) as socket,
     ):
         yield ViewerSocket(socket)
+
+
+def in_a_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
+    """Run a test that waits for answers in an event loop of its own."""
+
+    @functools.wraps(test)
+    def run(*args: Any, **kwargs: Any) -> None:
+        asyncio.run(test(*args, **kwargs))
+
+    return run
+
+
+@contextlib.asynccontextmanager
+async def page_of(server: ViewerServer) -> AsyncIterator[ViewerSocket]:
+    """A connection that watches the debug agent."""
+    async with connected(server) as page:
+        await page.ask("watch", agent="debug_agent", views=["rgb", "depth", "instance"])
+        await page.frame()
+        yield page

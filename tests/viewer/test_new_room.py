@@ -13,8 +13,8 @@ from sailenv_ros.cli.main import main
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium
+from tests.support.viewer_socket import in_a_loop, page_of
 from tests.support.waiting import until
-from tests.viewer.test_undo import in_a_loop, page_of
 
 
 @pytest.fixture(scope="module")

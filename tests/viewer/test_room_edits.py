@@ -17,7 +17,7 @@ from sailenv_ros.simulation.operations.rooms import RoomOperations
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium
-from tests.viewer.test_undo import in_a_loop, page_of
+from tests.support.viewer_socket import in_a_loop, page_of
 
 SMALL_ROOM = """
 version: 1

@@ -20,7 +20,7 @@ from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS
 from sailenv_ros.viewer.view_subscription import IN_FLIGHT
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
-from tests.support.viewer_socket import DEADLINE_S, ViewerSocket, connected
+from tests.support.viewer_socket import DEADLINE_S, ViewerSocket, connected, in_a_loop
 from tests.support.waiting import until
 
 VIEWS = ["rgb", "depth", "category", "instance", "flow"]
@@ -49,127 +49,116 @@ def test_frames_come_while_somebody_looks(server: ViewerServer, simulation: Simu
     until(lambda: "debug_agent" not in agents_of(simulation), "the debug agent to go")
 
 
-def test_who_shows_nothing_holds_nobody_up(server: ViewerServer, simulation: Simulation) -> None:
+@in_a_loop
+async def test_who_shows_nothing_holds_nobody_up(
+    server: ViewerServer, simulation: Simulation
+) -> None:
     """A stalled page is sent two frames; two others go on, and alone it lets nothing be drawn."""
-
-    async def look() -> None:
-        async with connected(server) as stalled, connected(server) as one, connected(server) as two:
-            for client in (stalled, one, two):
-                await client.ask("watch", agent="debug_agent", views=["rgb"])
-            for _ in range(IN_FLIGHT):
-                await stalled.frame(shown=False)
-            for _ in range(6):
-                await one.frame()
-                await two.frame()
-            assert server.clients == 3
-            # All that was sent lies before the answer.
-            await stalled.ask("select", obj=0)
-            assert len(stalled.heads) == IN_FLIGHT
-            await stalled.socket.send_json({"do": "shown", "number": 1})
-            head = await stalled.frame()
-            assert head["number"] == IN_FLIGHT + 1
-            assert head["dropped"] > 0
-
-    asyncio.run(look())
+    async with connected(server) as stalled, connected(server) as one, connected(server) as two:
+        for client in (stalled, one, two):
+            await client.ask("watch", agent="debug_agent", views=["rgb"])
+        for _ in range(IN_FLIGHT):
+            await stalled.frame(shown=False)
+        for _ in range(6):
+            await one.frame()
+            await two.frame()
+        assert server.clients == 3
+        # All that was sent lies before the answer.
+        await stalled.ask("select", obj=0)
+        assert len(stalled.heads) == IN_FLIGHT
+        await stalled.socket.send_json({"do": "shown", "number": 1})
+        head = await stalled.frame()
+        assert head["number"] == IN_FLIGHT + 1
+        assert head["dropped"] > 0
 
 
-def test_nothing_is_drawn_for_a_page_that_stalls(server: ViewerServer) -> None:
+@in_a_loop
+async def test_nothing_is_drawn_for_a_page_that_stalls(server: ViewerServer) -> None:
     """Its stream asks for no views until the page has shown what it has."""
-
-    async def look() -> None:
-        async with connected(server) as client:
-            await client.ask("watch", agent="debug_agent", views=["rgb"])
-            for _ in range(IN_FLIGHT):
-                await client.frame(shown=False)
-            await asyncio.to_thread(
-                until, lambda: not server.rendered_views, "the stalled page to be given up"
-            )
-            await client.socket.send_json({"do": "shown", "number": IN_FLIGHT})
-            await client.frame()
-            assert "rgb" in server.rendered_views
-
-    asyncio.run(look())
+    async with connected(server) as client:
+        await client.ask("watch", agent="debug_agent", views=["rgb"])
+        for _ in range(IN_FLIGHT):
+            await client.frame(shown=False)
+        await asyncio.to_thread(
+            until, lambda: not server.rendered_views, "the stalled page to be given up"
+        )
+        await client.socket.send_json({"do": "shown", "number": IN_FLIGHT})
+        await client.frame()
+        assert "rgb" in server.rendered_views
 
 
-def test_the_probe_tells_the_arrays_values(server: ViewerServer, simulation: Simulation) -> None:
+@in_a_loop
+async def test_the_probe_tells_the_arrays_values(
+    server: ViewerServer, simulation: Simulation
+) -> None:
     """While time stands still a capture of the same agent has the very same numbers."""
-
-    async def look() -> None:
-        async with connected(server) as client:
-            await client.ask("watch", agent="debug_agent", views=["rgb"])
-            await client.frame()
-            await client.ask("pause")
-            try:
+    async with connected(server) as client:
+        await client.ask("watch", agent="debug_agent", views=["rgb"])
+        await client.frame()
+        await client.ask("pause")
+        try:
+            head = await client.until(lambda m: m.get("type") == "frame")
+            while head["time_s"] < simulation.sim_time_ns * 1e-9 - 1e-9:
+                await client.socket.send_json({"do": "shown", "number": head["number"]})
                 head = await client.until(lambda m: m.get("type") == "frame")
-                while head["time_s"] < simulation.sim_time_ns * 1e-9 - 1e-9:
-                    await client.socket.send_json({"do": "shown", "number": head["number"]})
-                    head = await client.until(lambda m: m.get("type") == "frame")
-                frame = await asyncio.to_thread(simulation.capture, VIEWS, agent="debug_agent")
-                for u, v in ((80, 60), (20, 100), (150, 5)):
-                    told = await client.ask("probe", frame=head["number"], u=u, v=v)
-                    assert told["instance_id"] == frame["instance"][v, u]
-                    assert told["category_id"] == frame["category"][v, u]
-                    depth = frame["depth"][v, u]
-                    assert (told["depth"] is None) == (not np.isfinite(depth))
-                    if told["depth"] is not None:
-                        assert np.float32(told["depth"]) == depth
-            finally:
-                await client.ask("resume")
-
-    asyncio.run(look())
-
-
-def test_a_paused_scene_is_drawn_again_when_it_changes(server: ViewerServer) -> None:
-    """Who edits while time stands still sees what has changed."""
-
-    async def look() -> None:
-        async with connected(server) as client:
-            await client.ask("watch", agent="debug_agent", views=["rgb"])
-            await client.frame()
-            await client.ask("pause")
-            try:
-                made = await client.ask("spawn", asset="cube", u=80, v=60)
-                await client.ask("select", obj=made["id"])
-                while not (head := await client.frame()).get("outline"):
-                    pass
-                assert made["id"] in dict(head["visible"])
-                await client.ask("despawn_object", obj=made["id"])
-                while made["id"] in dict((await client.frame())["visible"]):
-                    pass
-            finally:
-                await client.ask("resume")
-
-    asyncio.run(look())
-
-
-def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerServer) -> None:
-    """Its foot lies on the point that the pixel shows, although a cube's origin is its middle."""
-
-    async def look() -> None:
-        async with connected(server) as client:
-            await client.ask("pause")
-            await client.ask("watch", agent="debug_agent", views=["rgb"])
-            head = await client.frame()
-            made = await client.ask("spawn", asset="cube", frame=head["number"], u=80, v=110)
-            matrix = np.array(head["camera_from_world"]).reshape(3, 4)
-            foot = np.array(made["position"]) - (0.0, 0.0, 0.5 * made["size"][2])
-            seen = matrix[:, :3] @ foot + matrix[:, 3]
-            fx, fy, cx, cy = head["lens"]
-            assert fx * seen[0] / seen[2] + cx == pytest.approx(80, abs=1)
-            assert fy * seen[1] / seen[2] + cy == pytest.approx(110, abs=1)
-            changed = await client.ask("change_object", obj=made["id"], changes={"scale": 0.5})
-            assert changed["scale"] == [0.5, 0.5, 0.5]
-            moved = await client.ask(
-                "move_object",
-                obj=made["id"],
-                pose={"position": [1, 2, 3], "rotation": [0, 0, 90]},
-                teleport=True,
-            )
-            assert moved["position"][:2] == pytest.approx([1, 2], abs=0.01)
-            await client.ask("despawn_object", obj=made["id"])
+            frame = await asyncio.to_thread(simulation.capture, VIEWS, agent="debug_agent")
+            for u, v in ((80, 60), (20, 100), (150, 5)):
+                told = await client.ask("probe", frame=head["number"], u=u, v=v)
+                assert told["instance_id"] == frame["instance"][v, u]
+                assert told["category_id"] == frame["category"][v, u]
+                depth = frame["depth"][v, u]
+                assert (told["depth"] is None) == (not np.isfinite(depth))
+                if told["depth"] is not None:
+                    assert np.float32(told["depth"]) == depth
+        finally:
             await client.ask("resume")
 
-    asyncio.run(look())
+
+@in_a_loop
+async def test_a_paused_scene_is_drawn_again_when_it_changes(server: ViewerServer) -> None:
+    """Who edits while time stands still sees what has changed."""
+    async with connected(server) as client:
+        await client.ask("watch", agent="debug_agent", views=["rgb"])
+        await client.frame()
+        await client.ask("pause")
+        try:
+            made = await client.ask("spawn", asset="cube", u=80, v=60)
+            await client.ask("select", obj=made["id"])
+            while not (head := await client.frame()).get("outline"):
+                pass
+            assert made["id"] in dict(head["visible"])
+            await client.ask("despawn_object", obj=made["id"])
+            while made["id"] in dict((await client.frame())["visible"]):
+                pass
+        finally:
+            await client.ask("resume")
+
+
+@in_a_loop
+async def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerServer) -> None:
+    """Its foot lies on the point that the pixel shows, although a cube's origin is its middle."""
+    async with connected(server) as client:
+        await client.ask("pause")
+        await client.ask("watch", agent="debug_agent", views=["rgb"])
+        head = await client.frame()
+        made = await client.ask("spawn", asset="cube", frame=head["number"], u=80, v=110)
+        matrix = np.array(head["camera_from_world"]).reshape(3, 4)
+        foot = np.array(made["position"]) - (0.0, 0.0, 0.5 * made["size"][2])
+        seen = matrix[:, :3] @ foot + matrix[:, 3]
+        fx, fy, cx, cy = head["lens"]
+        assert fx * seen[0] / seen[2] + cx == pytest.approx(80, abs=1)
+        assert fy * seen[1] / seen[2] + cy == pytest.approx(110, abs=1)
+        changed = await client.ask("change_object", obj=made["id"], changes={"scale": 0.5})
+        assert changed["scale"] == [0.5, 0.5, 0.5]
+        moved = await client.ask(
+            "move_object",
+            obj=made["id"],
+            pose={"position": [1, 2, 3], "rotation": [0, 0, 90]},
+            teleport=True,
+        )
+        assert moved["position"][:2] == pytest.approx([1, 2], abs=0.01)
+        await client.ask("despawn_object", obj=made["id"])
+        await client.ask("resume")
 
 
 def test_pictures_and_lights_are_changed(server: ViewerServer, simulation: Simulation) -> None:
@@ -301,24 +290,21 @@ def test_hostile_messages_are_answered_in_words(
     assert "internal error" not in caplog.text
 
 
-def test_bytes_floods_and_giants_end_a_conversation(server: ViewerServer) -> None:
+@in_a_loop
+async def test_bytes_floods_and_giants_end_a_conversation(server: ViewerServer) -> None:
     """Bytes are refused in words; too much of anything closes the socket."""
-
-    async def send() -> None:
-        async with connected(server) as client:
-            await client.socket.send_bytes(b"\x00" * 100)
-            assert (await client.until(lambda m: m["type"] == "refused"))["error"]
-            await client.socket.send_str("x" * (70 * 1024))
-            assert await closing_code(client) in (aiohttp.WSCloseCode.MESSAGE_TOO_BIG, RESET)
-        async with connected(server) as client:
-            for _ in range(500):
-                try:
-                    await client.socket.send_str(json.dumps({"do": "shown", "number": 0}))
-                except ConnectionError:  # closed before the last of them
-                    break
-            assert await closing_code(client) in (aiohttp.WSCloseCode.POLICY_VIOLATION, RESET)
-
-    asyncio.run(send())
+    async with connected(server) as client:
+        await client.socket.send_bytes(b"\x00" * 100)
+        assert (await client.until(lambda m: m["type"] == "refused"))["error"]
+        await client.socket.send_str("x" * (70 * 1024))
+        assert await closing_code(client) in (aiohttp.WSCloseCode.MESSAGE_TOO_BIG, RESET)
+    async with connected(server) as client:
+        for _ in range(500):
+            try:
+                await client.socket.send_str(json.dumps({"do": "shown", "number": 0}))
+            except ConnectionError:  # closed before the last of them
+                break
+        assert await closing_code(client) in (aiohttp.WSCloseCode.POLICY_VIOLATION, RESET)
 
 
 RESET = aiohttp.WSCloseCode.ABNORMAL_CLOSURE
@@ -430,22 +416,19 @@ def test_from_elsewhere_a_token_is_needed_and_only_looks(simulation: Simulation)
             asyncio.run(knock(server, may=may))
 
 
-def test_every_answer_has_the_headers_that_protect_the_page(server: ViewerServer) -> None:
+@in_a_loop
+async def test_every_answer_has_the_headers_that_protect_the_page(server: ViewerServer) -> None:
     """The page, its files, what does not exist, and refusals."""
-
-    async def fetch() -> None:
-        base = f"http://127.0.0.1:{server.port}/"
-        async with aiohttp.ClientSession() as session:
-            for path, status in (("", 200), ("main.js", 200), ("no.js", 404), ("a/b", 404)):
-                async with session.get(base + path) as answer:
-                    assert answer.status == status
-                    for name, value in SECURITY_HEADERS.items():
-                        assert answer.headers[name] == value
-            for path in ("..%2f__init__.py", "%2e%2e/setup.py", "server.py"):
-                async with session.get(base + path) as answer:
-                    assert answer.status == 404
-
-    asyncio.run(fetch())
+    base = f"http://127.0.0.1:{server.port}/"
+    async with aiohttp.ClientSession() as session:
+        for path, status in (("", 200), ("main.js", 200), ("no.js", 404), ("a/b", 404)):
+            async with session.get(base + path) as answer:
+                assert answer.status == status
+                for name, value in SECURITY_HEADERS.items():
+                    assert answer.headers[name] == value
+        for path in ("..%2f__init__.py", "%2e%2e/setup.py", "server.py"):
+            async with session.get(base + path) as answer:
+                assert answer.status == 404
 
 
 def test_an_address_that_is_taken_is_refused(server: ViewerServer, simulation: Simulation) -> None:

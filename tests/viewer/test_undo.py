@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-import functools
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from contextlib import asynccontextmanager
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,27 +12,8 @@ from playwright.sync_api import Browser, expect
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
 from tests.support.browser import OpenPage, chromium
-from tests.support.viewer_socket import ViewerSocket, connected
+from tests.support.viewer_socket import in_a_loop, page_of
 from tests.support.waiting import until
-
-
-def in_a_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
-    """Run a test that waits for answers in an event loop of its own."""
-
-    @functools.wraps(test)
-    def run(*args: Any, **kwargs: Any) -> None:
-        asyncio.run(test(*args, **kwargs))
-
-    return run
-
-
-@asynccontextmanager
-async def page_of(server: ViewerServer) -> AsyncIterator[ViewerSocket]:
-    """A connection that watches the debug agent."""
-    async with connected(server) as page:
-        await page.ask("watch", agent="debug_agent", views=["rgb", "depth", "instance"])
-        await page.frame()
-        yield page
 
 
 def by_name(simulation: Simulation) -> dict[str, tuple[Any, ...]]:

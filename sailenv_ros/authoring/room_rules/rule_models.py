@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector
+from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector, optional
 from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
 from sailenv_ros.scene.spec_room import SurfaceSpec
 
@@ -103,7 +103,7 @@ class FurnitureRule(_RuleModel):
         default="wall", description="where it stands or hangs"
     )
     gap: Metres = Field(default=(0.0, 0.0), description="between its back and the wall [m]")
-    height: Metres | None = Field(default=None, description="of what hangs, above the floor [m]")
+    height: Metres | None = optional("of what hangs, above the floor [m]")
     scale: Factor = Field(default=(1.0, 1.0), description="of its size")
     turn: Turn = Field(default=(0.0, 0.0), description="besides facing into the room [deg]")
     static: Annotated[bool, Switch()] = Field(default=True, description="false for what can fall")
@@ -115,13 +115,9 @@ class FurnitureRule(_RuleModel):
     )
     clear: ClearRule = Field(default_factory=ClearRule, description="floor that stays free")
     companions: tuple[CompanionRule, ...] = Field(default=(), description="what belongs to it")
-    holds: _Name | None = Field(default=None, description="name of a list in things.yaml")
-    setting: _Name | None = Field(
-        default=None, description="list in things.yaml that is laid before each chair around it"
-    )
-    light: Strength | None = Field(
-        default=None, description="radiant intensity of a lamp that is on [W/sr]"
-    )
+    holds: _Name | None = optional("name of a list in things.yaml")
+    setting: _Name | None = optional("list in things.yaml that is laid before each chair around it")
+    light: Strength | None = optional("radiant intensity of a lamp that is on [W/sr]")
     light_at: Fraction = Field(default=0.9, description="share of its height at which it shines")
 
 
@@ -138,7 +134,7 @@ class ThingRule(_RuleModel):
     static: Annotated[bool, Switch()] = Field(default=False, description="true: never moves")
     inset: _Length = Field(default=0.0, description="in a setting: from the table's edge [m]")
     aside: _Length = Field(default=0.0, description="in a setting: to the right of the guest [m]")
-    light: Strength | None = Field(default=None, description="of a lamp that is on [W/sr]")
+    light: Strength | None = optional("of a lamp that is on [W/sr]")
 
 
 class FurnitureFile(_RuleModel):
@@ -163,7 +159,7 @@ class MaterialsRule(_RuleModel):
     accent_chance: Fraction = Field(default=0.5, description="that one wall differs")
     floor: tuple[SurfaceSpec, ...] = Field(min_length=1, description="one is taken")
     curtains: tuple[LinearColour, ...] = Field(default=(), description="colours of the cloth")
-    skirting: LinearColour | None = Field(default=None, description="its paint; none: no skirting")
+    skirting: LinearColour | None = optional("its paint; none: no skirting")
 
 
 class MaterialsFile(_RuleModel):
@@ -194,7 +190,7 @@ class LightRule(_RuleModel):
     exposure: Annotated[tuple[float, float], Vector(2, _PAIR, one_for_all=True)] = Field(
         description="[stops]"
     )
-    sun: SunRule | None = Field(default=None, description="none on a cloudy day and at night")
+    sun: SunRule | None = optional("none on a cloudy day and at night")
     window: Strength = Field(description="radiance of the sky's light in the windows [W/(m2 sr)]")
     window_colour: Radiance = Field(description="of the sky's light")
     ceiling: Strength = Field(description="radiant intensity of ceiling lamps [W/sr]")
@@ -259,13 +255,13 @@ class PieceRule(_RuleModel):
 class SplitRule(_RuleModel):
     """A part of an apartment: a room of some kind, or a part that a wall divides."""
 
-    name: _Name | None = Field(default=None, description="of the room")
-    kind: _Name | None = Field(default=None, description="kind of the room")
+    name: _Name | None = optional("of the room")
+    kind: _Name | None = optional("kind of the room")
     hub: Annotated[bool, Switch()] = Field(
         default=False, description="true: the other rooms have doorways to it"
     )
-    along: Annotated[Literal["x", "y"], Choice(("x", "y"))] | None = Field(
-        default=None, description="axis along which the parts follow each other"
+    along: Annotated[Literal["x", "y"], Choice(("x", "y"))] | None = optional(
+        "axis along which the parts follow each other"
     )
     at: Shares = Field(default=(0.5, 0.5), description="share of the first part")
     parts: tuple[SplitRule, ...] = Field(default=(), description="the two parts", max_length=2)

@@ -41,12 +41,7 @@ def write_bytes(path: Path, data: bytes) -> None:
 def open_draft(drafts: ExitStack, path: Path) -> BinaryIO:
     """Open a file of a data set, which takes its place when `drafts` is closed well.
 
-    Its folder is made. `discard_drafts` gives all of them up.
-
-    Raises
-    ------
-    RecordingError
-        If it cannot be written.
+    Its folder is made. `discard_drafts` gives all of them up. Errors are those of `write_bytes`.
     """
     with write_errors(path):
         make_folder(path.parent)

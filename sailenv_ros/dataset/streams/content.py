@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 from pathlib import Path
 
 from sailenv_ros.light.bake.fingerprint import fingerprint
@@ -33,7 +32,7 @@ def scene_content(scene: Path, seed: int, light: SteadyLight) -> dict[str, str]:
         If the scene cannot be built, or its light not be baked.
     """
     library = SceneLibrary(baked_light=light != PLAIN, drafts=False)
-    world = library.build(scene, seed, epoch=1, next_revision=itertools.count().__next__)
+    world = library.build(scene, seed, epoch=1)
     try:
         if light != PLAIN:
             bake_missing(world)

@@ -71,17 +71,7 @@ class PointCloud:
 def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
     """Return the points that a frame's pixels see; those without a finite depth are left out.
 
-    Parameters
-    ----------
-    frame : FrameData
-        With the view ``depth``.
-    in_world : bool
-        False gives points in the camera's optical frame.
-
-    Raises
-    ------
-    UnknownName
-        If the frame has no depth.
+    See `Frame.points`.
     """
     lens, depth = frame.camera.intrinsics, frame["depth"].reshape(-1)
     pixels = np.flatnonzero(np.isfinite(depth))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.instance_measures import measure_instances
+from sailenv_ros.native.view_kernels import measure_instances
 
 __all__ = ["VisibleParts", "visible_parts"]
 

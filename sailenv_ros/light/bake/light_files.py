@@ -101,15 +101,7 @@ def store_baked(baked: BakedLight) -> Path:
 
 
 def store_draft(baked: BakedLight) -> Path:
-    """Keep rough light until `store_baked` is called with the light itself.
-
-    Raises
-    ------
-    StorageError
-        If the file cannot be written.
-    DeadlineExceeded
-        If another process kept writing to the folder.
-    """
+    """Keep rough light until `store_baked` is called with the light itself; errors as of that."""
     return _stored(baked, baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX))
 
 

@@ -9,7 +9,7 @@ __all__ = ["FINE", "QUICK", "Quality"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quality:
-    """Sample counts of relighting.
+    """Sample counts of relighting; by themselves, those of `FINE`.
 
     Attributes
     ----------
@@ -36,17 +36,17 @@ class Quality:
         surfaces that became brighter or darker.
     """
 
-    first_rays: int
-    rays: int
-    area_rays: int
-    light_rays: int
-    probe_rays: int
-    smoothing: int
-    least: float
-    bounces: int
-    with_far: bool
-    by_texels: bool
-    least_far: float
+    first_rays: int = 16
+    rays: int = 64
+    area_rays: int = 16
+    light_rays: int = 16
+    probe_rays: int = 128
+    smoothing: int = 2
+    least: float = 0.002
+    bounces: int = 8
+    with_far: bool = True
+    by_texels: bool = True
+    least_far: float = 0.004
 
 
 QUICK = Quality(
@@ -64,17 +64,5 @@ QUICK = Quality(
 )
 """Quality of a frame in which something moves."""
 
-FINE = Quality(
-    first_rays=16,
-    rays=64,
-    area_rays=16,
-    light_rays=16,
-    probe_rays=128,
-    smoothing=2,
-    least=0.002,
-    bounces=8,
-    with_far=True,
-    by_texels=True,
-    least_far=0.004,
-)
+FINE = Quality()
 """Quality of the frames after a motion."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
-from sailenv_ros.native.amodal_drawing import AmodalDrawing
+from sailenv_ros.native.drawing import AmodalDrawing
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import native_view

@@ -7,27 +7,22 @@ drawn.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RenderError
 from sailenv_ros.native.drawing import Drawing
-from sailenv_ros.native.library import native_library, thread_count
+from sailenv_ros.native.library import native_library
 from sailenv_ros.native.render_types import PART, VIEW, record
-from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.render.cpu.frame_light import FrameLight
 from sailenv_ros.render.cpu.part_table import PartTable
-from sailenv_ros.render.picture import annotate as ground_truth
-from sailenv_ros.render.picture.finishing import Finisher
+from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
-from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, Window
+from sailenv_ros.render.scene.flat_mirrors import Window
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
-from sailenv_ros.types.views import VIEWS, checked_views, views_of
+from sailenv_ros.types.views import VIEWS, views_of
 
 __all__ = ["NativeRenderer", "native_view"]
 
@@ -37,7 +32,7 @@ _ATTRIBUTES = views_of("geometry")
 _NO_GLASS = np.zeros(0, PART)
 
 
-class NativeRenderer:
+class NativeRenderer(DrawingRenderer):
     """Draws with the native library; belongs to the thread that makes it.
 
     Parameters
@@ -54,13 +49,10 @@ class NativeRenderer:
     """
 
     def __init__(self, *, threads: int | None = None, table: PartTable | None = None) -> None:
-        self._threads = thread_count() if threads is None else threads
+        super().__init__(threads)
         self._drawing = Drawing(self._threads)
         self._table = PartTable() if table is None else table
         self._light = FrameLight(self._drawing, self._threads)
-        self._finisher = Finisher(self._threads)
-        self._mirrors = FlatMirrors()
-        self._closed = False
 
     @property
     def description(self) -> str:
@@ -83,51 +75,16 @@ class NativeRenderer:
         """Views that it can make, in the order of `frame.VIEWS`."""
         return views_of("lighting", "annotation", "geometry")
 
-    def render(
-        self,
-        snapshot: WorldSnapshot,
-        previous: Observation | None,
-        camera: Camera,
-        views: Iterable[str],
-    ) -> RenderedViews:
-        """Make the wanted views of one camera; see `RenderBackend.render`."""
-        if self._closed:
-            raise RenderError("the renderer was closed")
-        wanted = frozenset(checked_views(views, supported=self.supported_views))
-        needs_past_depth = any(VIEWS[view].needs_past_depth for view in wanted)
-        if needs_past_depth and previous is not None and previous.depth is None:
-            then = (previous.snapshot, previous.camera)
-            surface = self._draw(*then, frozenset({"depth"}), {})["surface"]
-            previous = ground_truth.with_depth(previous, surface)
-        timings: dict[str, float] = {}
-        arrays = self._draw(snapshot, camera, wanted, timings)
-        return self._finisher.finish(
-            arrays,
-            snapshot,
-            previous,
-            camera,
-            wanted,
-            lambda: self._table.at_baked_pose(snapshot),
-            timings,
-        )
+    def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+        return self._table.at_baked_pose(snapshot)
 
-    def close(self) -> None:
-        """Free everything; a second call does nothing."""
-        if self._closed:
-            return
-        self._closed = True
+    def _release(self) -> None:
         self._drawing.close()
 
-    def _draw(
-        self,
-        snapshot: WorldSnapshot,
-        camera: Camera,
-        wanted: frozenset[str],
-        timings: dict[str, float],
-    ) -> dict[str, NDArray[Any]]:
+    def _draw(self, observed: Observation, wanted: frozenset[str], timings: Timings) -> Arrays:
         """Draw surfaces, and what else is wanted."""
         began = time.perf_counter()
-        table = self._table
+        snapshot, camera, table = observed.snapshot, observed.camera, self._table
         table.show(snapshot.contents)
         marked = time.perf_counter()
         timings["upload"] = marked - began
@@ -142,7 +99,7 @@ class NativeRenderer:
         # With supersampling the picture is drawn apart: ground truth is of pixel centres.
         sampled = light is not None and camera.picture.supersampling > 1
         height, width = camera.intrinsics.height, camera.intrinsics.width
-        arrays: dict[str, NDArray[Any]] = {"surface": np.empty((height, width, 2), np.float32)}
+        arrays: Arrays = {"surface": np.empty((height, width, 2), np.float32)}
         for view in _ATTRIBUTES:
             if view in wanted:
                 arrays[view] = np.empty(VIEWS[view].shape(height, width), VIEWS[view].dtype)
@@ -184,7 +141,7 @@ class NativeRenderer:
         snapshot: WorldSnapshot,
         camera: Camera,
         light: NDArray[np.void],
-        arrays: dict[str, NDArray[Any]],
+        arrays: Arrays,
     ) -> None:
         """Put into the picture what its flat mirrors show."""
         mirrors = self._mirrors.seen(snapshot, camera)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.gl import cluster_culling
+from sailenv_ros.native import cluster_kernels
 from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.gl.materials import BatchKind, MaterialBuffers
 from sailenv_ros.render.scene.drawn_meshes import chart_table, drawn_meshes
@@ -207,7 +207,7 @@ class DrawList:
         linear, offset = self._eye_from_object[:, :3, :3], self._eye_from_object[:, :3, 3:]
         eyes = np.linalg.solve(linear, -offset)[:, :, 0].astype(np.float64)
         rows = self._instance_rows
-        seen, lies = cluster_culling.seen_indices(
+        seen, lies = cluster_kernels.seen_indices(
             np.array(chosen, np.intp),
             self._geometry.clusters,
             self._ranges,

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
+import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import RenderError
-from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.render.gl.context import create_context
 from sailenv_ros.render.gl.draw_list import DrawList
 from sailenv_ros.render.gl.edge_pass import EdgePass
@@ -29,14 +26,13 @@ from sailenv_ros.render.gl.materials import MaterialBuffers
 from sailenv_ros.render.gl.picture_buffers import PictureBuffers
 from sailenv_ros.render.gl.programs import ProgramCache
 from sailenv_ros.render.gl.scene_light import SceneLight
-from sailenv_ros.render.picture import annotate as ground_truth
-from sailenv_ros.render.picture.finishing import Finisher
+from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
-from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, SeenMirror, Window
+from sailenv_ros.render.scene.flat_mirrors import SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
-from sailenv_ros.types.views import VIEWS, checked_views, views_of
+from sailenv_ros.types.views import VIEWS, views_of
 
 __all__ = ["Renderer"]
 
@@ -44,7 +40,7 @@ _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
 """Row 0 of OpenGL's window becomes the picture's top row: nothing is flipped afterwards."""
 
 
-class Renderer:
+class Renderer(DrawingRenderer):
     """Draws with OpenGL, without a window; belongs to the thread that makes it.
 
     Parameters
@@ -59,6 +55,7 @@ class Renderer:
     """
 
     def __init__(self, *, device: int | None = None) -> None:
+        super().__init__()
         self._context, self._device = create_context(device)
         try:
             with self._context:
@@ -76,9 +73,6 @@ class Renderer:
             raise
         self._outputs = written_views()
         self._draws: DrawList | None = None
-        self._finisher = Finisher()
-        self._mirrors = FlatMirrors()
-        self._closed = False
 
     @property
     def description(self) -> str:
@@ -98,40 +92,13 @@ class Renderer:
         made = {*views_of("lighting", "annotation"), *self._outputs}
         return tuple(view for view in VIEWS if view in made)
 
-    def render(
-        self,
-        snapshot: WorldSnapshot,
-        previous: Observation | None,
-        camera: Camera,
-        views: Iterable[str],
-    ) -> RenderedViews:
-        """Make the wanted views of one camera; see `RenderBackend.render`."""
-        if self._closed:
-            raise RenderError("the renderer was closed")
-        wanted = frozenset(checked_views(views, supported=self.supported_views))
-        needs_past_depth = any(VIEWS[view].needs_past_depth for view in wanted)
-        timings: dict[str, float] = {}
-        with self._context:
-            if needs_past_depth and previous is not None and previous.depth is None:
-                then = (previous.snapshot, previous.camera)
-                surface = self._draw(*then, frozenset({"depth"}), {})["surface"]
-                previous = ground_truth.with_depth(previous, surface)
-            arrays = self._draw(snapshot, camera, wanted, timings)
-        return self._finisher.finish(
-            arrays,
-            snapshot,
-            previous,
-            camera,
-            wanted,
-            lambda: self._draws_of(snapshot).at_baked_pose(snapshot),
-            timings,
-        )
+    def _drawing_context(self) -> moderngl.Context:
+        return self._context
 
-    def close(self) -> None:
-        """Free everything on the GPU; a second call does nothing."""
-        if self._closed:
-            return
-        self._closed = True
+    def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+        return self._draws_of(snapshot).at_baked_pose(snapshot)
+
+    def _release(self) -> None:
         with self._context:
             for resource in (
                 self._pictures,
@@ -148,14 +115,9 @@ class Renderer:
                     resource.close()
         self._context.release()
 
-    def _draw(
-        self,
-        snapshot: WorldSnapshot,
-        camera: Camera,
-        wanted: frozenset[str],
-        timings: dict[str, float],
-    ) -> dict[str, NDArray[Any]]:
+    def _draw(self, observed: Observation, wanted: frozenset[str], timings: Timings) -> Arrays:
         """Run the passes and read back what they left."""
+        snapshot, camera = observed.snapshot, observed.camera
         marks = [("", time.perf_counter())]
 
         def mark(stage: str) -> None:
@@ -179,7 +141,7 @@ class Renderer:
         outputs = tuple(view for view in self._outputs if view in wanted)
         targets = self._surfaces(snapshot, camera, shaded=shaded and not apart, outputs=outputs)
         mark("geometry")
-        arrays: dict[str, NDArray[Any]] = {}
+        arrays: Arrays = {}
         sampled = camera.picture.supersampling > 1
         mirrors: list[SeenMirror] = []
         if illumination is not None:
@@ -259,7 +221,7 @@ class Renderer:
         mirrors: list[SeenMirror],
         camera: Camera,
         illumination: Illumination,
-        arrays: dict[str, NDArray[Any]],
+        arrays: Arrays,
         samples: NDArray[np.float32] | None,
     ) -> None:
         """Put into the picture what its flat mirrors show."""

@@ -51,11 +51,8 @@ class ShadowPass:
 
         Parameters
         ----------
-        casting : (N,) bool or None
-            Which instances cast; None for all.
-        framed : (N,) bool or None
-            Which instances the map encloses; None for all. Things that move are better left out:
-            a map that follows them changes its texels' places, and so every shadow's edge.
+        casting, framed : (N,) bool or None
+            As `ShadowPlan.update` takes them.
         """
         redraw = self.plan.update(light, snapshot, casting=casting, framed=framed)
         if redraw is None:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.ambient_visibility import AmbientSettings, find_ambient_visibility
+from sailenv_ros.native.picture_kernels import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
 __all__ = ["PATTERN", "ambient_visibility", "kernel_settings"]

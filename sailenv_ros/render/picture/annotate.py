@@ -22,8 +22,8 @@ from sailenv_ros.frame.motion.rigid_motion import (
     motion_table,
     object_points,
 )
-from sailenv_ros.native.annotation import annotate_pixels
 from sailenv_ros.native.motion_kernels import move_points
+from sailenv_ros.native.view_kernels import annotate_pixels
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of

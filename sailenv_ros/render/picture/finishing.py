@@ -1,30 +1,40 @@
-"""From what a renderer drew to views: the finished picture and the annotations.
+"""What every renderer does around its drawing: checks, the past's depth, finished views.
 
-Surfaces and radiance come in, the wanted views go out. Every back end ends with this.
+A renderer draws surfaces and radiance; the wanted views go out.
 """
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Callable
-from typing import Any
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import RenderError
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderedViews
-from sailenv_ros.render.picture.annotate import annotate
+from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.post_pass import PostPass
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
-from sailenv_ros.types.views import VIEWS
+from sailenv_ros.types.views import VIEWS, checked_views
 
-__all__ = ["Finisher"]
+__all__ = ["Arrays", "DrawingRenderer", "Timings"]
+
+Arrays: TypeAlias = dict[str, NDArray[Any]]
+"""What was drawn, by the names of views and of what views are made of."""
+
+Timings: TypeAlias = dict[str, float]
+"""Wall time of each stage [s]."""
 
 
-class Finisher:
-    """Makes views of what was drawn.
+class DrawingRenderer(ABC):
+    """A renderer without its drawing; see `RenderBackend`.
 
     Parameters
     ----------
@@ -35,42 +45,44 @@ class Finisher:
     def __init__(self, threads: int | None = None) -> None:
         self._threads = thread_count() if threads is None else threads
         self._post = PostPass(self._threads)
+        self._mirrors = FlatMirrors()
+        self._closed = False
 
-    def finish(
+    @property
+    @abstractmethod
+    def supported_views(self) -> tuple[str, ...]:
+        """Views that it can make, in the order of `frame.VIEWS`."""
+
+    def render(
         self,
-        arrays: dict[str, NDArray[Any]],
         snapshot: WorldSnapshot,
         previous: Observation | None,
         camera: Camera,
-        wanted: frozenset[str],
-        still: Callable[[], NDArray[np.bool_]],
-        timings: dict[str, float],
+        views: Iterable[str],
     ) -> RenderedViews:
-        """Make the wanted views.
-
-        Parameters
-        ----------
-        arrays : dict of str to array
-            ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
-            radiance (see `PostPass.finished`), and with supersampling perhaps ``samples``; other
-            views that are made already.
-        still : callable
-            Says which instances have baked light where they are.
-        timings : dict of str to float
-            Wall time of each stage [s]; this one's are added.
-        """
+        """Make the wanted views of one camera; see `RenderBackend.render`."""
+        if self._closed:
+            raise RenderError("the renderer was closed")
+        wanted = frozenset(checked_views(views, supported=self.supported_views))
+        keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
+        timings: Timings = {}
+        with self._drawing_context():
+            if keeps_depth and previous is not None and previous.depth is None:
+                past = self._draw(previous, frozenset({"depth"}), {})["surface"]
+                previous = with_depth(previous, past)
+            arrays = self._draw(Observation(snapshot=snapshot, camera=camera), wanted, timings)
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if "rgb" in wanted:
+            still, samples = self._at_baked_pose(snapshot), arrays.pop("samples", None)
             arrays["rgb"] = self._post.finished(
-                arrays["rgb"], surface, snapshot, camera, still(), arrays.pop("samples", None)
+                arrays["rgb"], surface, snapshot, camera, still, samples
             )
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
         truth = annotate(surface, snapshot, previous, camera, wanted, self._threads)
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
-        keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         depth: NDArray[np.float32] = truth["depth"]
         return RenderedViews(
             views={name: arrays[name] for name in wanted},
@@ -78,3 +90,33 @@ class Finisher:
             depth=depth if "depth" not in wanted else depth.copy() if keeps_depth else None,
             timings_s=timings,
         )
+
+    def close(self) -> None:
+        """Free everything; a second call does nothing."""
+        if not self._closed:
+            self._closed = True
+            self._release()
+
+    def _drawing_context(self) -> contextlib.AbstractContextManager[object]:
+        """Return what `_draw` runs in."""
+        return contextlib.nullcontext()
+
+    @abstractmethod
+    def _draw(self, observed: Observation, wanted: frozenset[str], timings: Timings) -> Arrays:
+        """Draw surfaces as a camera sees them, and what else is wanted.
+
+        Returns
+        -------
+        arrays : dict of str to array
+            ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
+            radiance (see `PostPass.finished`), and with supersampling perhaps ``samples``; other
+            views that are made already. The time of each stage is added to `timings`.
+        """
+
+    @abstractmethod
+    def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+        """Tell which instances have baked light where they are."""
+
+    @abstractmethod
+    def _release(self) -> None:
+        """Free everything."""

@@ -20,7 +20,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.light_gathering import gather_light
+from sailenv_ros.native.picture_kernels import gather_light
 from sailenv_ros.types.picture_settings import PictureSettings
 
 __all__ = ["sensor_light"]

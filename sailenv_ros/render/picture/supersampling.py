@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.resolve import resolve_samples
+from sailenv_ros.native.picture_kernels import resolve_samples
 from sailenv_ros.render.picture.tone_map import SAME_SURFACE, AmbientShade
 
 __all__ = ["mean_radiance"]

@@ -11,8 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.picture_kernels import make_picture
-from sailenv_ros.native.resolve import resolve_samples
+from sailenv_ros.native.picture_kernels import make_picture, resolve_samples
 
 __all__ = ["SAME_SURFACE", "AmbientShade", "apply_visibility", "tone_map"]
 

@@ -225,7 +225,9 @@ depth_frame_active : bool
 
         Raises
         ------
-        RecordingError, UnknownName
-            If it cannot be read, or has no such agent.
+        RecordingError
+            If it cannot be read, or has no frames of an agent.
+        UnknownName
+            If there is no such agent, or several and none was named.
         """
         return RecordedAgent(path, agent)

@@ -17,16 +17,18 @@ from numpy.typing import NDArray
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs.srv import Capture
 from sailenv_msgs_py.error_codes import error_from_response
+from sailenv_msgs_py.images import view_from_image
 from sailenv_msgs_py.services import SERVICES
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
+from sailenv_ros.recording.frames import frame_of_info
 from sailenv_ros.ros.client.direct_frames import DirectFrames, Disconnected
 from sailenv_ros.ros.client.frame_sync import Bundle
 from sailenv_ros.ros.client.frame_topics import AgentTopics
-from sailenv_ros.ros.client.received import frame_of_info, views_of_bundle
 from sailenv_ros.ros.client.remote import RemoteSimulator
 from sailenv_ros.simulation.operations import Operations
+from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.scene_info import SceneInfo
@@ -61,6 +63,8 @@ class FrameClient:
     """
 
     def __init__(self, remote: RemoteSimulator, spec: AgentSpec) -> None:
+        # A frame's bytes are received into arrays of megabytes: their memory serves the next ones.
+        keep_freed_memory()
         self._remote = remote
         self._spec = spec
         # Readers first: the agent's publishers then know them from their first message on.
@@ -171,7 +175,9 @@ class FrameClient:
         return self._frame_of_bundle(bundle, deadline)
 
     def _frame_of_bundle(self, bundle: Bundle, deadline: float) -> Frame | None:
-        return self._frame_of(bundle.info, views_of_bundle(bundle), deadline)
+        # The arrays lie on the messages' bytes; nobody else has them.
+        views = {view: view_from_image(view, image) for view, image in bundle.images.items()}
+        return self._frame_of(bundle.info, views, deadline)
 
     # -- both --------------------------------------------------------------------------------
 

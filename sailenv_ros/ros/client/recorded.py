@@ -14,9 +14,8 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
-from sailenv_ros.ros.client.frame_sync import Bundle
-from sailenv_ros.ros.client.received import frame_of_info, views_of_bundle
 from sailenv_ros.simulation.operations.frame_pictures import frame_pictures
+from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.scene_info import SceneInfo, SceneObject
 
@@ -26,22 +25,11 @@ __all__ = ["RecordedAgent"]
 class RecordedAgent(Sequence[dict[str, Any]]):
     """The frames of one recorded agent; a sequence, and a context manager.
 
-    Parameters
-    ----------
-    path : str or Path
-        A bag folder, or one MCAP file.
-    agent : str
-        Name of the agent; empty if there is only one.
-
-    Raises
-    ------
-    RecordingError
-        If it cannot be read, or has no frames of an agent.
-    UnknownName
-        If there is no such agent, or several and none was named.
+    Parameters and errors as `Agent.from_recording` has them.
     """
 
     def __init__(self, path: str | Path, agent: str = "") -> None:
+        keep_freed_memory()  # that of frames that were let go, for those that follow
         self._reader = RecordingReader(path)
         try:
             self._frames = RecordedFrames(self._reader, agent)
@@ -106,10 +94,7 @@ class RecordedAgent(Sequence[dict[str, Any]]):
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         self._current = self._frames.position(index)
-        info, images = self._frames.messages(self._current)
-        views = views_of_bundle(Bundle(sequence=info.sequence, info=info, images=images))
-        intrinsics = self._frames.intrinsics(self._current)
-        return frame_of_info(info, views, intrinsics, self._info).to_dict(copy=False)
+        return self._frames[self._current].to_dict(copy=False)
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return (self[number] for number in range(len(self)))

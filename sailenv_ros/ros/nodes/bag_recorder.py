@@ -10,7 +10,6 @@ from typing import Any, cast
 
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from sailenv_ros.recording.channels import (
     AGENT_TOPICS,
@@ -24,7 +23,8 @@ from sailenv_ros.recording.completeness import CompletenessCounter
 from sailenv_ros.recording.queue_writer import QueueWriter
 from sailenv_ros.recording.schemas import message_class
 from sailenv_ros.recording.snapshot_buffer import SnapshotBuffer
-from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
+from sailenv_ros.recording.topics import RecordedTopic
+from sailenv_ros.ros.nodes.qos import recorded_qos
 from sailenv_ros.system.presence import present_simulator
 from sailenv_ros.types.views import VIEWS
 
@@ -147,7 +147,7 @@ class Recorder:
             message_class(type_name),
             name,
             cast(Any, take),  # its types know of no raw messages
-            _listening(spec.qos),
+            recorded_qos(spec.qos, DEPTH),
             raw=True,
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=partial(self._count_lost, name), use_default_callbacks=False
@@ -208,14 +208,3 @@ class _SimulatorWatch:
             self._pid = None
             self.was_killed = True
             _log.error("the simulator %s was killed; what it sent is kept", self._namespace)
-
-
-def _listening(qos: OfferedQos) -> QoSProfile:
-    best_effort = qos.reliability == "best_effort"
-    latched = qos.durability == "transient_local"
-    return QoSProfile(
-        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_LAST,
-        depth=DEPTH,
-    )

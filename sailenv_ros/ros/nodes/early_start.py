@@ -26,8 +26,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError
-from sailenv_ros.ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
+from sailenv_ros.ros.nodes.hosting import Hosted, load_simulation
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
+from sailenv_ros.ros.nodes.parameter_table import NAMESPACE
 from sailenv_ros.ros.nodes.plain_arguments import plain_parameters
 from sailenv_ros.simulation.background_build import BuildStep
 from sailenv_ros.system.memory import keep_freed_memory

@@ -19,10 +19,7 @@ from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.background_build import BackgroundBuild, BuildStep, furnishing
 from sailenv_ros.viewer import ViewerServer
 
-__all__ = ["NAMESPACE", "Hosted", "load_simulation"]
-
-NAMESPACE = "/sailenv"
-"""The simulator's, unless ROS is told another."""
+__all__ = ["Hosted", "load_simulation"]
 
 _log = logging.getLogger(__name__)
 
@@ -46,8 +43,26 @@ class Hosted:
     ) -> None:
         self.simulation = simulation
         self.parameters = parameters
-        self._gateway = _gateway(simulation, parameters)
-        self._viewer = _viewer(simulation, parameters)
+        self._gateway = _unless_taken(
+            parameters.gateway_port,
+            "SAILenv clients cannot connect here",
+            lambda port: GatewayServer(
+                simulation,
+                host=parameters.gateway_host,
+                port=port,
+                protocol=parameters.gateway_protocol,
+            ),
+        )
+        self._viewer = _unless_taken(
+            parameters.viewer_port,
+            "there is no window in the browser here",
+            lambda port: ViewerServer(
+                simulation,
+                host=parameters.viewer_host,
+                port=port,
+                control=parameters.viewer_control,
+            ),
+        )
         steps = [*first, *_furnishing(simulation, parameters)]
         self._build = BackgroundBuild(simulation, steps) if steps else None
 
@@ -124,32 +139,6 @@ def _simulation(parameters: SimParameters) -> Simulation:
     return simulation
 
 
-def _gateway(simulation: Simulation, parameters: SimParameters) -> GatewayServer | None:
-    return _unless_taken(
-        parameters.gateway_port,
-        lambda: GatewayServer(
-            simulation,
-            host=parameters.gateway_host,
-            port=parameters.gateway_port,
-            protocol=parameters.gateway_protocol,
-        ),
-        "SAILenv clients cannot connect here",
-    )
-
-
-def _viewer(simulation: Simulation, parameters: SimParameters) -> ViewerServer | None:
-    return _unless_taken(
-        parameters.viewer_port,
-        lambda: ViewerServer(
-            simulation,
-            host=parameters.viewer_host,
-            port=parameters.viewer_port,
-            control=parameters.viewer_control,
-        ),
-        "there is no window in the browser here",
-    )
-
-
 def _furnishing(simulation: Simulation, parameters: SimParameters) -> list[BuildStep]:
     if parameters.build_missing == "nothing":
         return []
@@ -163,12 +152,12 @@ def _furnishing(simulation: Simulation, parameters: SimParameters) -> list[Build
     return [step]
 
 
-def _unless_taken(port: int, serve: Callable[[], Server], otherwise: str) -> Server | None:
+def _unless_taken(port: int, otherwise: str, serve: Callable[[int], Server]) -> Server | None:
     """Start a server; none on port 0, nor on one that is taken, of which the log then tells."""
     if not port:
         return None
     try:
-        return serve()
+        return serve(port)
     except AddressInUse as problem:
         # Another simulator on this machine is no reason not to start; anything else is.
         _log.warning("%s: %s", otherwise, problem)

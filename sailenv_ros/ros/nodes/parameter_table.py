@@ -25,7 +25,10 @@ from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
 from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
 
-__all__ = ["LIVE", "PARAMETERS", "Parameter", "SimParameters", "sim_parameters"]
+__all__ = ["LIVE", "NAMESPACE", "PARAMETERS", "Parameter", "SimParameters", "sim_parameters"]
+
+NAMESPACE = "/sailenv"
+"""The nodes', unless ROS is told another."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

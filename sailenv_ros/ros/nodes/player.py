@@ -17,7 +17,6 @@ from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from std_srvs.srv import Trigger
 
 from sailenv_ros.errors import InvalidRequest, RecordingError
@@ -25,12 +24,12 @@ from sailenv_ros.recording.channels import CLOCK, clock_message, present_form, s
 from sailenv_ros.recording.playback import PlaybackClock, Programme, programme
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.schemas import message_class
-from sailenv_ros.recording.topics import OfferedQos, RecordedTopic
+from sailenv_ros.recording.topics import RecordedTopic
 from sailenv_ros.ros.executor_thread import ExecutorThread
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.parameters import declare_table
-from sailenv_ros.ros.nodes.qos import clock_qos, no_events
+from sailenv_ros.ros.nodes.qos import clock_qos, no_events, recorded_qos
 from sailenv_ros.ros.nodes.running import run_node
 from sailenv_ros.types.validation import Bounds
 
@@ -232,23 +231,14 @@ def _playable(node: Node, reader: RecordingReader, names: Sequence[str]) -> list
 
 
 def _publisher(node: Node, topic: RecordedTopic) -> Publisher:
+    latched = topic.qos.durability == "transient_local"
+    # A little more than was offered: what was recorded late may follow closely.
+    depth = topic.qos.depth if latched else max(topic.qos.depth, 10)
     return node.create_publisher(
         message_class(topic.type),
         topic.name,
-        _offered(topic.qos),
+        recorded_qos(topic.qos, depth),
         event_callbacks=no_events(),
-    )
-
-
-def _offered(qos: OfferedQos) -> QoSProfile:
-    best_effort = qos.reliability == "best_effort"
-    latched = qos.durability == "transient_local"
-    return QoSProfile(
-        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_LAST,
-        # A little more than was offered: what was recorded late may follow closely.
-        depth=qos.depth if latched else max(qos.depth, 10),
     )
 
 

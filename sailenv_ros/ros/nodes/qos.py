@@ -6,6 +6,8 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from sailenv_ros.recording.topics import OfferedQos
+
 __all__ = [
     "clock_qos",
     "command_qos",
@@ -14,6 +16,7 @@ __all__ = [
     "latched_qos",
     "no_events",
     "overridable",
+    "recorded_qos",
 ]
 
 
@@ -22,51 +25,35 @@ def frame_qos() -> QoSProfile:
 
     Only the last few are kept: a slow subscriber loses frames and does not hold up the node.
     """
-    return QoSProfile(
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_LAST,
-        depth=3,
-    )
+    return _last_kept(depth=3)
 
 
 def latched_qos() -> QoSProfile:
     """State that whoever comes late must know: the last message is kept for it."""
-    return QoSProfile(
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL,
-        history=HistoryPolicy.KEEP_LAST,
-        depth=1,
-    )
+    return _last_kept(latched=True)
 
 
 def clock_qos() -> QoSProfile:
     """/clock: best effort and the latest alone, as every node's time source subscribes."""
-    return QoSProfile(
-        reliability=ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_LAST,
-        depth=1,
-    )
+    return _last_kept(reliable=False)
 
 
 def command_qos() -> QoSProfile:
     """Commands: best effort fits every sender, and the latest is the one that counts."""
-    return QoSProfile(
-        reliability=ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_LAST,
-        depth=1,
-    )
+    return _last_kept(reliable=False)
 
 
 def diagnostics_qos() -> QoSProfile:
     """/diagnostics: reliable, as its aggregators and viewers subscribe."""
-    return QoSProfile(
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_LAST,
-        depth=1,
+    return _last_kept()
+
+
+def recorded_qos(offered: OfferedQos, depth: int) -> QoSProfile:
+    """Reliability and durability as the publisher of a recorded topic offered them."""
+    return _last_kept(
+        depth,
+        reliable=offered.reliability != "best_effort",
+        latched=offered.durability == "transient_local",
     )
 
 
@@ -81,3 +68,13 @@ def no_events() -> PublisherEventCallbacks:
     A subscriber whose quality of service does not fit is warned on its own side.
     """
     return PublisherEventCallbacks(use_default_callbacks=False)
+
+
+def _last_kept(depth: int = 1, *, reliable: bool = True, latched: bool = False) -> QoSProfile:
+    """Return a profile that keeps the last messages; latched, for who comes late too."""
+    return QoSProfile(
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        history=HistoryPolicy.KEEP_LAST,
+        depth=depth,
+    )

@@ -16,14 +16,11 @@ from collections.abc import Sequence
 
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from sailenv_ros.errors import (
-    InvalidRequest,
     NameTaken,
-    SailenvError,
     SimulationClosed,
 )
 from sailenv_ros.ros.executor_thread import ExecutorThread
@@ -34,14 +31,15 @@ from sailenv_ros.ros.nodes.capture_server import CaptureServer
 from sailenv_ros.ros.nodes.contact_topic import ContactTopic
 from sailenv_ros.ros.nodes.diagnostics import Diagnostics
 from sailenv_ros.ros.nodes.free_space_topic import FreeSpaceTopic
-from sailenv_ros.ros.nodes.hosting import NAMESPACE, Hosted, load_simulation
+from sailenv_ros.ros.nodes.hosting import Hosted, load_simulation
 from sailenv_ros.ros.nodes.joint_topic import JointTopic
 from sailenv_ros.ros.nodes.lesson_topic import LessonTopic
 from sailenv_ros.ros.nodes.lifecycle import StopRequest, stop_at_end_of
 from sailenv_ros.ros.nodes.live_parameters import LiveParameters
-from sailenv_ros.ros.nodes.log_bridge import LogBridge
+from sailenv_ros.ros.nodes.parameter_table import NAMESPACE
 from sailenv_ros.ros.nodes.parameters import declare_parameters
 from sailenv_ros.ros.nodes.requests import OperationRunner
+from sailenv_ros.ros.nodes.running import exit_status, refusing
 from sailenv_ros.ros.nodes.services import SimulatorServices
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import Simulation
@@ -178,21 +176,7 @@ def run(arguments: list[str], stop: StopRequest, hosted: Hosted | None = None) -
         A simulation that runs already, in a process that has the lock of its name. Owned from
         when the node is there; if the node cannot be made, it goes on as it was. None starts one.
     """
-    logger = get_logger(NODE_NAME)
-    bridge = LogBridge(logger)
-    try:
-        return _run(arguments, stop, hosted)
-    except NameTaken as error:
-        logger.fatal(_one_line(error))
-        return 3
-    except SailenvError as error:
-        logger.fatal(str(error))
-        return 2
-    except Exception:
-        _log.exception("the node ends because of an internal error")
-        return 1
-    finally:
-        bridge.close()
+    return exit_status(NODE_NAME, lambda: _run(arguments, stop, hosted))
 
 
 def _run(arguments: list[str], stop: StopRequest, hosted: Hosted | None) -> int:
@@ -201,16 +185,11 @@ def _run(arguments: list[str], stop: StopRequest, hosted: Hosted | None) -> int:
     transport = use_shared_memory_profile()
     context = Context()
     try:
-        try:
+        with refusing(arguments):
             options = _parsed(remove_ros_args(arguments))
             context.init(arguments)
             checked_domain(context.get_domain_id())
             node = Node(NODE_NAME, namespace=NAMESPACE, context=context)
-        except SailenvError:
-            raise
-        except Exception as problem:
-            accepted = f"what ROS accepts ({_one_line(problem)})"
-            raise InvalidRequest("arguments", " ".join(arguments[1:]), accepted) from None
         if options.end_with_fd is not None:
             stop_at_end_of(options.end_with_fd, stop)
         try:
@@ -299,10 +278,6 @@ def _leave_at_once(node: Node, context: Context, status: int) -> None:
     context.try_shutdown()
     logging.shutdown()
     os._exit(status)
-
-
-def _one_line(error: Exception) -> str:
-    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
 
 
 if __name__ == "__main__":

@@ -109,6 +109,14 @@ class Randomisation(SceneModel):
         given = {key: getattr(self, key) for key in type(self).model_fields if key not in besides}
         return {key: value for key, value in given.items() if isinstance(value, Draw)}
 
+    def drawn(
+        self, which: Iterable[str], names: Iterable[str], pick: Pick, *besides: str
+    ) -> dict[str, dict[str, Any]]:
+        """Return what is drawn, by its keys, for the names that a name or pattern means."""
+        draws, patterns = self.draws(*besides), tuple(which)
+        meant = [n for n in names if any(n == p or fnmatchcase(n, p) for p in patterns)]
+        return {name: {key: pick(name, key, draw) for key, draw in draws.items()} for name in meant}
+
 
 class EpochRandomisation(Randomisation):
     """A thing that physics knows: it is drawn when the scene begins, and stays."""
@@ -116,9 +124,3 @@ class EpochRandomisation(Randomisation):
     every: Annotated[Literal["epoch"], Choice(("epoch",))] = Field(
         default="epoch", description="when the scene begins: what physics knows stays until then"
     )
-
-
-def chosen(which: Iterable[str], names: Iterable[str]) -> list[str]:
-    """Return the names that one of the names and patterns means, in their order."""
-    patterns = tuple(which)
-    return [name for name in names if any(name == p or fnmatchcase(name, p) for p in patterns)]

@@ -111,11 +111,8 @@ class LookOperations(Caller):
 
         Parameters
         ----------
-        obj : int or str or None
-            The object; None: the point is one of the world.
-        point_m : (3,) array-like or None
-            World frame, or the object's own frame with its scale applied [m]. None: the object's
-            origin.
+        obj, point_m
+            As for `set_look_at`.
         mover : str
 
         Notes

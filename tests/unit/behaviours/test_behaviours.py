@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import sys
 from pathlib import Path
 from typing import Any
@@ -340,7 +339,7 @@ def test_no_command_runs_code_of_a_scene_file_unasked(
     assert main(["scene", "render", str(hostile), "-o", str(hostile.with_suffix(".png"))]) == 2
     assert "allow that: --allow-modules" in capsys.readouterr().err
     with pytest.raises(SceneError, match="would run the code of the Python module"):
-        SceneLibrary().build(hostile, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+        SceneLibrary().build(hostile)
     assert not hostile.with_name("mark").exists()
 
 
@@ -348,7 +347,7 @@ def test_code_of_a_scene_file_runs_where_it_is_allowed(hostile: Path) -> None:
     """With the user's word the behaviour moves its object."""
     library = SceneLibrary(allow_modules=True)
     assert not hostile.with_name("mark").exists()
-    world = library.build(hostile, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    world = library.build(hostile)
     try:
         assert hostile.with_name("mark").exists()
         world.step(24)

@@ -24,12 +24,12 @@ from sailenv_msgs_py.picture_msgs import (
 from sailenv_msgs_py.stamps import MAX_STAMP_NS, ns_from_stamp, stamp_from_ns
 from sailenv_msgs_py.transforms import pose_from_msg, pose_stamped_to_msg, pose_to_msg
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.picture_settings import NAMES, PictureSettings
 from sailenv_ros.types.views import FIVE_VIEWS
+from tests.support.small_frame import small_frame
 
 COORDINATES = st.floats(-1e4, 1e4)
 ANGLES = st.floats(-360.0, 360.0)
@@ -164,18 +164,10 @@ def test_frame_infos_tell_what_belongs_to_the_frame() -> None:
     """Sequence, times, scene and the camera's optical pose are the frame's own."""
     pose = Pose.from_rpy_deg((1.0, 2.0, 3.0), (0.0, 0.0, 90.0))
     camera = Camera(intrinsics=CameraIntrinsics(width=8, height=8), pose=pose)
-    frame = Frame(
-        agent="cam",
-        scene="optical",
-        epoch=3,
-        revision=4,
-        sequence=5,
-        stamp_ns=2_000_000_001,
-        dt_ns=33_333_333,
-        camera=camera,
-        views={"rgb": np.zeros((8, 8, 3), np.uint8)},
-        timings_s={"render": 0.25},
-    )
+    about = {"agent": "cam", "scene": "optical", "epoch": 3, "revision": 4, "sequence": 5}
+    times = {"stamp_ns": 2_000_000_001, "dt_ns": 33_333_333, "timings_s": {"render": 0.25}}
+    views = {"rgb": np.zeros((8, 8, 3), np.uint8)}
+    frame = small_frame(views, camera=camera, **about, **times)
     header = header_of_frame(frame)
     msg = frame_info_to_msg(frame, header, views=("rgb",), depth_range_m=12.0)
     assert (header.stamp.sec, header.stamp.nanosec) == (2, 1)

@@ -62,6 +62,7 @@ from sailenv_ros.types.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
 from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
 from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
+from tests.support.small_frame import small_frame
 
 pytestmark = pytest.mark.ros
 
@@ -394,11 +395,7 @@ def test_point_clouds_are_what_rviz_reads() -> None:
     rgb = np.zeros((8, 8, 3), np.uint8)
     rgb[1, 2] = (10, 20, 30)
     instance = np.full((8, 8), 700, np.uint16)
-    frame = Frame(
-        agent="eye", scene="s", epoch=1, revision=1, sequence=1, stamp_ns=0, dt_ns=0,
-        camera=Camera(intrinsics=CameraIntrinsics(width=8, height=8)),
-        views={"depth": depth, "rgb": rgb, "instance": instance},
-    )  # fmt: skip
+    frame = small_frame({"depth": depth, "rgb": rgb, "instance": instance})
     cloud = point_cloud_to_msg(frame, header_of_frame(frame))
     assert (cloud.height, cloud.width, cloud.row_step) == (8, 8, 8 * cloud.point_step)
     assert len(cloud.data) == 8 * cloud.row_step

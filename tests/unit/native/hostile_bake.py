@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sailenv_ros.native.bake_types import Emitters, LitPoints, MappedTriangles, SkyWindows, TexelMap
+from sailenv_ros.native.cluster_kernels import seen_indices
 from sailenv_ros.native.gather_kernels import (
     emitter_rays,
     emitter_weights,
@@ -39,7 +40,6 @@ from sailenv_ros.native.texel_kernels import (
     nearest_triangles,
     texel_stand_ins,
 )
-from sailenv_ros.render.gl.cluster_culling import seen_indices
 from sailenv_ros.render.scene.clusters import CLUSTER
 from tests.unit.native.hostile_numbers import NUMBERS, THREADS, wild_floats
 

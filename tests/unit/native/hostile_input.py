@@ -20,20 +20,21 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.native.ambient_visibility import AmbientSettings, find_ambient_visibility
-from sailenv_ros.native.annotation import annotate_pixels
-from sailenv_ros.native.client_views import convert_views
-from sailenv_ros.native.instance_measures import measure_instances
 from sailenv_ros.native.lens import LENS
 from sailenv_ros.native.library import using_instruction_set
-from sailenv_ros.native.light_gathering import gather_light
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points, transform_points
-from sailenv_ros.native.picture_kernels import make_picture
+from sailenv_ros.native.picture_kernels import (
+    AmbientSettings,
+    find_ambient_visibility,
+    gather_light,
+    make_picture,
+    resolve_samples,
+)
 from sailenv_ros.native.ray_kernels import build_tree, cast_rays, light_hits, light_share
-from sailenv_ros.native.resolve import resolve_samples
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.native.texel_kernels import cover_texels
+from sailenv_ros.native.view_kernels import annotate_pixels, convert_views, measure_instances
 from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer

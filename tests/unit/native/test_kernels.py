@@ -13,13 +13,7 @@ import pytest
 
 from sailenv_ros.frame.pictures import frame_dict
 from sailenv_ros.frame.pictures.colours import grey_depth
-from sailenv_ros.native import (
-    ambient_visibility,
-    annotation,
-    light_gathering,
-    picture_kernels,
-    resolve,
-)
+from sailenv_ros.native import picture_kernels, view_kernels
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN, kernel_settings
 from sailenv_ros.render.picture.tone import code_table
@@ -79,12 +73,12 @@ def test_annotations_are_those_of_the_definition(size: tuple[int, int]) -> None:
         assert np.isinf(expected["depth"]).any()
     for threads in THREADS:
         got = empty_views(*size)
-        annotation.annotate_pixels(*given, got, threads=threads)
+        view_kernels.annotate_pixels(*given, got, threads=threads)
         for name, array in got.items():
             assert array.tobytes() == expected[name].tobytes(), name
     for name in expected:
         some = {key: array for key, array in empty_views(*size).items() if key in ("depth", name)}
-        annotation.annotate_pixels(*given, some, threads=2)
+        view_kernels.annotate_pixels(*given, some, threads=2)
         assert some[name].tobytes() == expected[name].tobytes(), name
 
 
@@ -104,7 +98,7 @@ def test_ambient_visibility_is_that_of_the_definition(
     if share_baked == 0.0 and size[0] > 40:
         assert visibility.min() < 200
     for threads in THREADS:
-        got = ambient_visibility.find_ambient_visibility(surface, baked, *given, threads=threads)
+        got = picture_kernels.find_ambient_visibility(surface, baked, *given, threads=threads)
         np.testing.assert_array_equal(got[0], visibility)
         np.testing.assert_array_equal(got[1], inverse)
 
@@ -148,7 +142,7 @@ def test_samples_are_resolved_as_the_definition_does(times: int, shaded: bool) -
         words = {"same_surface": 0.04, "keep_ambient_share": keep}
         expected = reference.resolve_samples(*given, **words, threads=1)
         for threads in THREADS:
-            got = resolve.resolve_samples(*given, **words, threads=threads)
+            got = picture_kernels.resolve_samples(*given, **words, threads=threads)
             assert got.tobytes() == expected.tobytes()
 
 
@@ -167,7 +161,7 @@ def test_light_is_gathered_as_the_definition_does(
     given = radiance, bloom, 1.0 / 300.0, 1e-4, -(2**62) + 12345, normal
     expected = reference.gather_light(*given, threads=1)
     for threads in (1, 3):
-        got = light_gathering.gather_light(*given, threads=threads)
+        got = picture_kernels.gather_light(*given, threads=threads)
         np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
 
 

@@ -139,11 +139,11 @@ def test_a_lens_is_read_as_it_was_written() -> None:
 
 def test_a_structure_that_differs_is_refused_by_name() -> None:
     """A field too few, or two in each other's place: both layouts stand in the error."""
-    fields = {name: "array" for name in ("depth", "instance", "row_of_instance", "transforms")}
+    arrays = "depth instance row_of_instance transforms"
     wrong = RecordKernel(
-        "transform_points", height="integer", width="integer", **fields, rows="integer",
-        lens="array", points="array",
-    )  # fmt: skip
-    values = dict.fromkeys([*fields, "lens", "points"])
+        *("transform_points", ("integer", "height width"), ("array", arrays), ("integer", "rows")),
+        ("array", "lens points"),
+    )
+    values = dict.fromkeys([*arrays.split(), "lens", "points"])
     with pytest.raises(NativeLibraryError, match=r"arguments of transform_points"):
         wrong(1, height=0, width=0, rows=1, **values)

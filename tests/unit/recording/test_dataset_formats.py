@@ -7,6 +7,7 @@ import contextlib
 import io
 import json
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import cv2
@@ -79,6 +80,14 @@ def boxes_of(frame: Frame) -> dict[int, tuple[list[int], int]]:
     return found
 
 
+def written(folder: Path, formats: list[str], frames: list[Frame], **options: Any) -> DatasetWriter:
+    """Write a whole data set; return its writer."""
+    with DatasetWriter(folder, formats, **options) as writer:
+        for frame in frames:
+            writer.add(frame)
+    return writer
+
+
 def test_a_recording_gives_the_data_set_of_live_frames(
     made: tuple[Path, list[Frame]], tmp_path: Path
 ) -> None:
@@ -86,9 +95,7 @@ def test_a_recording_gives_the_data_set_of_live_frames(
     bag, frames = made
     formats = ["coco", "bop", "mot", "yolo", "yolo_segments", "voc"]
     export(bag, tmp_path / "recorded", formats)
-    with DatasetWriter(tmp_path / "live", formats) as writer:
-        for frame in frames:
-            writer.add(frame)
+    written(tmp_path / "live", formats, frames)
     files = [path for path in (tmp_path / "live").rglob("*") if path.is_file()]
     assert len(files) > 50
     differing = []
@@ -109,9 +116,7 @@ def test_coco_evaluates_ground_truth_as_perfect(
 ) -> None:
     """AP is 1 for boxes and masks; amodal masks, shares and foreign names are there."""
     _, frames = made
-    with DatasetWriter(tmp_path, ["coco"]) as writer:
-        for frame in frames:
-            writer.add(frame)
+    writer = written(tmp_path, ["coco"], frames)
     summary = writer.finish().formats["coco"]
     assert summary.left_out == {"no pixel is visible": COUNT}
     with contextlib.redirect_stdout(io.StringIO()):
@@ -144,9 +149,7 @@ def test_bop_files_hold_poses_masks_and_models(
 ) -> None:
     """In millimetres; a scaled object is a model of its own; symmetries are those of the solids."""
     _, frames = made
-    with DatasetWriter(tmp_path, ["bop"]) as writer:
-        for frame in frames:
-            writer.add(frame)
+    written(tmp_path, ["bop"], frames)
     epoch = frames[0].epoch
     scene = tmp_path / "train" / f"{epoch:06d}"
     truths, infos, cameras = (
@@ -196,9 +199,7 @@ def test_mot_lines_are_boxes_of_whole_objects(
 ) -> None:
     """Frames and pixels count from 1, and the last column is the visible share."""
     _, frames = made
-    with DatasetWriter(tmp_path, ["mot"]) as writer:
-        for frame in frames:
-            writer.add(frame)
+    written(tmp_path, ["mot"], frames)
     lines = np.loadtxt(tmp_path / "gt" / "gt.txt", delimiter=",")
     seen = [len(boxes_of(frame)) for frame in frames]
     assert [int((lines[:, 0] == n + 1).sum()) for n in range(COUNT)] == seen
@@ -222,9 +223,7 @@ def test_yolo_boxes_and_outlines_are_those_of_the_pixels(
     """Boxes give whole pixels back; filled outlines cover the object's pixels and no other."""
     _, frames = made
     splits = Splits((0.5, 0.5), seed=1)
-    with DatasetWriter(tmp_path, ["yolo", "yolo_segments"], splits=splits) as writer:
-        for frame in frames:
-            writer.add(frame)
+    written(tmp_path, ["yolo", "yolo_segments"], frames, splits=splits)
     table = yaml.safe_load((tmp_path / "yolo" / "data.yaml").read_text())
     assert table["names"][0] == "cube"
     for number, frame in enumerate(frames):
@@ -255,9 +254,7 @@ def test_yolo_boxes_and_outlines_are_those_of_the_pixels(
 def test_voc_files_count_pixels_from_one(made: tuple[Path, list[Frame]], tmp_path: Path) -> None:
     """Boxes, flags and masks of each object; the lists name the pictures."""
     _, frames = made
-    with DatasetWriter(tmp_path, ["voc"]) as writer:
-        for frame in frames:
-            writer.add(frame)
+    written(tmp_path, ["voc"], frames)
     edges = ("xmin", "ymin", "xmax", "ymax")
     for number, frame in enumerate(frames):
         root = ElementTree.parse(tmp_path / "Annotations" / f"{number:06d}.xml").getroot()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from sailenv_ros.render.gl.cluster_culling import MARGIN, seen_indices
+from sailenv_ros.native.cluster_kernels import MARGIN, seen_indices
 from sailenv_ros.render.scene.clusters import CLUSTER, CLUSTER_TRIANGLES, clusters_of
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at

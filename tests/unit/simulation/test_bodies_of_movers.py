@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from sailenv_ros.simulation.editing.saving import described_world
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.rigid_body import RigidBody
-from tests.unit.simulation.test_look_at import make
+from tests.support.lockstep_core import lockstep_core
 
 STAGE = """
 version: 1
@@ -46,20 +46,6 @@ PUCK = RigidBody(
     restitution=0.4,
     gravity=False,
 )
-
-
-@pytest.fixture
-def stage(tmp_path: Path) -> Path:
-    path = tmp_path / "stage.yaml"
-    path.write_text(STAGE, encoding="utf-8")
-    return path
-
-
-@pytest.fixture
-def core(stage: Path) -> Iterator[SynchronousSimulation]:
-    made = make(stage)
-    yield made
-    made.close()
 
 
 def test_a_scene_file_makes_a_body_and_a_reset_begins_anew(core: SynchronousSimulation) -> None:
@@ -189,7 +175,7 @@ def test_a_body_with_waypoints_is_one_until_it_is_none(tmp_path: Path) -> None:
     path = tmp_path / "both.yaml"
     track = "waypoints: [{position: [0, 0, 1]}, {position: [1, 0, 1]}]"
     path.write_text(f"version: 1\nmover: {{controller: rigidbody, {track}, body: {{}}}}\n")
-    core = make(path)
+    core = lockstep_core(path)
     core.step(48)
     assert core.get_mover_pose().position_m[2] < 0.9
     core.set_mover_body(None)
@@ -216,7 +202,7 @@ def test_a_saved_scene_has_bodies_as_they_move(core: SynchronousSimulation, tmp_
     assert speed == pytest.approx(math.exp(-0.1), abs=1e-6)
     path = tmp_path / "again.yaml"
     path.write_text(yaml.safe_dump(described_world(core.world, core.agents)))
-    again = make(path)
+    again = lockstep_core(path)
     assert again.movers["puck"].body == PUCK
     assert again.get_mover_velocity("puck")[0][0] == speed
     there = core.get_mover_pose("puck").position_m
@@ -228,7 +214,7 @@ def test_other_seeds_and_runs(stage: Path) -> None:
     """The same calls give the same bytes, whatever the seed: nothing here is drawn."""
 
     def run(seed: int) -> bytes:
-        core = make(stage)
+        core = lockstep_core(stage)
         core.reset(seed)
         core.apply_wrench("puck", force_n=(3.0, 1.0, -2.0), duration_s=0.2)
         core.step(480)

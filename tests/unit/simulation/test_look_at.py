@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -50,24 +49,6 @@ agents:
   - {name: host, width: 16, height: 12, following: false, position: [0, 0, 1],
      keep_looking_at: {object: guest}}
 """
-
-
-@pytest.fixture
-def stage(tmp_path: Path) -> Path:
-    path = tmp_path / "stage.yaml"
-    path.write_text(STAGE, encoding="utf-8")
-    return path
-
-
-def make(scene: str | Path, *paths: Path) -> SynchronousSimulation:
-    return lockstep_core(scene, *paths)
-
-
-@pytest.fixture
-def core(stage: Path) -> Iterator[SynchronousSimulation]:
-    made = make(stage)
-    yield made
-    made.close()
 
 
 def away(pose: Pose, target_m: tuple[float, float, float]) -> float:
@@ -302,7 +283,7 @@ def test_another_scene_keeps_points_and_objects_of_the_same_name(
         "version: 1\nobjects:\n  - {name: post, asset: cube, position: [0, 5, 0], static: true}\n"
     )
     (tmp_path / "bare.yaml").write_text(bare, encoding="utf-8")
-    two = make(stage.stem, tmp_path)
+    two = lockstep_core(stage.stem, tmp_path)
     two.set_look_at("post", agent="rider")
     two.set_look_at(point_m=(1.0, 1.0, 1.0), agent="porter")
     two.change_scene("bare")
@@ -324,7 +305,7 @@ def test_saved_scenes_keep_it(core: SynchronousSimulation, tmp_path: Path) -> No
     core.step(50)
     path = tmp_path / "saved.yaml"
     path.write_text(core.scene_text(), encoding="utf-8")
-    again = make(path)
+    again = lockstep_core(path)
     for agent in ("rider", "porter", "watcher", "host"):
         saved, made = core.get_pose(agent=agent), again.get_pose(agent=agent)
         if agent != "rider":  # tracks begin anew
@@ -338,7 +319,7 @@ def test_saved_scenes_keep_it(core: SynchronousSimulation, tmp_path: Path) -> No
     last = place(core, "ball")
     core.despawn_object("ball")
     path.write_text(core.scene_text(), encoding="utf-8")
-    once_more = make(path)
+    once_more = lockstep_core(path)
     assert faced(once_more, "watcher", last)
     once_more.close()
 
@@ -347,7 +328,7 @@ def test_the_same_requests_give_the_same_poses(stage: Path) -> None:
     """However often somebody asks in between."""
 
     def run(asks: int) -> list[Pose]:
-        made = make(stage)
+        made = lockstep_core(stage)
         made.set_mover_look_at("ball", mover="rail")
         made.step(37)
         made.despawn_object("ball")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -65,22 +64,7 @@ def hall_text() -> str:
     return HALL.format(walls="\n".join(walls))
 
 
-@pytest.fixture
-def hall(tmp_path: Path) -> Path:
-    path = tmp_path / "hall.yaml"
-    path.write_text(hall_text(), encoding="utf-8")
-    return path
-
-
-def make_core(scene: str | Path, *paths: Path) -> SynchronousSimulation:
-    return lockstep_core(scene, *paths)
-
-
-@pytest.fixture
-def core(hall: Path) -> Iterator[SynchronousSimulation]:
-    made = make_core(hall)
-    yield made
-    made.close()
+STAGE = hall_text()
 
 
 def spec(name: str, **kwargs: Any) -> AgentSpec:
@@ -343,28 +327,28 @@ def test_agents_come_and_go_while_others_stream(core: SynchronousSimulation) -> 
     assert frame.dt_ns == pytest.approx(1e9 / 30, rel=1e-6)
 
 
-def test_a_scenes_agents_are_there_after_a_change_to_it(hall: Path) -> None:
+def test_a_scenes_agents_are_there_after_a_change_to_it(stage: Path) -> None:
     """They come with the scene, once; those that were there stay and follow its first mover."""
-    core = make_core("optical", hall.parent)
+    core = lockstep_core("optical", stage.parent)
     core.register_agent(spec("eye"))
-    core.change_scene("hall")
+    core.change_scene("stage")
     assert [agent.name for agent in core.info.agents] == ["eye", "watcher", "rider"]
     assert core.get_agent_pose(agent="eye").mover == "rail"
     assert core.get_agent_pose(agent="rider").mover == "cart"
     core.change_scene("optical")
-    core.change_scene("hall")
+    core.change_scene("stage")
     assert len(core.info.agents) == 3
     core.close()
 
 
-def test_a_scene_whose_agents_do_not_fit_is_refused(hall: Path) -> None:
+def test_a_scene_whose_agents_do_not_fit_is_refused(stage: Path) -> None:
     """15 agents and a scene with 2 more: refused, and the old scene is as it was."""
-    core = make_core("optical", hall.parent)
+    core = lockstep_core("optical", stage.parent)
     for number in range(MAX_AGENTS - 1):
         core.register_agent(spec(f"agent_{number}"))
     before = core.info
     with pytest.raises(InvalidState, match="there would be 17 agents, and 16 is the most"):
-        core.change_scene("hall")
+        core.change_scene("stage")
     after = core.info
     assert (after.scene, after.epoch, after.agents) == (before.scene, before.epoch, before.agents)
     core.step(1)

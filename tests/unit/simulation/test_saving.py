@@ -66,7 +66,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def shared(folder: Path) -> Iterator[SynchronousSimulation]:
-    made = make_core(folder)
+    made = lockstep_core("studio", folder)
     yield made
     made.close()
 
@@ -75,10 +75,6 @@ def shared(folder: Path) -> Iterator[SynchronousSimulation]:
 def core(shared: SynchronousSimulation) -> SynchronousSimulation:
     begin(shared, "studio")
     return shared
-
-
-def make_core(folder: Path) -> SynchronousSimulation:
-    return lockstep_core("studio", folder)
 
 
 def begin(core: SynchronousSimulation, scene: str) -> None:
@@ -206,7 +202,7 @@ objects:
 """,
         encoding="utf-8",
     )
-    core = make_core(folder)
+    core = lockstep_core("studio", folder)
     begin(core, "piled")
     before = core.get_object("book").pose
     for body in core.world.bodies:

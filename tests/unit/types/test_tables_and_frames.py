@@ -13,12 +13,12 @@ import sailenv_ros.errors as errors
 from sailenv_ros.errors import InvalidRequest, NameTaken, SceneDiagnostic, SceneError, UnknownName
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import Category, CategoryTable, colour_instances, instance_colours
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.views import FIVE_VIEWS, VIEWS, checked_views
+from tests.support.small_frame import small_frame
 
 
 def test_no_two_instances_share_a_colour_and_the_background_is_black() -> None:
@@ -71,18 +71,7 @@ def test_views_are_checked_by_name() -> None:
 
 
 def frame_of(**views: np.ndarray) -> Frame:  # type: ignore[type-arg]  # any view
-    camera = Camera(intrinsics=CameraIntrinsics(width=16, height=8))
-    return Frame(
-        agent="a",
-        scene="s",
-        epoch=1,
-        revision=1,
-        sequence=1,
-        stamp_ns=0,
-        dt_ns=0,
-        camera=camera,
-        views=views,
-    )
+    return small_frame(views, width=16)
 
 
 def test_a_frame_checks_its_views_and_freezes_them() -> None:

@@ -20,6 +20,7 @@ from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import VIEWS
 from sailenv_ros.viewer.encoding import FrameMessages, outline, view_png, views_to_json
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
+from tests.support.small_frame import small_frame
 from tests.support.tiny_scenes import CATEGORIES
 
 WIDTH, HEIGHT = 12, 9
@@ -28,18 +29,9 @@ WIDTH, HEIGHT = 12, 9
 def frame_of(pose: Pose | None = None, **views: Any) -> Frame:
     """A small frame of the given views."""
     lens = CameraIntrinsics(width=WIDTH, height=HEIGHT, vertical_fov_deg=90.0)
-    return Frame(
-        agent="eye",
-        scene="test",
-        epoch=1,
-        revision=1,
-        sequence=7,
-        stamp_ns=1_500_000_000,
-        dt_ns=0,
-        camera=Camera(intrinsics=lens, pose=pose or Pose()),
-        views=views,
-        timings_s={"render": 0.002},
-    )
+    camera = Camera(intrinsics=lens, pose=pose or Pose())
+    about = {"scene": "test", "sequence": 7, "stamp_ns": 1_500_000_000}
+    return small_frame(views, camera=camera, timings_s={"render": 0.002}, **about)
 
 
 def info_with(name: str) -> SceneInfo:

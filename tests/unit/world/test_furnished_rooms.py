@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -35,7 +34,7 @@ def library() -> SceneLibrary:
 
 
 def built(library: SceneLibrary, scene: str | Path) -> World:
-    return library.build(scene, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    return library.build(scene)
 
 
 @pytest.fixture(params=ROOMS)

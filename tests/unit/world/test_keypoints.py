@@ -31,7 +31,7 @@ def test_keypoints_of_a_pack_are_those_of_its_objects(tmp_path: Path) -> None:
         for name, scale in (("one", (1.0, 1.0, 1.0)), ("two", (2.0, 1.0, 4.0)))
     ]
     world = World(
-        scene="marked", epoch=1, next_revision=lambda: 1, placements=placements,
+        scene="marked", epoch=1, placements=placements,
         movers=[Mover(name="mover", start=Pose(), track=None, controller="rigidbody")],
         categories=load_categories(),
     )  # fmt: skip

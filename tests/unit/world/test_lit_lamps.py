@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 
 import pytest
@@ -34,11 +33,9 @@ def _at(name: str, x: float, kind: str = "point") -> Light:
 @pytest.fixture
 def world() -> Iterator[World]:
     """Two lamps 2 m apart, and lights in, near and far from them."""
-    counter = itertools.count(1)
     made = World(
         scene="lamps",
         epoch=1,
-        next_revision=lambda: next(counter),
         placements=[_lamp("left", 0.0), _lamp("right", 2.0)],
         movers=[],
         categories=CATEGORIES,

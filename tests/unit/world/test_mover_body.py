@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable
 from typing import Any
@@ -38,7 +37,6 @@ def body_world(
     gravity: Vector3 = (0.0, 0.0, -9.81),
     more: tuple[Mover, ...] = (),
 ) -> World:
-    counter = itertools.count(1)
     mover = Mover(
         name="mover",
         start=pose or Pose(),
@@ -49,7 +47,6 @@ def body_world(
     return World(
         scene="test",
         epoch=1,
-        next_revision=lambda: next(counter),
         placements=placements,
         movers=[mover, *more],
         categories=CATEGORIES,

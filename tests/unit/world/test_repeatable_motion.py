@@ -32,11 +32,10 @@ objects:
 """
 
 PROGRAM = """
-import hashlib, itertools, sys
+import hashlib, sys
 from pathlib import Path
 from sailenv_ros.simulation.scenes import SceneLibrary
-revision = itertools.count(1).__next__
-world = SceneLibrary().build(Path(sys.argv[1]), seed=11, epoch=1, next_revision=revision)
+world = SceneLibrary().build(Path(sys.argv[1]), seed=11, epoch=1)
 digest = hashlib.sha256()
 for _ in range(2000):
     world.step(1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,6 @@ OPENINGS = [
 
 
 def build(objects: list[dict[str, Any]], **room: Any) -> World:
-    counter = itertools.count(1)
     keys = {"size": [4.0, 3.0, 2.5], "openings": OPENINGS, **room}
     spec = SceneSpec.model_validate({"version": 1, "room": keys, "objects": objects})
     return build_world(
@@ -30,7 +28,6 @@ def build(objects: list[dict[str, Any]], **room: Any) -> World:
         categories=load_categories(),
         seed=0,
         epoch=1,
-        next_revision=lambda: next(counter),
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import pytest
@@ -20,7 +19,6 @@ def make(request: pytest.FixtureRequest) -> Any:
     """Build a world of static objects besides a cube of 20 cm, which is named ``box``."""
 
     def build(*objects: dict[str, Any]) -> World:
-        counter = itertools.count(1)
         box = {"name": "box", "asset": "cube", "scale": 0.2, "position": [5.0, 5.0, 3.0]}
         entries = [{"name": f"o{k}", "static": True, **entry} for k, entry in enumerate(objects)]
         world = build_world(
@@ -29,7 +27,6 @@ def make(request: pytest.FixtureRequest) -> Any:
             categories=load_categories(),
             seed=0,
             epoch=1,
-            next_revision=lambda: next(counter),
         )
         request.addfinalizer(world.close)
         return world

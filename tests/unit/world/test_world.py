@@ -1,6 +1,5 @@
 """The world: physics against closed forms, ids, snapshots, histories, determinism."""
 
-import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -20,11 +19,9 @@ CATEGORIES = CategoryTable([Category(id=1, name="solid", colour=(200, 30, 30))])
 
 
 def make_world(*placements: Any, **kwargs: Any) -> World:
-    counter = itertools.count(1)
     return World(
         scene="test",
         epoch=1,
-        next_revision=lambda: next(counter),
         placements=placements,
         movers=[Mover(name="mover", start=Pose(), track=None, controller="rigidbody")],
         categories=CATEGORIES,

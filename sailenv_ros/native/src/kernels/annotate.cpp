@@ -1,5 +1,5 @@
 // From depth and instance number of each pixel to the views of depth, instance and category; see
-// native/annotation.py.
+// native/view_kernels.py.
 #include <limits>
 
 #include "../threads.h"

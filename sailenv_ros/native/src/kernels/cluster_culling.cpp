@@ -1,4 +1,4 @@
-// The indices of the triangles that an eye may see; see render/cluster_culling.py.
+// The indices of the triangles that an eye may see; see native/cluster_kernels.py.
 #include "cluster_culling.h"
 
 #include <algorithm>

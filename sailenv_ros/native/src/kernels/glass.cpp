@@ -38,10 +38,7 @@ Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, f8 depth
                                      depth * (p.along_x[4] - v * t.inverse_depth[0]),
                                      depth * (p.along_y[3] - u * t.inverse_depth[1]),
                                      depth * (p.along_y[4] - v * t.inverse_depth[1]), size, 0.0f);
-    const i8 fine = truncated(level);
-    const i8 coarse = fine < size ? fine + 1 : fine;
-    const Taps near = texture_taps(u, v, size, fine), far = texture_taps(u, v, size, coarse);
-    const f8 share = level - to_float(fine);
+    const auto [near, far, share] = mip_taps(u, v, size, level);
     const uint32_t* texels = part.colour_map->texels;
     alignas(32) float found[4 * 8] = {};
     for (int k = 0; k < 8; k++) {

@@ -11,7 +11,10 @@ namespace {
 
 constexpr double NEAR = 1.02;  // nearer to the middle of an emitter, in radii, none is looked for
 
-double along(const double* d, const float* n) { return d[0] * n[0] + d[1] * n[1] + d[2] * n[2]; }
+template <class Real>
+Real along(const Real* d, const float* n) {
+    return d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
+}
 
 bool is_above(const LitPoints& points, int64_t k, const double* d) {
     return along(d, points.normals + 3 * k) > 0.0 && along(d, points.faces + 3 * k) > 0.0;
@@ -21,6 +24,16 @@ void lift(const LitPoints& points, int64_t k, float* origin) {
     for (int c = 0; c < 3; c++) {
         origin[c] = points.positions[3 * k + c] + points.faces[3 * k + c] * LIFT_M;
     }
+}
+
+// Adds a ray along d, which is `length` long, to the list if it leaves the surface.
+void list_if_above(const LitPoints& points, int64_t k, const double* d, double length,
+                   const RayList& list) {
+    if (!is_above(points, k, d)) return;
+    const int64_t made = (*list.made)++;
+    list.point[made] = static_cast<int32_t>(k);
+    lift(points, k, list.origins + 3 * made);
+    for (int c = 0; c < 3; c++) list.towards[3 * made + c] = static_cast<float>(d[c] / length);
 }
 
 // The density, over solid angle, of directions into the cones of all emitters.
@@ -38,8 +51,6 @@ double cone_density(const Emitters& emitters, const float* p, const float* d) {
     }
     return density;
 }
-
-float cosine(const float* d, const float* n) { return d[0] * n[0] + d[1] * n[1] + d[2] * n[2]; }
 
 }  // namespace
 }  // namespace sailenv
@@ -80,7 +91,7 @@ SAILENV_KERNEL(pane_rays)
     using namespace sailenv;
     if (points->count < 0 || rays < 1) return STATUS_INVALID_ARGUMENT;
     const double cells = std::sqrt(static_cast<double>(rays));
-    int64_t made = 0;
+    *list->made = 0;
     for (int64_t k = 0; k < points->count; k++) {
         for (int64_t m = 0; m < rays; m++) {
             double u, v, d[3];
@@ -90,18 +101,11 @@ SAILENV_KERNEL(pane_rays)
             for (int c = 0; c < 3; c++) {
                 d[c] = pane[c] + u * pane[3 + c] + v * pane[6 + c] - points->positions[3 * k + c];
             }
-            if (!is_above(*points, k, d)) continue;
             const double length =
                 std::max(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), 1e-9);
-            list->point[made] = static_cast<int32_t>(k);
-            lift(*points, k, list->origins + 3 * made);
-            for (int c = 0; c < 3; c++) {
-                list->towards[3 * made + c] = static_cast<float>(d[c] / length);
-            }
-            made++;
+            list_if_above(*points, k, d, length, *list);
         }
     }
-    *list->made = made;
     return STATUS_OK;
 }
 
@@ -112,11 +116,11 @@ SAILENV_KERNEL(emitter_rays)
     using namespace sailenv;
     if (points->count < 0 || rays < 1) return STATUS_INVALID_ARGUMENT;
     const double cells = std::sqrt(static_cast<double>(rays));
-    int64_t made = 0;
+    *list->made = 0;
     for (int64_t k = 0; k < points->count; k++) {
         float axis[3];
         for (int c = 0; c < 3; c++) axis[c] = ball[c] - points->positions[3 * k + c];
-        const float d2 = cosine(axis, axis), r2 = ball[3] * ball[3];
+        const float d2 = along(axis, axis), r2 = ball[3] * ball[3];
         if (!(d2 > NEAR * NEAR * r2)) continue;
         const float far = std::sqrt(d2);
         for (float& c : axis) c /= far;
@@ -127,14 +131,9 @@ SAILENV_KERNEL(emitter_rays)
             const double up = 1.0 - u * (1.0 - edge);
             const double out = std::sqrt(std::max(1.0 - up * up, 0.0)), turn = 2.0 * PI * v;
             around_axis(axis, out * std::cos(turn), out * std::sin(turn), up, d);
-            if (!is_above(*points, k, d)) continue;
-            list->point[made] = static_cast<int32_t>(k);
-            lift(*points, k, list->origins + 3 * made);
-            for (int c = 0; c < 3; c++) list->towards[3 * made + c] = static_cast<float>(d[c]);
-            made++;
+            list_if_above(*points, k, d, 1.0, *list);
         }
     }
-    *list->made = made;
     return STATUS_OK;
 }
 
@@ -148,7 +147,7 @@ SAILENV_KERNEL(emitter_weights)
         const int64_t k = point[ray];
         if (k < 0 || k >= points->count) return STATUS_INVALID_ARGUMENT;
         const float* d = towards + 3 * ray;
-        const double own = cosine(d, points->normals + 3 * k) / PI;
+        const double own = along(d, points->normals + 3 * k) / PI;
         const double density = cone_density(*emitters, points->positions + 3 * k, d);
         weights[ray] = static_cast<float>(
             own / (static_cast<double>(others) * own + static_cast<double>(shots) * density));
@@ -178,7 +177,7 @@ SAILENV_KERNEL(weights_within_cones)
             if (count < room) {
                 // Rays that were mirrored at the face may lie below the normal's horizon.
                 const double own =
-                    std::max(static_cast<double>(cosine(d, points->normals + 3 * k)), 1e-3) / PI;
+                    std::max(static_cast<double>(along(d, points->normals + 3 * k)), 1e-3) / PI;
                 point[count] = static_cast<int32_t>(k);
                 texel[count] = met;
                 weights[count] = static_cast<float>(

@@ -344,10 +344,7 @@ i8 opaque_pixels(const Triangle& t, const MaskedTriangle& m, const Part& part, f
                                      depth * (m.v[0] - v * t.inverse_depth[0]),
                                      depth * (m.u[1] - u * t.inverse_depth[1]),
                                      depth * (m.v[1] - v * t.inverse_depth[1]), size, 0.0f);
-    const i8 fine = truncated(level);
-    const i8 coarse = fine < size ? fine + 1 : fine;
-    const Taps near = texture_taps(u, v, size, fine), far = texture_taps(u, v, size, coarse);
-    const f8 share = level - to_float(fine);
+    const auto [near, far, share] = mip_taps(u, v, size, level);
     f8 alpha = splat(0.0f);
     for (int k = 0; k < 8; k++) {
         if (!wanted[k]) continue;

@@ -41,6 +41,19 @@ LANES_INLINE Taps texture_taps(f8 u, f8 v, i8 log2_size, i8 level) {
             y - top};
 }
 
+// Look-ups in the two mip levels about a level of detail, and the share of the coarser one.
+struct MipTaps {
+    Taps near, far;
+    f8 share;
+};
+
+LANES_INLINE MipTaps mip_taps(f8 u, f8 v, i8 log2_size, f8 level) {
+    const i8 fine = truncated(level);
+    const i8 coarse = fine < log2_size ? fine + 1 : fine;
+    return {texture_taps(u, v, log2_size, fine), texture_taps(u, v, log2_size, coarse),
+            level - to_float(fine)};
+}
+
 LANES_INLINE f4 bilinear(f8 upper, f8 lower, float across, float down) {
     const float near = 1.0f - across;
     const f8 weights = {near, near, near, near, across, across, across, across};

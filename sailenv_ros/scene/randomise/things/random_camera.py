@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number, Text
+from sailenv_ros.scene.field_types import Number, Text, optional
 from sailenv_ros.scene.fields import Position, Rotation, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
@@ -15,7 +15,6 @@ from sailenv_ros.scene.randomise.randomisation import (
     RandomTargets,
     Values,
     Which,
-    chosen,
 )
 from sailenv_ros.scene.rules import at_most_one, only_beside
 from sailenv_ros.types.camera import INTRINSICS_LIMITS
@@ -44,41 +43,36 @@ class RandomCamera(Randomisation):
 
     type: Literal["camera"]
     of: Which = Field(default=("*",), description="names of agents; * and ?")
-    position: Annotated[Draw, Drawn(Position)] | None = Field(
-        default=None, description="where it stands, in the world [m]"
+    position: Annotated[Draw, Drawn(Position)] | None = optional(
+        "where it stands, in the world [m]"
     )
-    look_at: Annotated[Draw, Drawn(Position)] | None = Field(
-        default=None, description="the point that it faces [m]"
+    look_at: Annotated[Draw, Drawn(Position)] | None = optional("the point that it faces [m]")
+    rotation: Annotated[Draw, Drawn(Rotation)] | None = optional(
+        "[roll, pitch, yaw], instead of look_at [deg]"
     )
-    rotation: Annotated[Draw, Drawn(Rotation)] | None = Field(
-        default=None, description="[roll, pitch, yaw], instead of look_at [deg]"
-    )
-    rule: _RuleName | None = Field(
-        default=None,
-        description="instead of a position: the camera rule that places it, such as `room_view`",
+    rule: _RuleName | None = optional(
+        "instead of a position: the camera rule that places it, such as `room_view`"
     )
     settings: dict[str, Any] = Field(
         default_factory=dict, description="of the rule, those that differ from its own"
     )
-    vertical_fov: Annotated[Draw, Drawn(_Angle)] | None = Field(
-        default=None, description="full vertical angle of view [deg]"
+    vertical_fov: Annotated[Draw, Drawn(_Angle)] | None = optional(
+        "full vertical angle of view [deg]"
     )
-    exposure: Annotated[Draw, Drawn(_Stops)] | None = Field(
-        default=None, description="of its pictures, on top of the scene's [stops]"
+    exposure: Annotated[Draw, Drawn(_Stops)] | None = optional(
+        "of its pictures, on top of the scene's [stops]"
     )
-    full_well: Annotated[Draw, Drawn(_Well)] | None = Field(
-        default=None, description="of its pictures, see the keys of a picture; 0: no noise"
+    full_well: Annotated[Draw, Drawn(_Well)] | None = optional(
+        "of its pictures, see the keys of a picture; 0: no noise"
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return the keys of each camera; a rule with its settings and the seed that was drawn."""
-        draws = self.draws()
         seed = Drawn(_Seed).check({"uniform": [0, 2**31 - 1]})
-        agents: Values = {}
-        for name in chosen(self.of, targets.agents):
-            agents[name] = {key: pick(name, key, draw) for key, draw in draws.items()}
-            if self.rule is not None:
-                agents[name]["rule"] = {
+        agents = self.drawn(self.of, targets.agents, pick)
+        if self.rule is not None:
+            for name, values in agents.items():
+                values["rule"] = {
                     "name": self.rule,
                     "settings": dict(self.settings),
                     "seed": pick(name, "rule", seed),

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number, Text, Vector
+from sailenv_ros.scene.field_types import Number, Text, Vector, optional
 from sailenv_ros.scene.fields import LinearColour, Position, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
@@ -55,11 +55,9 @@ class RandomDistractors(EpochRandomisation):
     within: Annotated[
         tuple[Position, Position], Vector(2, "two corners [lowest, highest] of a box in [m]")
     ] = Field(description="lowest and highest corner of the box that they float in [m]")
-    scale: Annotated[Draw, Drawn(_Factor)] | None = Field(
-        default=None, description="one factor for all axes"
-    )
-    colour: Annotated[Draw, Drawn(LinearColour)] | None = Field(
-        default=None, description="paints each of them; drawn in linear numbers"
+    scale: Annotated[Draw, Drawn(_Factor)] | None = optional("one factor for all axes")
+    colour: Annotated[Draw, Drawn(LinearColour)] | None = optional(
+        "paints each of them; drawn in linear numbers"
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field
-
-from sailenv_ros.scene.field_types import Number, Text
+from sailenv_ros.scene.field_types import Number, Text, optional
 from sailenv_ros.scene.fields import Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import Pick, Randomisation, RandomTargets, Values
@@ -25,30 +23,24 @@ class RandomEnvironment(Randomisation):
     KEY: ClassVar[str] = "environment"
 
     type: Literal["environment"]
-    sky_map: Annotated[Draw, Drawn(_Sky)] | None = Field(
-        default=None, description="name of a photographed sky; empty for that of the three colours"
+    sky_map: Annotated[Draw, Drawn(_Sky)] | None = optional(
+        "name of a photographed sky; empty for that of the three colours"
     )
-    exposure: Annotated[Draw, Drawn(_Stops)] | None = Field(
-        default=None, description="the picture is brightened by 2 to the power of it [stops]"
+    exposure: Annotated[Draw, Drawn(_Stops)] | None = optional(
+        "the picture is brightened by 2 to the power of it [stops]"
     )
-    sky_share: Annotated[Draw, Drawn(_Share)] | None = Field(
-        default=None, description="share of the sky's light that reaches the objects"
+    sky_share: Annotated[Draw, Drawn(_Share)] | None = optional(
+        "share of the sky's light that reaches the objects"
     )
-    ambient: Annotated[Draw, Drawn(Radiance)] | None = Field(
-        default=None, description="light that arrives from everywhere"
+    ambient: Annotated[Draw, Drawn(Radiance)] | None = optional(
+        "light that arrives from everywhere"
     )
-    background_colour: Annotated[Draw, Drawn(Radiance)] | None = Field(
-        default=None, description="the colour for `background: colour`"
+    background_colour: Annotated[Draw, Drawn(Radiance)] | None = optional(
+        "the colour for `background: colour`"
     )
-    sky_zenith: Annotated[Draw, Drawn(Radiance)] | None = Field(
-        default=None, description="sky straight above"
-    )
-    sky_horizon: Annotated[Draw, Drawn(Radiance)] | None = Field(
-        default=None, description="sky at the horizon"
-    )
-    sky_ground: Annotated[Draw, Drawn(Radiance)] | None = Field(
-        default=None, description="below the horizon"
-    )
+    sky_zenith: Annotated[Draw, Drawn(Radiance)] | None = optional("sky straight above")
+    sky_horizon: Annotated[Draw, Drawn(Radiance)] | None = optional("sky at the horizon")
+    sky_ground: Annotated[Draw, Drawn(Radiance)] | None = optional("below the horizon")
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return keys of `environment`."""

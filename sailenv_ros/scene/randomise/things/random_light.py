@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.field_types import Number, optional
 from sailenv_ros.scene.fields import Direction, Position, Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
@@ -15,7 +15,6 @@ from sailenv_ros.scene.randomise.randomisation import (
     RandomTargets,
     Values,
     Which,
-    chosen,
 )
 from sailenv_ros.types.lights import LIGHT_LIMITS
 
@@ -32,31 +31,23 @@ class RandomLight(Randomisation):
 
     type: Literal["light"]
     of: Which = Field(description="names of lights; * and ?")
-    intensity: Annotated[Draw, Drawn(_Intensity)] | None = Field(
-        default=None, description="as of a light"
+    intensity: Annotated[Draw, Drawn(_Intensity)] | None = optional("as of a light")
+    colour: Annotated[Draw, Drawn(Radiance)] | None = optional("drawn in linear numbers")
+    indirect_multiplier: Annotated[Draw, Drawn(_Indirect)] | None = optional(
+        "scales only the light that bounces"
     )
-    colour: Annotated[Draw, Drawn(Radiance)] | None = Field(
-        default=None, description="drawn in linear numbers"
+    offset: Annotated[Draw, Drawn(Position)] | None = optional(
+        "from where the light is in the file [m]"
     )
-    indirect_multiplier: Annotated[Draw, Drawn(_Indirect)] | None = Field(
-        default=None, description="scales only the light that bounces"
-    )
-    offset: Annotated[Draw, Drawn(Position)] | None = Field(
-        default=None, description="from where the light is in the file [m]"
-    )
-    direction: Annotated[Draw, Drawn(Direction)] | None = Field(
-        default=None, description="where the light travels to, any length but 0"
+    direction: Annotated[Draw, Drawn(Direction)] | None = optional(
+        "where the light travels to, any length but 0"
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return attributes of `Light` for each target."""
-        draws = self.draws("offset")
-        lights: Values = {}
-        for name in chosen(self.of, targets.lights):
-            lights[name] = {key: pick(name, key, draw) for key, draw in draws.items()}
-            if self.offset is not None:
+        lights = self.drawn(self.of, targets.lights, pick, "offset")
+        if self.offset is not None:
+            for name, values in lights.items():
                 offset, place = pick(name, "offset", self.offset), targets.lights[name]
-                lights[name]["position_m"] = tuple(
-                    a + b for a, b in zip(place, offset, strict=True)
-                )
+                values["position_m"] = tuple(a + b for a, b in zip(place, offset, strict=True))
         return {"lights": lights}

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number, Text
+from sailenv_ros.scene.field_types import Number, Text, optional
 from sailenv_ros.scene.fields import Fraction, LinearColour
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
@@ -15,7 +15,6 @@ from sailenv_ros.scene.randomise.randomisation import (
     RandomTargets,
     Values,
     Which,
-    chosen,
 )
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialName, PictureName
 
@@ -35,38 +34,30 @@ class RandomMaterial(Randomisation):
     part: Annotated[str, Text(r"[^\x00-\x1f]{1,200}", "the name of a material")] = Field(
         default=ALL_PARTS, description="name of one of its materials; `all` for every one"
     )
-    material: Annotated[Draw, Drawn(MaterialName)] | None = Field(
-        default=None, description="a material of rooms, or asset/material of a model"
+    material: Annotated[Draw, Drawn(MaterialName)] | None = optional(
+        "a material of rooms, or asset/material of a model"
     )
-    picture: Annotated[Draw, Drawn(PictureName)] | None = Field(
-        default=None, description="PNG or JPEG file beside the scene file"
+    picture: Annotated[Draw, Drawn(PictureName)] | None = optional(
+        "PNG or JPEG file beside the scene file"
     )
-    colour: Annotated[Draw, Drawn(LinearColour)] | None = Field(
-        default=None, description="instead of its own; drawn in linear numbers"
+    colour: Annotated[Draw, Drawn(LinearColour)] | None = optional(
+        "instead of its own; drawn in linear numbers"
     )
-    tint: Annotated[Draw, Drawn(LinearColour)] | None = Field(
-        default=None, description="its colours and patterns are multiplied by it"
+    tint: Annotated[Draw, Drawn(LinearColour)] | None = optional(
+        "its colours and patterns are multiplied by it"
     )
-    roughness: Annotated[Draw, Drawn(Fraction)] | None = Field(
-        default=None, description="0 for a mirror, 1 for chalk"
+    roughness: Annotated[Draw, Drawn(Fraction)] | None = optional("0 for a mirror, 1 for chalk")
+    metallic: Annotated[Draw, Drawn(Fraction)] | None = optional(
+        "0 for paint, plastic, wood; 1 for bare metal"
     )
-    metallic: Annotated[Draw, Drawn(Fraction)] | None = Field(
-        default=None, description="0 for paint, plastic, wood; 1 for bare metal"
+    turn: Annotated[Draw, Drawn(_Turn)] | None = optional(
+        "by which it is laid counter-clockwise [deg]"
     )
-    turn: Annotated[Draw, Drawn(_Turn)] | None = Field(
-        default=None, description="by which it is laid counter-clockwise [deg]"
-    )
-    seed: Annotated[Draw, Drawn(_Seed)] | None = Field(
-        default=None, description="of the grain, clouds and tones of a material of rooms"
+    seed: Annotated[Draw, Drawn(_Seed)] | None = optional(
+        "of the grain, clouds and tones of a material of rooms"
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return the keys of a material for each target."""
-        draws = self.draws()
-        names = chosen(self.of, (*targets.objects, *targets.surfaces))
-        return {
-            "materials": {
-                name: {self.part: {key: pick(name, key, draw) for key, draw in draws.items()}}
-                for name in names
-            }
-        }
+        drawn = self.drawn(self.of, (*targets.objects, *targets.surfaces), pick)
+        return {"materials": {name: {self.part: values} for name, values in drawn.items()}}

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number, Switch, Text
+from sailenv_ros.scene.field_types import Number, Switch, Text, optional
 from sailenv_ros.scene.fields import Position
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
@@ -15,7 +15,6 @@ from sailenv_ros.scene.randomise.randomisation import (
     RandomTargets,
     Values,
     Which,
-    chosen,
 )
 
 __all__ = ["RandomObject"]
@@ -33,28 +32,20 @@ class RandomObject(EpochRandomisation):
 
     type: Literal["object"]
     of: Which = Field(description="names of objects; * and ?")
-    asset: Annotated[Draw, Drawn(_Asset)] | None = Field(
-        default=None, description="what it is: names of the catalogue"
+    asset: Annotated[Draw, Drawn(_Asset)] | None = optional("what it is: names of the catalogue")
+    there: Annotated[Draw, Drawn(_Bool)] | None = optional(
+        "false takes it out, with what stands on it"
     )
-    there: Annotated[Draw, Drawn(_Bool)] | None = Field(
-        default=None, description="false takes it out, with what stands on it"
+    scale: Annotated[Draw, Drawn(_Factor)] | None = optional(
+        "instead of its scale: one factor for all axes"
     )
-    scale: Annotated[Draw, Drawn(_Factor)] | None = Field(
-        default=None, description="instead of its scale: one factor for all axes"
+    offset: Annotated[Draw, Drawn(Position)] | None = optional(
+        "from where the file puts it, in the world's axes [m]"
     )
-    offset: Annotated[Draw, Drawn(Position)] | None = Field(
-        default=None, description="from where the file puts it, in the world's axes [m]"
-    )
-    turn: Annotated[Draw, Drawn(_Degrees)] | None = Field(
-        default=None, description="about the vertical, counter-clockwise [deg]"
+    turn: Annotated[Draw, Drawn(_Degrees)] | None = optional(
+        "about the vertical, counter-clockwise [deg]"
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return asset, there, scale, offset and turn for each object."""
-        draws = self.draws()
-        return {
-            "objects": {
-                name: {key: pick(name, key, draw) for key, draw in draws.items()}
-                for name in chosen(self.of, targets.objects)
-            }
-        }
+        return {"objects": self.drawn(self.of, targets.objects, pick)}

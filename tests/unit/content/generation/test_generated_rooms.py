@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Mapping
 from contextlib import closing
 from pathlib import Path
@@ -75,7 +74,7 @@ def world(
 ) -> Iterator[World]:
     file = tmp_path_factory.mktemp("rooms") / f"{scene.kind}_{scene.seed}.yaml"
     file.write_text(scene.text)
-    world = library.build(file, seed=0, epoch=1, next_revision=itertools.count(1).__next__)
+    world = library.build(file)
     yield world
     world.close()
 

@@ -12,6 +12,7 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import colour_instances
+from tests.support.small_frame import small_frame
 
 NAN = math.nan
 CAMERA = Camera(
@@ -27,18 +28,8 @@ def made_of(**views: np.ndarray) -> dict[str, Any]:
 
 def frame_of(**views: np.ndarray) -> Frame:
     """Make a frame of these views."""
-    return Frame(
-        agent="eye",
-        scene="optical",
-        epoch=1,
-        revision=1,
-        sequence=3,
-        stamp_ns=2_000_000_001,
-        dt_ns=33_333_333,
-        camera=CAMERA,
-        depth_range_m=10.0,
-        views=views,
-    )
+    about = {"scene": "optical", "sequence": 3, "stamp_ns": 2_000_000_001, "dt_ns": 33_333_333}
+    return small_frame(views, camera=CAMERA, depth_range_m=10.0, **about)
 
 
 def test_a_copied_dict_leaves_the_frame_as_it_was() -> None:

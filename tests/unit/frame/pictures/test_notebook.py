@@ -20,10 +20,10 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.html import TILE_WIDTH_PX, frame_html, scene_html
 from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.labels import Category, CategoryTable
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
+from tests.support.small_frame import small_frame
 
 
 def made_frame(width: int = 32, height: int = 24, agent: str = "eye") -> Frame:
@@ -33,11 +33,8 @@ def made_frame(width: int = 32, height: int = 24, agent: str = "eye") -> Frame:
         name: np.full(VIEWS[name].shape(height, width), values[name], VIEWS[name].dtype)
         for name in FIVE_VIEWS
     }
-    camera = Camera(intrinsics=CameraIntrinsics(width=width, height=height))
-    return Frame(
-        agent=agent, scene="<room>", epoch=1, revision=1, sequence=7, stamp_ns=2_500_000_000,
-        dt_ns=33_000_000, camera=camera, views=views,
-    )  # fmt: skip
+    about = {"agent": agent, "scene": "<room>", "sequence": 7, "stamp_ns": 2_500_000_000}
+    return small_frame(views, width, height, dt_ns=33_000_000, **about)
 
 
 class Parsed(HTMLParser):

@@ -16,6 +16,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import CategoryTable, Instance, Keypoint
 from sailenv_ros.types.scene_info import SceneInfo
+from tests.support.small_frame import small_frame
 
 LENS = CameraIntrinsics(width=40, height=30, vertical_fov_deg=60.0)
 CAMERA = Camera(intrinsics=LENS, pose=Pose((0.5, -0.2, 1.0)))
@@ -50,10 +51,8 @@ def frame_of(*instances: Instance, with_states: bool = True, **views: np.ndarray
         paused=False, real_time_factor=1.0, seed=0, categories=CategoryTable(),
         instances=instances or (instance_of(7), instance_of(3, parent=7)),
     )  # fmt: skip
-    return Frame(
-        agent="eye", scene="hand", epoch=1, revision=1, sequence=1, stamp_ns=0, dt_ns=1,
-        camera=CAMERA, views=views, info=info, states=states if with_states else None,
-    )  # fmt: skip
+    known = states if with_states else None
+    return small_frame(views, scene="hand", dt_ns=1, camera=CAMERA, info=info, states=known)
 
 
 def test_poses_boxes_and_corners() -> None:

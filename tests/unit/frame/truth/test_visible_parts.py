@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from sailenv_ros.frame.truth.visible_parts import visible_parts
-from sailenv_ros.native.instance_measures import measure_instances
 from sailenv_ros.native.library import load_library, using_instruction_set
+from sailenv_ros.native.view_kernels import measure_instances
 from tests.support.reference_measures import measure_with_numpy
 
 VIEWS = arrays.arrays(
