@@ -29,7 +29,7 @@ def judge(folder: Path, form: str, method: str, workers: int) -> int:
     """Compare all batches with the frames; return how many samples there were."""
     data = importlib.import_module("torch.utils.data")
     frames = dataset.open(folder)
-    samples: Any = dataset.open(folder, format=form)  # type: ignore[call-overload]
+    samples: Any = dataset.open(folder, format=form)
     assert frames[0].number == samples[0]["number"]  # opened before the fork
     seen = 0
     loader = data.DataLoader(
@@ -67,7 +67,7 @@ def speed(folder: Path, form: str, method: str, workers: int, passes: int) -> tu
     The first pass, in which workers start and look for what is where in the files, is not counted.
     """
     data = importlib.import_module("torch.utils.data")
-    samples: Any = dataset.open(folder, format=form)  # type: ignore[call-overload]
+    samples: Any = dataset.open(folder, format=form)
     loader = data.DataLoader(
         samples,
         batch_size=16,
