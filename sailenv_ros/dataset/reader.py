@@ -93,12 +93,16 @@ class Dataset(Sequence[DatasetFrame]):
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
+        return self.frame_at(index)
+
+    def frame_at(self, index: int, *, objects: bool = True) -> DatasetFrame:
+        """Return one frame; with `objects` False without what is told of its objects, quicker."""
         if self._process.is_inherited:
             # Where a file is read next is the parent's, too.
             self._source = frame_source(self.folder, self.recipe)
             self._process = OwnProcess("Dataset")
         record = self._records[index]
-        frame, objects = self._source.frame(record)
+        frame, told = self._source.frame(record, objects=objects)
         return DatasetFrame(
             number=record["number"],
             split=record["split"],
@@ -106,7 +110,7 @@ class Dataset(Sequence[DatasetFrame]):
             time=record["time"],
             camera=record["camera"],
             frame=frame,
-            objects=objects,
+            objects=told,
         )
 
     def __iter__(self) -> Iterator[DatasetFrame]:

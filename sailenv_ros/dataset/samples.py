@@ -61,7 +61,7 @@ class DatasetSamples(Sequence[Sample]):
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
-        return self._sample(self.dataset[index])
+        return self._sample(self.dataset.frame_at(index, objects=False))
 
     def __iter__(self) -> Iterator[Sample]:
         return (self[number] for number in range(len(self)))
