@@ -141,7 +141,7 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
 
     @property
     def amodal_source(self) -> DrawAmodal | None:
-        """What gives amodal masks to a copy in this process."""
+        """Source of amodal masks for a copy in this process."""
         return self.draw_amodal
 
     @property

@@ -115,7 +115,7 @@ class Frame(FrameData):
 
     @property
     def amodal_source(self) -> DrawAmodal | None:
-        """What gives amodal masks to a copy: those that are drawn, else what draws them here."""
+        """Source of amodal masks for a copy: those that are drawn, else what draws them here."""
         return _DrawnAmodal(self.amodal) if "amodal" in self.__dict__ else self.draw_amodal
 
     def to_dict(self, *, copy: bool = True) -> dict[str, Any]:

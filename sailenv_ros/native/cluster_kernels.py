@@ -19,7 +19,7 @@ __all__ = ["MARGIN", "seen_indices"]
 _SEEN = Kernel("seen_indices", "aiaaa")
 
 MARGIN = 0.01
-"""What is so little beyond the picture's sides, or faces away by so little, is still drawn: the
+"""Margin beyond the picture's sides, and of faces that turn away, that is still drawn: the
 GPU's roundings decide there; `CULL_MARGIN` of src/kernels/cluster_culling.h."""
 
 

@@ -231,8 +231,7 @@ class SimulationCore:
         self.agents.add_missing(brought, world)
         with self.scene.announce.once():
             self.randomiser.place_cameras()
-        if scene != before[0].scene:
-            self.frames.prepare()
+        self.frames.prepare(before[0].scene)
         self.streams.discard()
         self.announce()
         self.on_step(world.sim_time_ns)

@@ -133,14 +133,14 @@ class FrameMaker:
         """Render views of the scene as it stands now, through a camera that is no agent's."""
         return self._renderer.render(self._scene.world.snapshot(), None, camera, views).views
 
-    def prepare(self) -> None:
-        """Have the renderer take up the present scene, if there are agents to be drawn for.
+    def prepare(self, known: str) -> None:
+        """Have the renderer take up the present scene, unless it is the known one.
 
         Its first picture needs meshes, textures and mirrored surroundings, which take a second or
         more: in the request that changes the scene, not in the deadline of a first frame.
         """
-        specs = self._scene.agents.specs
-        if specs:
+        specs = self._scene.agents.specs  # without agents there is nobody to be drawn for
+        if specs and self._scene.world.scene != known:
             views = ("rgb",) if any("rgb" in spec.views for spec in specs) else ("depth",)
             self.look(Camera(intrinsics=_SMALL), *views)
 

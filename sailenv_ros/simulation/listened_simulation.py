@@ -1,4 +1,4 @@
-"""What a simulation announces as it goes: kept as it was last, and told to listeners."""
+"""Announcements of a simulation: kept as it was last, and told to listeners."""
 
 from __future__ import annotations
 

@@ -15,8 +15,7 @@ from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.surfaces import surface_names
-from sailenv_ros.authoring.room_rules.names import FORM
-from sailenv_ros.authoring.room_rules.names import PREFIX as GENERATED
+from sailenv_ros.authoring.room_rules.names import FORM, PREFIX
 from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
 from sailenv_ros.behaviours import (
     behaviour_errors,
@@ -308,7 +307,7 @@ class SceneLibrary:
         A name such as ``generated:kitchen:17`` is made first, if it has not been; see `generation`
         for errors.
         """
-        if str(scene).startswith(GENERATED):
+        if str(scene).startswith(PREFIX):
             return self._generated.path(str(scene))
         return self._files.get(str(scene)) or self._catalogue.path(scene, also=FORM)
 

@@ -1,4 +1,4 @@
-"""Which new connections of a server are taken: so many in all, so many of one address.
+"""Admission of new connections to a server: so many in all, so many of one address.
 
 One peer can thus neither use up a process's descriptors nor keep all others out, and a storm of
 connections makes a line of the log a minute.

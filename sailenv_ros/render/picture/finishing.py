@@ -1,4 +1,4 @@
-"""What every renderer does around its drawing: checks, the past's depth, finished views.
+"""The work of every renderer around its drawing: checks, the past's depth, finished views.
 
 A renderer draws surfaces and radiance; the wanted views go out.
 """
@@ -27,7 +27,7 @@ from sailenv_ros.types.views import VIEWS, checked_views
 __all__ = ["Arrays", "DrawingRenderer", "Timings"]
 
 Arrays: TypeAlias = dict[str, NDArray[Any]]
-"""What was drawn, by the names of views and of what views are made of."""
+"""Arrays that were drawn, by the names of views and of what views are made of."""
 
 Timings: TypeAlias = dict[str, float]
 """Wall time of each stage [s]."""

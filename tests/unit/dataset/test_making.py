@@ -325,8 +325,7 @@ def test_what_is_drawn_at_random_differs_from_scene_to_scene(tmp_path: Path) -> 
     coco = tmp_path / "one" / "coco" / "train" / "annotations.json"
     listed = json.loads(coco.read_text())["images"]
     assert {image["number"]: image["randomised"] for image in listed} == records
-    (path,) = (tmp_path / "one" / "parquet" / "data").iterdir()
-    rows = pq.read_table(path).to_pylist()
+    rows = pq.read_table(tmp_path / "one" / "parquet" / "data").to_pylist()
     assert {row["number"]: json.loads(row["randomised"]) for row in rows} == records
 
 
