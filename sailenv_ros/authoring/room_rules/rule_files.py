@@ -236,8 +236,8 @@ def _kind_errors(
                 yield _unknown("piece", loc, piece.put, known["furniture"])
             for number, name in enumerate(piece.unless):
                 if name not in known["furniture"]:
-                    loc = ("furniture", index, "unless", number)
-                    yield _unknown("piece", loc, name, known["furniture"])
+                    place = ("furniture", index, "unless", number)
+                    yield _unknown("piece", place, name, known["furniture"])
         for key in ("materials", "light"):
             for index, name in enumerate(getattr(file, key)):
                 if name not in known[key]:
