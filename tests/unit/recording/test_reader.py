@@ -147,7 +147,7 @@ def test_several_agents_are_told_apart(tmp_path: Path) -> None:
     with RecordingWriter(tmp_path / "bag") as writer:
         recorder = FrameRecorder(writer)
         for number in (1, 2):
-            recorder.write_frame(noise_frame(number, agent="left"), 10.0)
+            recorder.write_frame(noise_frame(number, agent="left"), 7.5)
             recorder.write_frame(noise_frame(number, agent="right", views=("rgb",)), 10.0)
     with pytest.raises(UnknownName, match="one of: left, right"):
         RecordedAgent(tmp_path / "bag")
@@ -158,6 +158,8 @@ def test_several_agents_are_told_apart(tmp_path: Path) -> None:
         expected = noise_frame(1).camera.intrinsics.K
         np.testing.assert_allclose(agent[0]["K"], expected, rtol=1e-12)
         assert (agent.instances, agent.categories, agent.scene) == ({}, {}, "")
+    with RecordingReader(tmp_path / "bag") as reader:
+        assert {frame.depth_range_m for frame in RecordedFrames(reader, "left")} == {7.5}
 
 
 def test_a_frame_without_all_its_images_is_passed_over(tmp_path: Path) -> None:
