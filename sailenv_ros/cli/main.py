@@ -16,6 +16,7 @@ from sailenv_ros import __version__
 from sailenv_ros.cli.printing import make_printable
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.system.interrupts import catch_interrupts
+from sailenv_ros.system.memory import no_memory
 
 __all__ = ["COMMANDS", "command_parser", "main"]
 
@@ -73,6 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return status
     except SailenvError as problem:
         print(f"sailenv {args.command}: {problem}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        print(f"sailenv {args.command}: {no_memory()}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130

@@ -54,7 +54,8 @@ _TYPES: dict[str, Any] = {
     "integer": ctypes.c_int64,
     "number": ctypes.c_double,
 }
-_STATUS = {1: "refused its arguments", 2: "found no memory"}
+_STATUS = {1: "refused its arguments"}
+_NO_MEMORY = 2
 
 
 class NativeLibrary:
@@ -187,8 +188,12 @@ def raise_for_status(kernel: str, status: int) -> None:
 
     Raises
     ------
+    MemoryError
+        If it found none.
     NativeLibraryError
     """
+    if status == _NO_MEMORY:
+        raise MemoryError(f"the kernel {kernel} found no memory")
     if status:
         raise NativeLibraryError(
             f"the kernel {kernel} {_STATUS.get(status, f'failed with status {status}')}"

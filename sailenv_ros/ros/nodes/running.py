@@ -17,7 +17,7 @@ from rclpy.node import Node
 from sailenv_ros.errors import InvalidRequest, SailenvError
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.log_bridge import LogBridge
-from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.memory import keep_freed_memory, no_memory
 from sailenv_ros.system.transport import use_shared_memory_profile
 
 __all__ = ["run_node"]
@@ -57,6 +57,9 @@ def run_node(
             node.destroy_node()
     except SailenvError as error:
         logger.fatal(str(error))
+        return 2
+    except MemoryError:
+        logger.fatal(no_memory())
         return 2
     except Exception:
         _log.exception("the node ends because of an internal error")

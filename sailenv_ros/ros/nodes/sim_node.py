@@ -45,7 +45,7 @@ from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.services import SimulatorServices
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.memory import keep_freed_memory, no_memory
 from sailenv_ros.system.presence import (
     ClockLock,
     SimulatorLock,
@@ -187,6 +187,9 @@ def run(arguments: list[str], stop: StopRequest, hosted: Hosted | None = None) -
         return 3
     except SailenvError as error:
         logger.fatal(str(error))
+        return 2
+    except MemoryError:
+        logger.fatal(no_memory())
         return 2
     except Exception:
         _log.exception("the node ends because of an internal error")
