@@ -10,7 +10,10 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from sailenv_ros.system.interrupts import end_at_interrupts
 from sailenv_ros.version import __version__
+
+end_at_interrupts()
 
 if TYPE_CHECKING:
     from sailenv_ros.frame.frame import Frame

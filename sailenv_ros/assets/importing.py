@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES, unpack_zip
+from sailenv_ros.assets.gltf_layout import check_layout
 from sailenv_ros.assets.hulls import convex_hull, convex_parts, merged
 from sailenv_ros.assets.meshes import RawMesh, is_open, smooth_mesh
 from sailenv_ros.assets.model_files import MODEL_SUFFIXES, RawPart, read_parts
@@ -76,7 +77,10 @@ def import_asset(
     if path.stat().st_size > MAX_ARCHIVE_BYTES:
         raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
     with tempfile.TemporaryDirectory(prefix="sailenv-") as folder:
-        parts = read_parts(_model_file(path, Path(folder)))
+        file = _model_file(path, Path(folder))
+        if file.suffix.lower() in (".glb", ".gltf"):
+            check_layout(file)
+        parts = read_parts(file)
     meshes = [_standing(parts, part, height_m) for part in parts]
     collision = _collision(meshes, convex=convex)
     model = Model(name=name, parts=_drawn(parts, meshes))

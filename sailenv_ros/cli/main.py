@@ -13,7 +13,10 @@ import sys
 from collections.abc import Sequence
 
 from sailenv_ros import __version__
+from sailenv_ros.cli.printing import make_printable
 from sailenv_ros.errors import SailenvError
+from sailenv_ros.system.interrupts import catch_interrupts
+from sailenv_ros.system.memory import no_memory
 
 __all__ = ["COMMANDS", "command_parser", "main"]
 
@@ -62,13 +65,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         130 after Ctrl-C.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
+    make_printable(sys.stdout, sys.stderr)
     args = command_parser(words).parse_args(words)
+    catch_interrupts()
     try:
         status = int(args.run(args))
         sys.stdout.flush()  # here, where a reader that has gone is still caught
         return status
     except SailenvError as problem:
         print(f"sailenv {args.command}: {problem}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        print(f"sailenv {args.command}: {no_memory()}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130

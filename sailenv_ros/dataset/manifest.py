@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,15 +17,20 @@ __all__ = [
     "SHARDS_FOLDER",
     "FileHash",
     "ShardSummary",
+    "ToldContents",
     "dataset_hash",
     "done_shards",
     "file_hash",
+    "shard_path",
     "summaries_of_files",
-    "whole_files",
+    "told_contents",
 ]
 
 MANIFEST = "manifest.json"
 SHARDS_FOLDER = "shards"
+
+_DAMAGE = (ValueError, TypeError, KeyError, AttributeError, RecursionError)
+"""Errors of whoever takes JSON of something else for a summary or a manifest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +76,7 @@ class ShardSummary:
     @property
     def path(self) -> str:
         """Path of the summary in the data set."""
-        return f"{SHARDS_FOLDER}/{self.shard:05d}.json"
+        return shard_path(self.shard)
 
     def to_json(self) -> bytes:
         """Return the text of its file."""
@@ -84,14 +89,28 @@ class ShardSummary:
         Raises
         ------
         RecordingError
-            If it is something else.
+            If it is something else, or that of another shard.
         """
         try:
             value = json.loads(data)
-            files = {name: FileHash(**one) for name, one in value.pop("files").items()}
-            return cls(files=files, **value)
-        except (ValueError, TypeError, KeyError, AttributeError) as problem:
+            summary = cls(files=_hashes(value.pop("files")), **value)
+            if summary.path != path:
+                raise ValueError(f"it tells of shard {summary.shard}")
+        except _DAMAGE as problem:
             raise RecordingError(f"{path} is no summary of a shard: {problem}") from None
+        return summary
+
+
+def shard_path(number: int) -> str:
+    """Return the path of a shard's summary in a data set."""
+    return f"{SHARDS_FOLDER}/{number:05d}.json"
+
+
+def _hashes(told: Mapping[str, Any]) -> dict[str, FileHash]:
+    hashes = {name: FileHash(**one) for name, one in told.items()}
+    if any(type(one.bytes) is not int or type(one.sha256) is not str for one in hashes.values()):
+        raise TypeError("a file's size is no integer, or its hash no text")
+    return hashes
 
 
 def summaries_of_files(folder: Path) -> dict[str, FileHash]:
@@ -109,32 +128,71 @@ def file_hash(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def done_shards(storage: Storage) -> dict[int, ShardSummary]:
-    """Return the summaries of the shards that are whole, by their numbers."""
-    found = {}
-    for name in storage.names(SHARDS_FOLDER):
-        path = f"{SHARDS_FOLDER}/{name}"
-        data = storage.read(path)
-        if data is not None:
-            summary = ShardSummary.from_json(data, path)
-            found[summary.shard] = summary
-    return dict(sorted(found.items()))
+def done_shards(
+    storage: Storage,
+    *,
+    on_damage: Callable[[str, RecordingError], None] | None = None,
+) -> dict[int, ShardSummary]:
+    """Return the summaries of the shards that are whole, by their numbers.
 
-
-def whole_files(storage: Storage) -> dict[str, FileHash]:
-    """Return the files that belong to the whole data set; none while it is not finished.
+    Parameters
+    ----------
+    storage : Storage
+    on_damage : callable or None
+        Told the path of each summary that cannot be read, and why; it is left out then.
 
     Raises
     ------
     RecordingError
-        If the manifest cannot be read.
+        If one cannot be read and nobody is to be told.
+    """
+    found = {}
+    for name in storage.names(SHARDS_FOLDER):
+        path = f"{SHARDS_FOLDER}/{name}"
+        try:
+            data = storage.read(path)
+            if data is not None:
+                summary = ShardSummary.from_json(data, path)
+                found[summary.shard] = summary
+        except RecordingError as problem:
+            if on_damage is None:
+                raise
+            on_damage(path, problem)
+    return dict(sorted(found.items()))
+
+
+@dataclass(frozen=True, slots=True)
+class ToldContents:
+    """Contents of the whole data set, as the manifest tells them; nothing while it has none.
+
+    Attributes
+    ----------
+    files : mapping of str to FileHash
+        Those that belong to no shard.
+    shards : mapping of int to str
+        Hash of the files of each shard, by its number.
+    """
+
+    files: Mapping[str, FileHash] = field(default_factory=dict)
+    shards: Mapping[int, str] = field(default_factory=dict)
+
+
+def told_contents(storage: Storage) -> ToldContents:
+    """Return what the manifest tells.
+
+    Raises
+    ------
+    RecordingError
+        If it cannot be read.
     """
     data = storage.read(MANIFEST)
     if data is None:
-        return {}
+        return ToldContents()
     try:
-        return {name: FileHash(**one) for name, one in json.loads(data)["files"].items()}
-    except (ValueError, TypeError, KeyError, AttributeError) as problem:
+        value = json.loads(data)
+        shards = {int(one["shard"]): str(one["sha256"]) for one in value["shards"]}
+        return ToldContents(_hashes(value["files"]), shards)
+    except _DAMAGE as problem:
         raise RecordingError(f"{MANIFEST} in {storage.shown} cannot be read: {problem}") from None
 
 

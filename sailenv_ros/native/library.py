@@ -48,7 +48,8 @@ INSTRUCTION_SET_VARIABLE = "SAILENV_INSTRUCTION_SET"
 THREADS_VARIABLE = "SAILENV_THREADS"
 
 _TYPES: dict[str, Any] = {"a": ctypes.c_void_p, "i": ctypes.c_int64, "n": ctypes.c_double}
-_STATUS = {1: "refused its arguments", 2: "found no memory"}
+_STATUS = {1: "refused its arguments"}
+_NO_MEMORY = 2
 
 
 class NativeLibrary:
@@ -182,8 +183,12 @@ def raise_for_status(kernel: str, status: int) -> None:
 
     Raises
     ------
+    MemoryError
+        If it found none.
     NativeLibraryError
     """
+    if status == _NO_MEMORY:
+        raise MemoryError(f"the kernel {kernel} found no memory")
     if status:
         raise NativeLibraryError(
             f"the kernel {kernel} {_STATUS.get(status, f'failed with status {status}')}"

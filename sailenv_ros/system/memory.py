@@ -1,4 +1,4 @@
-"""Setting of the C library's allocator: a process that allocates large arrays keeps freed memory.
+"""Memory of this process: how much there may be, and a setting of the C library's allocator.
 
 Frames are some megabytes, made and freed many times a second. By default the memory goes back to
 the system each time, and each page of the next frame is faulted in anew. Knows nothing of frames.
@@ -7,8 +7,11 @@ the system each time, and each page of the next frame is faulted in anew. Knows 
 from __future__ import annotations
 
 import ctypes
+import resource
 
-__all__ = ["keep_freed_memory"]
+from sailenv_ros.errors import InvalidState
+
+__all__ = ["keep_freed_memory", "no_memory", "require_address_space"]
 
 _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
@@ -31,3 +34,40 @@ def keep_freed_memory() -> bool:
         return False
     kept = mallopt(_M_MMAP_THRESHOLD, LARGEST_KEPT_BYTES)
     return bool(kept and mallopt(_M_TRIM_THRESHOLD, KEPT_BYTES))
+
+
+def require_address_space(least_bytes: int) -> None:
+    """Make sure that a process may become as large as it will.
+
+    Native libraries that find no room as they are loaded end the process with "Segmentation
+    fault", and nobody could say why.
+
+    Parameters
+    ----------
+    least_bytes : int
+        Addresses that it needs, of which only a part is ever memory [B].
+
+    Raises
+    ------
+    InvalidState
+        If the limit, `ulimit -v`, is lower.
+    """
+    limit = _address_limit()
+    if limit is not None and limit < least_bytes:
+        raise InvalidState(
+            f"this process may have {limit >> 20} MiB of addresses (ulimit -v), and a node needs "
+            f"{least_bytes >> 20} MiB to start"
+        )
+
+
+def no_memory() -> str:
+    """Return the sentence for whoever met a `MemoryError`."""
+    limit = _address_limit()
+    if limit is None:
+        return "there is not enough memory for this"
+    return f"there is not enough memory for this: {limit >> 20} MiB are allowed (ulimit -v)"
+
+
+def _address_limit() -> int | None:
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return None if limit == resource.RLIM_INFINITY else limit

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
-from importlib.metadata import requires
+import subprocess
+import sys
+from importlib.metadata import requires, version
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -116,3 +119,27 @@ def _imported_ros_packages() -> set[str]:
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 names.add(node.module.partition(".")[0])
     return {name for name in names if re.fullmatch(r"rclpy|\w+_(msgs|srvs|interfaces)", name)}
+
+
+@pytest.mark.parametrize("name", ["constraints", "constraints-jazzy"])
+def test_every_pin_has_hashes(name: str) -> None:
+    """The file that uv reads pins what the file that pip reads does, and holds it to hashes."""
+    hashed = (ROOT / f"{name}-hashes.txt").read_text().replace(" \\\n    --hash=", " --hash=")
+    pins = [line for line in hashed.splitlines() if not line.startswith("#")]
+    assert all(re.search(r" --hash=sha256:[0-9a-f]{64}$", pin) for pin in pins)
+    assert [pin.partition(" --hash=")[0] for pin in pins] == _lines(ROOT / f"{name}.txt")
+
+
+def test_the_bill_of_materials_lists_what_is_installed() -> None:
+    """Each package once, those that were fetched with hashes; the same bytes each time."""
+    words = [sys.executable, str(ROOT / "scripts" / "sbom.py")]
+    told, again = (subprocess.run(words, capture_output=True, check=True).stdout for _ in "ab")
+    assert told == again
+    document = json.loads(told)
+    assert (document["bomFormat"], document["specVersion"]) == ("CycloneDX", "1.6")
+    assert document["metadata"]["component"]["name"] == "sailenv-ros"
+    by_name = {one["name"]: one for one in document["components"]}
+    assert len(by_name) == len(document["components"])
+    assert by_name["numpy"]["version"] == version("numpy")
+    assert by_name["numpy"]["purl"] == f"pkg:pypi/numpy@{version('numpy')}"
+    assert by_name["numpy"]["externalReferences"][0]["hashes"]

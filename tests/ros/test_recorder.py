@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from rosbags.rosbag2 import Reader
+from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
 from sailenv_ros import Agent
@@ -18,7 +19,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.bag_recovery import recover
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
-from tests.support.ros_probe import Probe
+from tests.support.ros_probe import BEST_EFFORT, Probe
 from tests.support.sim_node_process import NodeProcess
 from tests.support.tool_process import ToolProcess
 from tests.support.waiting import until
@@ -199,6 +200,23 @@ def test_without_a_simulator_the_status_says_so(tmp_path: Path) -> None:
     with ToolProcess("recorder", "/nobody_is_here", "Ctrl-C ends it", **settings) as process:
         assert process.end() == 1
     assert process.said("no simulator was heard in /nobody_is_here")
+
+
+def test_a_simulator_of_another_namespace_does_not_count(tmp_path: Path) -> None:
+    """Its /clock is everybody's, and a recording of nothing else is none."""
+    settings = {"output": str(tmp_path / "bag"), "progress": False}
+    with (
+        NodeProcess("/elsewhere", publish_clock=True),
+        ToolProcess("recorder", "/nobody_is_here", "Ctrl-C ends it", **settings) as process,
+        Probe("/clock_probe") as probe,
+    ):
+        ticks = probe.listen(Clock, "/clock", BEST_EFFORT)
+        until(lambda: probe.node.count_subscribers("/clock") == 2, "the recorder to subscribe")
+        until(lambda: len(ticks.messages) >= 20, "the clock to tick")
+        assert process.end() == 1
+    assert process.said("no simulator was heard in /nobody_is_here")
+    with RecordingReader(tmp_path / "bag") as read:
+        assert {topic.name for topic, _ in read.messages()} == {"/clock"}
 
 
 def test_a_killed_simulator_is_told(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ the package's own. Everything is drawn from one seed, so that a failure comes ag
 
 from __future__ import annotations
 
+import base64
 import io
 import itertools
 import json
@@ -254,6 +255,14 @@ def _model_samples(kind: str) -> tuple[bytes, ...]:
     parts = Primitives().load("cube").model.parts
     if kind == "glb":
         return (glb_bytes(parts, ()),)
+    if kind == "gltf":
+        # A text: numbers change here without what the binary form says of lengths.
+        data = glb_bytes(parts, ())
+        (length,) = struct.unpack_from("<I", data, 12)
+        tree = json.loads(data[20 : 20 + length])
+        buffer = base64.b64encode(data[28 + length :]).decode()
+        tree["buffers"][0]["uri"] = f"data:application/octet-stream;base64,{buffer}"
+        return (json.dumps(tree).encode(),)
     quads = "\n".join(["v 0 0 0", "v 1 0 0", "v 1 1 0", "v 0 1 1", "vt 0 0", "f 1/1 2/1 3/1 4/1"])
     return box_zip(), box_zip(quads), box_zip(quads + "\nusemtl red\nf -1 -2 -3\n")
 
@@ -346,6 +355,7 @@ TARGETS = {
         _read_viewer,
     ),
     "glb": Target(lambda: _model_samples("glb"), _importer("a.glb")),
+    "gltf": Target(lambda: _model_samples("gltf"), _importer("a.gltf")),
     "zip": Target(lambda: _model_samples("zip"), _importer("a.zip")),
     "mcap": Target(_bag, _read_bag),
     "light": Target(_light_samples, _read_light),

@@ -138,7 +138,7 @@ class Recorder:
         # rclpy tells by the signature whether a callback wants to know when a message was sent.
         def take(data: Any, about: Mapping[str, Any]) -> None:
             self._taken[name] += 1
-            self.heard = True
+            self.heard |= type_name != CLOCK  # which is of any simulator of the domain
             sent_ns = self._put(spec, data, about)
             if agent:
                 self._count(name.rpartition("/")[2], agent, data, sent_ns)

@@ -20,7 +20,7 @@ from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.log_bridge import LogBridge
 from sailenv_ros.ros.nodes.parameter_table import NAMESPACE
-from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.memory import keep_freed_memory, no_memory
 from sailenv_ros.system.transport import use_shared_memory_profile
 
 __all__ = ["exit_status", "refusing", "run_node"]
@@ -79,6 +79,9 @@ def exit_status(name: str, run: Callable[[], int]) -> int:
         return 3
     except SailenvError as error:
         logger.fatal(str(error))
+        return 2
+    except MemoryError:
+        logger.fatal(no_memory())
         return 2
     except Exception:
         _log.exception("the node ends because of an internal error")

@@ -10,6 +10,7 @@ import pytest
 
 from sailenv_ros.cli.main import COMMANDS, main
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.native.library import raise_for_status
 
 
 def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
@@ -51,6 +52,17 @@ def test_ctrl_c_is_quiet(
     monkeypatch.setattr(importlib.import_module("sailenv_ros.cli.doctor"), "run", interrupt)
     assert main(["doctor"]) == 130
     assert capsys.readouterr().err == ""
+
+
+def test_too_little_memory_is_one_line_and_status_2(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where a kernel of the native library is what finds none."""
+    monkeypatch.setattr(
+        importlib.import_module("sailenv_ros.cli.doctor"), "run", lambda _: raise_for_status("a", 2)
+    )
+    assert main(["doctor"]) == 2
+    assert capsys.readouterr().err.startswith("sailenv doctor: there is not enough memory for this")
 
 
 @pytest.mark.parametrize("arguments", [["doctor", "--help"], ["--help"], ["--version"]])

@@ -270,6 +270,57 @@ def test_verifying_finds_what_was_changed(small: Path, tmp_path: Path) -> None:
     assert found[path] == "is another one when it is made anew"
 
 
+def test_verifying_goes_on_after_damaged_summaries(small: Path, tmp_path: Path) -> None:
+    """What can be read is compared, whichever of the files that tell of the others cannot."""
+    broken = tmp_path / "broken"
+    shutil.copytree(small, broken)
+    shards = broken / "shards"
+    (shards / "00000.json").write_bytes(b"{" + (shards / "00000.json").read_bytes())
+    (shards / "00001.json").unlink()
+    told = json.loads((shards / "00003.json").read_text())
+    (shards / "00003.json").write_text(json.dumps({**told, "files": {"a": {"bytes": 1}}}))
+    changed = next(
+        path
+        for path in json.loads((shards / "00002.json").read_text())["files"]
+        if path.startswith("webdataset")
+    )
+    (broken / changed).write_bytes(b"")
+
+    found = {one.path: one.why for one in verify_dataset(broken, sample=4)}
+    assert found.keys() == {*(f"shards/0000{number}.json" for number in (0, 1, 3)), changed}
+    assert found["shards/00000.json"].startswith("is no summary of a shard: Expecting property")
+    assert found["shards/00001.json"] == "is not there"
+    assert found["shards/00003.json"].startswith("is no summary of a shard: ")
+    assert found[changed] == "has another content than was written"
+
+    shutil.copy(small / "shards" / "00002.json", shards / "00001.json")
+    (shards / "00003.json").unlink()
+    (shards / "00003.json").mkdir()
+    (broken / "coco" / "val" / "annotations.json").write_text("{}")
+    found = {one.path: one.why for one in verify_dataset(broken, sample=0)}
+    assert found["shards/00001.json"] == "is no summary of a shard: it tells of shard 2"
+    assert found["shards/00003.json"] == "cannot be read: Is a directory"
+    assert found["coco/val/annotations.json"] == "has another content than was written"
+
+    (broken / "manifest.json").write_text("[]")
+    found = {one.path: one.why for one in verify_dataset(broken, sample=0)}
+    assert found["manifest.json"].startswith(f"in {broken} cannot be read: ")
+    assert {"shards/00000.json", changed} < found.keys()
+
+
+def test_verifying_finds_a_summary_that_tells_of_other_files(small: Path, tmp_path: Path) -> None:
+    """The manifest knows what each shard holds."""
+    broken = tmp_path / "broken"
+    shutil.copytree(small, broken)
+    summary = broken / "shards" / "00002.json"
+    told = json.loads(summary.read_text())
+    told["files"].popitem()
+    summary.write_text(json.dumps(told))
+    found = verify_dataset(broken, sample=0)
+    why = "tells of other files than manifest.json"
+    assert [(one.path, one.why) for one in found] == [("shards/00002.json", why)]
+
+
 def test_cameras_without_a_place_are_counted(tmp_path: Path) -> None:
     """A clip whose camera finds nothing to look at is left out, and the card says so."""
     cameras = [{"type": "orbit", "object": "no such thing", "width": 32, "height": 24}]

@@ -19,6 +19,7 @@ COUNTS = {
     "gateway": 4000,
     "viewer": 10_000,
     "glb": 600,
+    "gltf": 600,
     "zip": 400,
     "mcap": 1500,
     "light": 1500,

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
+
+import pytest
 
 COUNT_FAULTS = """
 import resource, sys
@@ -34,3 +37,30 @@ def test_kept_memory_is_not_faulted_in_again() -> None:
     """Arrays of ten megabytes, made anew ten times, cost next to no page faults."""
     assert faults("keep") < 100
     assert faults("as it is") > 10_000
+
+
+@pytest.mark.parametrize("node", ["sim_node", "recorder", "player"])
+def test_a_node_with_too_few_addresses_says_so(node: str) -> None:
+    """Its libraries ended in "Segmentation fault" as they were loaded."""
+    few = 700 * 2**20
+    done = subprocess.run(
+        [sys.executable, "-m", f"sailenv_ros.ros.nodes.{node}"],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (few, few)),
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+    )
+    sentence = "this process may have 700 MiB of addresses (ulimit -v), and a node needs 1400 MiB"
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"sailenv_ros: {sentence} to start\n"
+
+
+def test_what_is_told_of_a_memory_error_names_the_limit() -> None:
+    """If there is one."""
+    program = (
+        "import resource; from sailenv_ros.system.memory import no_memory; print(no_memory());"
+        "resource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30)); print(no_memory())"
+    )
+    told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout
+    sentence = "there is not enough memory for this"
+    assert told.splitlines() == [sentence, f"{sentence}: 1024 MiB are allowed (ulimit -v)"]
