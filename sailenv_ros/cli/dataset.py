@@ -37,6 +37,13 @@ def add_parser(subparsers: Any) -> None:
         "--ray", metavar="ADDRESS", help="have a Ray cluster make it: auto, local, ray://host:10001"
     )
     make.add_argument(
+        "--limit",
+        type=_positive,
+        default=0,
+        metavar="N",
+        help="end after the shard with frame N; without it, a later call makes the rest",
+    )
+    make.add_argument(
         "--dry-run",
         action="store_true",
         help="check the recipe, make a few frames, say what all would cost",
@@ -57,9 +64,8 @@ def add_parser(subparsers: Any) -> None:
         "-o",
         "--output",
         type=Path,
-        default=Path("dataset.html"),
         metavar="FILE",
-        help="a page (.html, which is the default) or a sheet (.png, .jpg)",
+        help="a page (.html) or a sheet (.png, .jpg); default: dataset.html in the data set",
     )
     show.add_argument("--split", default="", help="frames of that one alone")
     show.add_argument(
@@ -83,10 +89,12 @@ def _make(args: argparse.Namespace) -> int:
         print("sailenv dataset make: -o DIR is missing; it says where to", file=sys.stderr)
         return 2
     with _progress_bar() as tell:
-        made = make_dataset(job, args.output, engine_of(args.workers, args.ray), on_progress=tell)
+        engine = engine_of(args.workers, args.ray)
+        made = make_dataset(job, args.output, engine, limit=args.limit, on_progress=tell)
+    known = f"SHA-256 {made.sha256}" if made.sha256 else "of more that the recipe asks for"
     print(
         f"{args.output}: {made.frames} frames in {made.shards} shards, "
-        f"{made.bytes / 1e6:.1f} MB, SHA-256 {made.sha256}"
+        f"{made.bytes / 1e6:.1f} MB, {known}"
     )
     for name, counts in made.written.items():
         left_out = made.left_out.get(name, {})
@@ -128,11 +136,12 @@ def _show(args: argparse.Namespace) -> int:
     from sailenv_ros.dataset.preview_page import save_preview
     from sailenv_ros.dataset.showing import save_sheet
 
-    page = args.output.suffix.lower() in (".html", ".htm")
+    output = args.output or args.dataset / "dataset.html"
+    page = output.suffix.lower() in (".html", ".htm")
     frames = args.frames or (36 if page else 12)
     save = save_preview if page else save_sheet
-    count = save(args.dataset, args.output, split=args.split, frames=frames)
-    print(f"{args.output}: {count} frames")
+    count = save(args.dataset, output, split=args.split, frames=frames)
+    print(f"{output}: {count} frames")
     return 0
 
 

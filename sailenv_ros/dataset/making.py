@@ -56,7 +56,7 @@ class Progress:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MadeDataset:
-    """A data set that is whole.
+    """A data set that was made, or a part of it.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class MadeDataset:
     bytes : int
         Of all its files [B].
     sha256 : str
-        Of all names and contents.
+        Of all names and contents; empty while shards are missing.
     written, left_out : mapping of str to mapping of str to int
         Of each format.
     skipped : mapping of str to int
@@ -85,6 +85,7 @@ def make_dataset(
     where: str | Path,
     engine: Engine,
     *,
+    limit: int = 0,
     on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> MadeDataset:
     """Make a data set, or go on with one.
@@ -95,6 +96,9 @@ def make_dataset(
     where : str or Path
         A folder, or a URL that `fsspec` knows.
     engine : Engine
+    limit : int
+        Frames after which no other shard is begun; 0 makes all. What is there can be read, and a
+        later call goes on with it.
     on_progress : callable
         Called now and then.
 
@@ -117,7 +121,9 @@ def make_dataset(
     with store.opened():
         if storage.read(RECIPE_FILE) is None:
             storage.write(RECIPE_FILE, job.recipe_text.encode())
-        done = _make_shards(job, storage, str(where), engine, on_progress)
+        done = _make_shards(job, storage, str(where), engine, limit, on_progress)
+        if len(done) < ShardPlan(job.recipe).shards:
+            return _begun(done)
         manifest = _finish(job, store, done)
         store.finish()
     return _made(manifest)
@@ -128,6 +134,7 @@ def _make_shards(
     storage: Storage,
     where: str,
     engine: Engine,
+    limit: int,
     on_progress: Callable[[Progress], None],
 ) -> Mapping[int, ShardSummary]:
     """Make the shards that are missing; return the summaries of all, by their numbers."""
@@ -148,7 +155,8 @@ def _make_shards(
             )
         )
 
-    missing = [number for number in range(plan.shards) if number not in done]
+    wanted = plan.shards_of(limit) if limit else plan.shards
+    missing = [number for number in range(wanted) if number not in done]
     tell(0)
     if missing:
         for summary in engine.run(job, where, missing, tell):
@@ -215,6 +223,19 @@ def _made(manifest: Mapping[str, Any]) -> MadeDataset:
         written=manifest["written"],
         left_out=manifest["left_out"],
         skipped=manifest["skipped"],
+    )
+
+
+def _begun(shards: Mapping[int, ShardSummary]) -> MadeDataset:
+    """Return what there is of a data set of which shards are missing."""
+    return MadeDataset(
+        frames=sum(one.frames for one in shards.values()),
+        shards=len(shards),
+        bytes=sum(file.bytes for one in shards.values() for file in one.files.values()),
+        sha256="",
+        written=_sums(one.written for one in shards.values()),
+        left_out=_sums(one.left_out for one in shards.values()),
+        skipped=_sum(one.skipped for one in shards.values()),
     )
 
 

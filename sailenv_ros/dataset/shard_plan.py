@@ -93,7 +93,7 @@ class ShardPlan:
 
     @property
     def shards(self) -> int:
-        """Number of clips."""
+        """Number of shards."""
         return sum(self._shards.values())
 
     @property
@@ -129,6 +129,15 @@ class ShardPlan:
                 return Shard(number=number, split=split, clips=clips)
             within -= count
         raise IndexError(f"there are {self.shards} shards, none of number {number}")
+
+    def shards_of(self, frames: int) -> int:
+        """Return how many shards, from the first on, have so many frames; all for more."""
+        begun = 0
+        for number in range(self.shards):
+            if begun >= frames:
+                return number
+            begun += len(self.shard(number).clips) * self.frames_of_clip
+        return self.shards
 
     def shard_of_clip(self, clip: int) -> int:
         """Return the number of the shard that a clip belongs to.

@@ -135,6 +135,20 @@ def test_what_was_broken_off_goes_on(small: Path, tmp_path: Path) -> None:
     assert (told[0].shards, told[-1].frames) == (3, FRAMES)
 
 
+def test_a_limit_makes_the_first_shards_and_the_rest_later(small: Path, tmp_path: Path) -> None:
+    """Whole shards up to the frame; they can be read, and become the same data set."""
+    job = load_job(small.parent / "small.yaml")
+    part = make_dataset(job, tmp_path / "part", engine_of(1, None), limit=13)
+    # A shard has 2 clips of 3 frames by 2 cameras.
+    assert (part.frames, part.shards, part.sha256) == (24, 2, "")
+    with open_dataset(tmp_path / "part") as dataset:
+        assert len(dataset) == 24
+    assert make_dataset(job, tmp_path / "part", engine_of(1, None), limit=24).frames == 24
+    whole = make_dataset(job, tmp_path / "part", engine_of(1, None))
+    assert whole.sha256
+    assert contents(tmp_path / "part") == contents(small)
+
+
 @pytest.mark.timeout(400)
 def test_a_killed_run_loses_unfinished_shards_alone(small: Path, tmp_path: Path) -> None:
     """kill -9 in the middle; the same command ends with the same bytes."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import cv2
@@ -33,6 +34,15 @@ def test_a_page_tells_what_is_in_the_frames(small: Path, tmp_path: Path) -> None
             assert sorted(each["pixels"] for each in one["objects"]) == sorted(
                 each["visible_pixels"] for each in frame.objects
             )
+
+
+def test_a_page_lies_in_its_data_set(small: Path, tmp_path: Path) -> None:
+    """Where no other file is named; it is none of the data set's files."""
+    copy = tmp_path / "copy"
+    shutil.copytree(small, copy)
+    assert main(["dataset", "show", str(copy), "--frames", "2"]) == 0
+    assert "<html" in (copy / "dataset.html").read_text()
+    assert main(["dataset", "verify", str(copy), "--shards", "0"]) == 0
 
 
 @pytest.mark.parametrize("seed", range(4))
