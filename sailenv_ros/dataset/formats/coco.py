@@ -21,12 +21,11 @@ from sailenv_ros.dataset.formats.annotated_objects import (
     categories_of,
     merged_categories,
 )
-from sailenv_ros.dataset.formats.coco_rle import run_lengths_text
+from sailenv_ros.dataset.formats.coco_rle import amodal_segmentation, segmentation
 from sailenv_ros.dataset.formats.data_files import write_json, write_png
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
 from sailenv_ros.frame.truth.object_table import ObjectTable
-from sailenv_ros.frame.truth.run_lengths import crop_runs
 
 __all__ = ["CocoExport"]
 
@@ -55,16 +54,15 @@ class CocoExport(DatasetFormat):
                 "instance_id": instance_id,
                 "instance_name": table.names[row],
                 "parent_id": int(table.parents[row]),
-                "segmentation": _segmentation(seen, left, top, height, width),
+                "segmentation": segmentation(seen, left, top, (height, width)),
                 "area": int(table.visible_pixels[row]),
                 "bbox": _bbox(table.visible_boxes[row]),
                 "iscrowd": 0,
             }
             if masks is not None:
-                crop, box = masks.crops[masks.row(instance_id)], table.amodal_boxes[row]
                 annotation |= _amodal(table, row)
-                annotation["amodal_segmentation"] = _segmentation(
-                    crop, int(box[0]), int(box[1]), height, width
+                annotation["amodal_segmentation"] = amodal_segmentation(
+                    masks, table, row, (height, width)
                 )
             annotations.append(annotation)
         return WriteResult(
@@ -115,13 +113,6 @@ class CocoExport(DatasetFormat):
 
 def _of_split(records: Iterable[Record], split: str) -> Iterator[Any]:
     return (record.value for record in records if record.split == split)
-
-
-def _segmentation(
-    crop: NDArray[np.bool_], left: int, top: int, height: int, width: int
-) -> dict[str, Any]:
-    counts = crop_runs(crop, left, top, height, width).tolist()
-    return {"size": [height, width], "counts": run_lengths_text(counts)}
 
 
 def _amodal(table: ObjectTable, row: int) -> dict[str, Any]:

@@ -3,7 +3,8 @@
 The layout is that of https://github.com/webdataset/webdataset: members of one sample have one name
 and different endings. Values are kept exactly: ``rgb.png``, ``category.png``, ``instance.png`` and
 truth values as pictures, every other view as ``<view>.npy``; ``json`` says where the camera was and
-what is known of every visible object.
+what is known of every visible object, its amodal mask among it (COCO's run lengths) where the
+recipe asks for amodal masks.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
+from sailenv_ros.dataset.formats.coco_rle import amodal_segmentation
 from sailenv_ros.dataset.formats.data_files import discard_drafts, open_draft
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
@@ -63,7 +65,13 @@ class WebDatasetExport(DatasetFormat):
         left_out: dict[str, int] = {}
         if frame.info is not None and "instance" in frame.views:
             found = annotated_objects(sample, "WebDataset")
-            record["objects"] = [object_record(found.table, row) for row in range(len(found.table))]
+            objects = [object_record(found.table, row) for row in range(len(found.table))]
+            if found.masks is not None:
+                size = (lens.height, lens.width)
+                for row, one in enumerate(objects):
+                    masks, table = found.masks, found.table
+                    one["amodal_segmentation"] = amodal_segmentation(masks, table, row, size)
+            record["objects"] = objects
             left_out = dict(found.left_out)
         tar.append(f"{name}.json", [json.dumps(record).encode()])
         return WriteResult(written={"samples": 1}, left_out=left_out)

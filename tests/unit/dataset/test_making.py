@@ -17,6 +17,7 @@ import cv2
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from pycocotools import mask as coco_mask
 from pycocotools.coco import COCO
 from rosbags.highlevel import AnyReader
 
@@ -392,6 +393,32 @@ def test_what_is_drawn_at_random_differs_from_scene_to_scene(tmp_path: Path) -> 
     assert {image["number"]: image["randomised"] for image in listed} == records
     rows = pq.read_table(tmp_path / "one" / "parquet" / "data").to_pylist()
     assert {row["number"]: json.loads(row["randomised"]) for row in rows} == records
+
+
+@pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")  # of pycocotools
+def test_tar_files_have_the_amodal_masks_too(tmp_path: Path) -> None:
+    """The same as COCO's, where a recipe asks for them; COCO's own tool decodes them."""
+    changes: dict[str, Any] = {
+        "clips": {"train": 1},
+        "clip": {"frames": 1},
+        "formats": ["webdataset", "coco"],
+        "amodal": True,
+    }
+    make_dataset(
+        load_job(written_recipe(tmp_path, **changes)), tmp_path / "made", engine_of(1, None)
+    )
+    coco = json.loads((tmp_path / "made" / "coco" / "train" / "annotations.json").read_text())
+    masks = {
+        (one["image_id"], one["instance_id"]): one["amodal_segmentation"]
+        for one in coco["annotations"]
+    }
+    with open_dataset(tmp_path / "made") as dataset:
+        seen = {(one.number, each["id"]): (one, each) for one in dataset for each in one.objects}
+    assert {key: each["amodal_segmentation"] for key, (_, each) in seen.items()} == masks
+    for one, each in seen.values():
+        whole = coco_mask.decode(each["amodal_segmentation"]).astype(bool)
+        assert whole.sum() == each["amodal_pixels"]
+        assert not ((one.frame["instance"] == each["id"]) & ~whole).any()
 
 
 def test_a_camera_of_the_scene_faces_what_it_does_there(tmp_path: Path) -> None:
