@@ -168,7 +168,8 @@ def test_a_crowd(
                 continue
         until(lambda: 0 < len(_agents(blank_simulation)) <= LIMITS.per_address, "some to register")
         assert gateway.clients <= LIMITS.per_address
-    assert sum("refuses a connection" in message for message in caplog.messages) == 1
+    # None where the first were disconnected before the last came.
+    assert sum("refuses a connection" in message for message in caplog.messages) <= 1
 
 
 def test_random_bytes(gateway: GatewayServer) -> None:

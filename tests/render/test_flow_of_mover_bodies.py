@@ -49,7 +49,7 @@ def test_flow_is_exact_before_a_body_that_bounces(tmp_path: Path) -> None:
         last = now
     assert signs == {False, True}
     # Who is put somewhere stands there, and what does not move has no flow.
-    core.set_position(core.get_position(agent="rider"), agent="rider")
+    core.set_position(core.get_pose(agent="rider").position_m, agent="rider")
     core.capture(agent="rider")
     core.step(10)
     frame = core.capture(["flow", "instance"], agent="rider")

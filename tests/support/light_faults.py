@@ -165,7 +165,7 @@ def dark_blots(
         )
         edge |= ends | np.roll(ends, 1, axis)
     edge = cv2.dilate(edge.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    found = np.zeros_like(dark)
+    found: Bools = np.zeros(dark.shape, bool)
     parts, _ = label(dark)
     for number, box in enumerate(find_objects(parts), start=1):
         own = parts[box] == number

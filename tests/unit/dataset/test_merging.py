@@ -16,10 +16,11 @@ from sailenv_ros.dataset.manifest import (
     MANIFEST,
     FileHash,
     ShardSummary,
+    ToldContents,
     dataset_hash,
     done_shards,
     summaries_of_files,
-    whole_files,
+    told_contents,
 )
 from sailenv_ros.dataset.merging import RECORDS_FOLDER, ShardRecords, frame_records, merges
 from sailenv_ros.errors import RecordingError
@@ -116,16 +117,17 @@ def test_the_hash_of_all_files_knows_no_order(files: dict[str, bytes], random: A
 
 def test_files_of_the_whole(storage: FolderStorage) -> None:
     """None before it is finished; a manifest that cannot be read is named."""
-    assert whole_files(storage) == {}
+    assert told_contents(storage) == ToldContents()
     found = summaries_of_files(storage.folder)
     assert list(found) == sorted(found)
     assert found["shards/00000.json"].bytes == len(summary(0).to_json())
     told = {name: {"bytes": one.bytes, "sha256": one.sha256} for name, one in found.items()}
-    storage.write(MANIFEST, json.dumps({"files": told}).encode())
-    assert whole_files(storage) == found
+    shards = [{"shard": 0, "sha256": "0" * 64}]
+    storage.write(MANIFEST, json.dumps({"files": told, "shards": shards}).encode())
+    assert told_contents(storage) == ToldContents(found, {0: "0" * 64})
     storage.write(MANIFEST, b"{}")
     with pytest.raises(RecordingError, match=r"manifest\.json in .* cannot be read"):
-        whole_files(storage)
+        told_contents(storage)
 
 
 def test_which_formats_have_something_to_merge() -> None:

@@ -58,7 +58,7 @@ def test_a_scene_file_makes_a_body_and_a_reset_begins_anew(core: SynchronousSimu
     assert there.position_m[0] == pytest.approx((1.0 - math.exp(-0.5)) / 0.5, abs=0.005)
     assert there.rpy_deg[2] == pytest.approx(90 * (1 - math.exp(-0.25)) / 0.25, abs=0.5)
     assert core.get_pose(agent="rider") == there
-    core.toggle_follow(agent="rider")
+    core.set_follow(False, agent="rider")
     core.step(24)
     assert core.get_pose(agent="rider") == there
     core.reset()
@@ -73,7 +73,7 @@ def test_a_request_makes_a_body_and_tells_it(core: SynchronousSimulation) -> Non
     assert core.movers["stand"].body == RigidBody(mass_kg=2.0)
     assert core.movers["stand"].controller == "rigidbody"
     core.step(60)
-    fallen = core.get_position(agent="rider"), core.get_mover_pose("stand").position_m[2]
+    fallen = core.get_pose(agent="rider").position_m, core.get_mover_pose("stand").position_m[2]
     assert fallen[1] == pytest.approx(1.0 - 9.81 / 32, abs=0.01)
     revision = core.info.revision
     core.set_mover_body(RigidBody(mass_kg=2.0), "stand")

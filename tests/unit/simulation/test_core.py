@@ -180,14 +180,14 @@ def test_a_following_agent_moves_its_mover_and_all_who_follow(core: SynchronousS
 
 
 def test_an_agent_that_stops_following_stays_where_it_is(core: SynchronousSimulation) -> None:
-    """toggle_follow leaves the agent in place; toggled back it is at the mover again."""
+    """It is left in place; when it follows again it is at the mover."""
     core.register_agent(spec())
     core.step(100)
     here = core.get_pose(agent="eye")
-    assert core.toggle_follow(agent="eye") is False
+    assert core.set_follow(False, agent="eye") is False
     core.step(100)
     assert core.get_pose(agent="eye") == here
-    assert core.toggle_follow(agent="eye") is True
+    assert core.set_follow(True, agent="eye") is True
     assert core.get_pose(agent="eye") != here
 
 
@@ -224,7 +224,7 @@ def test_a_reset_puts_every_byte_back(core: SynchronousSimulation) -> None:
     before = core.world.snapshot().world_from_body.tobytes()
     pose = core.get_pose(agent="eye")
     core.set_position((9.0, 9.0, 9.0), agent="eye")
-    core.toggle_follow(agent="eye")
+    core.set_follow(False, agent="eye")
     core.step(33)
     core.reset()
     core.step(200)

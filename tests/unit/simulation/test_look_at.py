@@ -140,7 +140,7 @@ def test_one_that_is_carried_faces_a_point_from_wherever_it_is(core: Synchronous
     for _ in range(10):
         core.step(60)
         rail = core.get_mover_pose("rail")
-        assert core.get_position(agent="rider") == rail.position_m
+        assert core.get_pose(agent="rider").position_m == rail.position_m
         assert faced(core, "rider", (0.5, 0.0, 0.2))
         assert rail.rpy_deg == (0.0, 0.0, 0.0)
 
@@ -156,7 +156,7 @@ def test_a_mover_faces_and_turns_what_follows_it(core: SynchronousSimulation) ->
         assert faced(core, "porter", target)
         assert faced(core, "rider", place(core, "ball"))
     # Sideways, facing: around the point, on a circle but for the length of the steps.
-    there = core.get_position(agent="porter")
+    there = core.get_pose(agent="porter").position_m
     start = math.dist((0.0, 2.0), target[:2])
     assert math.dist(there[:2], target[:2]) == pytest.approx(start, rel=0.01)
     assert math.dist(there, (0.0, 2.0, 1.5)) > 1.0
@@ -203,11 +203,13 @@ def test_one_that_is_renamed_is_the_same(core: SynchronousSimulation) -> None:
 
 def test_to_be_turned_ends_it_and_to_be_moved_does_not(core: SynchronousSimulation) -> None:
     core.set_position((0.5, 0.5, 2.0), agent="watcher")
-    assert core.get_position(agent="watcher") == (0.5, 0.5, 2.0)
+    assert core.get_pose(agent="watcher").position_m == (0.5, 0.5, 2.0)
     assert faced(core, "watcher", place(core, "ball"))
     core.set_rotation((0.0, 10.0, 200.0), agent="watcher")
     core.step(30)
-    np.testing.assert_allclose(core.get_rotation(agent="watcher"), (0.0, 10.0, -160.0), atol=1e-9)
+    np.testing.assert_allclose(
+        core.get_pose(agent="watcher").rpy_deg, (0.0, 10.0, -160.0), atol=1e-9
+    )
     core.set_look_at("ball", agent="watcher")
     given = Pose.from_rpy_deg((0.0, 1.0, 1.0), (5.0, 0.0, 20.0))
     core.set_pose(given, agent="watcher")
@@ -273,7 +275,7 @@ def test_a_reset_begins_as_the_scene_does(core: SynchronousSimulation) -> None:
     core.step(30)
     assert faced(core, "watcher", place(core, "ball"))
     assert faced(core, "porter", (3.1, 0.2, 1.3))
-    assert core.get_rotation(agent="rider") == (0.0, 0.0, 0.0)
+    assert core.get_pose(agent="rider").rpy_deg == (0.0, 0.0, 0.0)
 
 
 def test_another_scene_keeps_points_and_objects_of_the_same_name(
@@ -289,7 +291,7 @@ def test_another_scene_keeps_points_and_objects_of_the_same_name(
     two.change_scene("bare")
     assert faced(two, "rider", (0.0, 5.0, 0.0))
     assert faced(two, "porter", (1.0, 1.0, 1.0))
-    assert two.get_rotation(agent="watcher") == (0.0, 0.0, 0.0)
+    assert two.get_pose(agent="watcher").rpy_deg == (0.0, 0.0, 0.0)
     two.close()
 
 

@@ -218,7 +218,7 @@ def test_agents_follow_movers_of_their_own(core: SynchronousSimulation) -> None:
     core.step(120)
     assert position(core, "rider") == pytest.approx((0.75, 0.5, 1.0), abs=1e-6)
     assert position(core, "first") == pytest.approx((-1.0, 0.125, 1.5), abs=1e-9)
-    core.toggle_follow(agent="rider")
+    core.set_follow(False, agent="rider")
     core.set_position((0.0, 0.0, 1.0), agent="rider")
     assert position(core, "second") == pytest.approx((0.75, 0.5, 1.0), abs=1e-6)
 
