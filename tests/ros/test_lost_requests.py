@@ -15,6 +15,7 @@ from sailenv_msgs.srv import Capture
 from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.ros.client.connection import Connection
 from tests.support.ros_probe import Probe
+from tests.support.waiting import until
 
 NAMESPACE = "/forgetful"
 
@@ -73,6 +74,8 @@ def test_requests_are_sent_once_unless_more_do_no_harm(
     forgetful: Forgetful, connection: Connection
 ) -> None:
     """Who does not ask for it gets the deadline's sentence, and the server one request."""
+    known = connection._client(Capture, "agent/capture").service_is_ready
+    until(known, "the service to be known")  # which is not what the deadline below is of
     forgetful.received, forgetful.unanswered = 0, 1
     with pytest.raises(DeadlineExceeded, match="an answer of the service /forgetful/agent/capture"):
         connection.call(Capture, "agent/capture", Capture.Request(), 2.0)
