@@ -123,7 +123,7 @@ def make_dataset(
             storage.write(RECIPE_FILE, job.recipe_text.encode())
         done = _make_shards(job, storage, str(where), engine, limit, on_progress)
         if len(done) < ShardPlan(job.recipe).shards:
-            return _begun(done)
+            return _made({**_manifest(job, done, {}), "sha256": ""})
         manifest = _finish(job, store, done)
         store.finish()
     return _made(manifest)
@@ -223,19 +223,6 @@ def _made(manifest: Mapping[str, Any]) -> MadeDataset:
         written=manifest["written"],
         left_out=manifest["left_out"],
         skipped=manifest["skipped"],
-    )
-
-
-def _begun(shards: Mapping[int, ShardSummary]) -> MadeDataset:
-    """Return what there is of a data set of which shards are missing."""
-    return MadeDataset(
-        frames=sum(one.frames for one in shards.values()),
-        shards=len(shards),
-        bytes=sum(file.bytes for one in shards.values() for file in one.files.values()),
-        sha256="",
-        written=_sums(one.written for one in shards.values()),
-        left_out=_sums(one.left_out for one in shards.values()),
-        skipped=_sum(one.skipped for one in shards.values()),
     )
 
 
