@@ -163,8 +163,9 @@ def _read(file: io.FileIO, place: _Place) -> bytes:
 
 def _told(data: bytes, *, objects: bool) -> dict[str, Any]:
     """Read what is told of a frame; without its objects, which are most of it and come last."""
-    # Quotes within a text are escaped: these bytes are the key, wherever they stand.
-    end = -1 if objects else data.find(b', "objects": [')
+    # Quotes within a text are escaped: these bytes are a key. The last one is the frame's own, as
+    # records of what was drawn at random may have one, too, and stand before it.
+    end = -1 if objects else data.rfind(b', "objects": [')
     told: dict[str, Any] = json.loads(data if end < 0 else data[:end] + b"}")
     return told
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import multiprocessing
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import pytest
 
 from sailenv_ros import dataset
 from sailenv_ros.dataset import engine_of, load_job, make_dataset
+from sailenv_ros.dataset.frame_sources import _told
 from sailenv_ros.errors import MissingPackage, RecordingError, UnknownName
 from tests.unit.dataset.conftest import written_recipe
 from tests.unit.frame.test_travelling_frames import require_equal
@@ -175,3 +177,11 @@ print([name for name in ("rclpy", "sailenv_msgs", "mcap", "torch") if name in sy
 """
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert told.stdout == "[]\n"
+
+
+def test_a_record_of_chance_may_name_objects_too() -> None:
+    """What is left out for speed is the frame's own list of objects, which comes last."""
+    record = {"randomised": {"frame": {"x": 1, "objects": [{"id": 7}]}}, "scene": "a"}
+    written = json.dumps({**record, "objects": [{"id": 1, "name": ', "objects": ['}]}).encode()
+    assert _told(written, objects=False) == record
+    assert _told(written, objects=True)["objects"][0]["id"] == 1
