@@ -14,6 +14,7 @@ from sailenv_content.procedural.clutter import CLUTTER
 from sailenv_content.procedural.devices import computer, keyboard, monitor, mouse, stove, whiteboard
 from sailenv_content.procedural.paintings import painting
 from sailenv_content.procedural.rackets import tennis_racket
+from sailenv_content.procedural.shelf_books import shelf_books
 from sailenv_content.procedural.stationery import books, mirror, notebook, pen
 from sailenv_content.procedural.textiles import cushion, folded_towel, hanging_towel, rug
 from sailenv_ros.assets.model_files import RawPart
@@ -38,6 +39,7 @@ PROCEDURAL: dict[str, Callable[[], list[RawPart]]] = {
     "notebook_black": partial(notebook, (0.02, 0.02, 0.022)),
     "notebook_red": partial(notebook, (0.32, 0.03, 0.03)),
     "books_pile": partial(books, 1, 4),
+    "shelf_books": shelf_books,
     "rug_oriental": partial(rug, 2.4, 1.6, "oriental"),
     "rug_striped": partial(rug, 1.8, 1.2, "striped"),
     "mirror": partial(mirror, 0.60, 0.80),

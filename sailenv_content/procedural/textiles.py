@@ -87,11 +87,13 @@ def _rounded_slab(depth: float, width: float, height: float, base: float) -> Raw
 
 def hanging_towel(width: float, length: float, colour: Vector3) -> list[RawPart]:
     """Return a towel over a rail on the wall behind it; the origin is at its lower middle."""
-    rail = rod(0.008, 1.0, (0.0, 0.0, 0.0))
-    turned = rail.positions[:, [1, 0, 2]] * [1.0, width + 0.08, 1.0] + [0.06, 0.0, length]
+    rail = rod(0.009, 1.0, (0.0, 0.0, 0.0))
+    turned = rail.positions[:, [1, 0, 2]] * [1.0, width + 0.16, 1.0] + [0.06, 0.0, length]
     rail = RawMesh(positions=turned, uvs=rail.uvs, triangles=rail.triangles[:, ::-1])
+    ends = [side * (width / 2 + 0.065) for side in (1, -1)]
     brackets = [
-        box((0.06, 0.018, 0.018), (0.03, side * (width / 2 + 0.03), length)) for side in (1, -1)
+        *(box((0.06, 0.016, 0.016), (0.03, y, length)) for y in ends),
+        *(box((0.006, 0.044, 0.044), (0.003, y, length)) for y in ends),
     ]
     rows, columns = 40, 24
     s = np.linspace(-1.0, 1.0, rows + 1)

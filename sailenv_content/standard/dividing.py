@@ -83,6 +83,8 @@ def _fits(name: str, patterns: Sequence[str]) -> bool:
 def _groups(parts: Sequence[RawPart], rule: RecipePart) -> list[list[RawPart]]:
     if rule.each == "material":
         return [list(parts)]
+    if rule.each == "mesh":
+        return [[part] for part in parts]
     if rule.each == "book":
         books = [[book] for part in parts for book in _books(part)]
         return sorted(books, key=lambda group: _order(group[0]))

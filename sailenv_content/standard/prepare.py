@@ -102,7 +102,9 @@ def prepare(name: str, entry: RecipeEntry, catalogues: Catalogues) -> PreparedAs
         raw = _from_catalogue(listed, catalogues)
         source = f"sweethome3d-furniture {entry.source}"
         origin = (listed.author, listed.licence, source, listed.title)
-    raw = _finished(_turned(raw, entry.turn), entry)
+    raw = _turned(raw, entry.turn)
+    raw += [part for what in entry.adds for part in PROCEDURAL[what]()]
+    raw = _finished(raw, entry)
     author, licence, source, title = origin
     pieces = divided(name, raw, entry.parts)
     meshes = [piece.mesh for piece in pieces]

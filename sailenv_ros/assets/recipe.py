@@ -68,16 +68,16 @@ class RecipePart(_RecipeModel):
     category : str
     materials : tuple of str
         Names of materials, with wildcards, whose meshes are the part's.
-    each : {'material', 'piece', 'book'}
-        ``material``: all of them are one part. ``piece``: each connected piece is one, with a
-        number after its name. ``book``: each book of rows that stand along y.
+    each : {'material', 'mesh', 'piece', 'book'}
+        ``material``: all of them are one part. ``mesh`` and ``piece``: each mesh, or each connected
+        piece, is one, with a number after its name. ``book``: each book of rows that stand along y.
     above : float or None
         Only connected pieces that are higher than this over the base [m].
     """
 
     category: str
     materials: Annotated[tuple[str, ...], Field(min_length=1)]
-    each: Literal["material", "piece", "book"] = "material"
+    each: Literal["material", "mesh", "piece", "book"] = "material"
     above: float | None = None
 
 
@@ -92,6 +92,8 @@ class RecipeEntry(_RecipeModel):
         ``box``, ``cylinder``, ``sphere``; ``pieces`` for a hull around each connected piece,
         ``hull`` around all, ``convex`` for a decomposition of what is hollow or branched, ``base``
         for a hull around the lowest fifth (plants, whose leaves give way), ``none``.
+    adds : tuple of str
+        What code makes for it, in its own axes: the books of a bookcase.
     turn : float
         About the vertical, where a catalogue's front is not the object's [deg].
     triangles : int or None
@@ -107,6 +109,7 @@ class RecipeEntry(_RecipeModel):
     collision: Literal["box", "cylinder", "sphere", "hull", "pieces", "convex", "base", "none"] = (
         "pieces"
     )
+    adds: tuple[str, ...] = ()
     turn: float = 0.0
     tags: tuple[str, ...] = ()
     triangles: Annotated[int, Field(ge=100, lt=20000)] | None = None

@@ -37,6 +37,15 @@ def test_a_material_is_one_part() -> None:
     ]
 
 
+def test_each_mesh_is_one_part_though_it_has_pieces() -> None:
+    rule = RecipePart(category="pillow", materials=("*",), each="mesh")
+    found = divided("sofa", cushions(), {"piece": rule})
+    assert [(m.name, m.mesh.material.name) for m in found] == [
+        ("piece 1", "frame"),
+        ("piece 2", "soft"),
+    ]
+
+
 def test_pieces_that_touch_are_one_part_numbered_from_the_right() -> None:
     rule = RecipePart(category="pillow", materials=("soft",), each="piece")
     found = divided("sofa", cushions(), {"cushion": rule})
