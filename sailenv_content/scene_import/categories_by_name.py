@@ -6,9 +6,8 @@ import re
 from functools import lru_cache
 from typing import Any
 
-import yaml
-
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.system.yaml_text import from_yaml
 
 __all__ = ["OTHER", "category_of_name"]
 
@@ -28,5 +27,5 @@ def category_of_name(name: str, default: str = OTHER) -> str:
 @lru_cache(maxsize=1)
 def _table() -> tuple[tuple[tuple[str, ...], str], ...]:
     path = resource_path("config", "import_categories.yaml")
-    data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+    data: Any = from_yaml(path.read_text(encoding="utf-8"))
     return tuple((tuple(entry["words"]), str(entry["category"])) for entry in data["words"])

@@ -6,9 +6,8 @@ import re
 from functools import lru_cache
 from typing import Any
 
-import yaml
-
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.system.yaml_text import from_yaml
 
 __all__ = ["material_file", "with_glass"]
 
@@ -22,7 +21,7 @@ WHITEST = 0.85
 def material_file() -> str:
     """Return a Wavefront material library with all of them."""
     path = resource_path("config", "wavefront_colours.yaml")
-    data: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+    data: Any = from_yaml(path.read_text(encoding="utf-8"))
     lines = [f"newmtl {GLASS}", "Kd 0.9 0.95 0.95", "Ks 0.5 0.5 0.5", "Ns 400", "d 0.08"]
     for name, values in data["materials"].items():
         *colour, specular, exponent = values[:5]

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sailenv_ros.errors import AssetError, NameTaken
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.system.yaml_text import from_yaml
 from sailenv_ros.types.labels import Category, CategoryTable
 
 __all__ = ["LAST_FIXED_ID", "load_categories"]
@@ -60,7 +61,7 @@ def _own_table() -> CategoryTable:
 
 def _read(path: Path) -> CategoryTable:
     try:
-        content = _CategoriesFile.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        content = _CategoriesFile.model_validate(from_yaml(path.read_text(encoding="utf-8")))
         ids = [entry.id for entry in content.categories]
         if len(set(ids)) != len(ids):
             raise NameTaken("category id", str(next(i for i in ids if ids.count(i) > 1)))

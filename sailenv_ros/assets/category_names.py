@@ -7,10 +7,9 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Literal, TypeAlias, get_args
 
-import yaml
-
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.system.yaml_text import from_yaml
 
 __all__ = ["NAMING_SCHEMES", "NamingScheme", "names_in"]
 
@@ -40,5 +39,5 @@ def names_in(scheme: NamingScheme) -> Mapping[str, str]:
     if scheme not in NAMING_SCHEMES:
         raise UnknownName("naming scheme", scheme, NAMING_SCHEMES)
     text = resource_path("config", "category_names.yaml").read_text(encoding="utf-8")
-    names = yaml.safe_load(text)["names"]
+    names = from_yaml(text)["names"]
     return MappingProxyType({own: row[scheme] for own, row in names.items() if scheme in row})

@@ -21,6 +21,7 @@ from sailenv_ros.assets.folders import own_pack_folder, standard_pack_folder
 from sailenv_ros.assets.glb import read_glb
 from sailenv_ros.errors import AssetError
 from sailenv_ros.scene.spec import CategorySpec
+from sailenv_ros.system.yaml_text import from_yaml
 from sailenv_ros.types.model import (
     Asset,
     AssetPart,
@@ -36,6 +37,7 @@ from sailenv_ros.types.model import (
 __all__ = ["BUILD_COMMAND", "PACK_FILE", "AssetPack", "PackContent", "PackEntry", "PackPart"]
 
 PACK_FILE = "pack.yaml"
+WILDCARDS = frozenset("*?[")
 
 BUILD_COMMAND = "sailenv assets build"
 
@@ -293,7 +295,13 @@ def _labelled(entry: PackEntry, meshes: Sequence[ModelPart]) -> tuple[AssetPart,
 
 
 def _fits(names: Sequence[str], patterns: Sequence[str]) -> bool:
-    return any(fnmatch.fnmatchcase(name, pattern) for name in names for pattern in patterns)
+    # A bookcase asks ten thousand times, nearly always by whole names.
+    return any(name in patterns for name in names) or any(
+        fnmatch.fnmatchcase(name, pattern)
+        for pattern in patterns
+        if not WILDCARDS.isdisjoint(pattern)
+        for name in names
+    )
 
 
 def _read(path: Path) -> PackContent:
@@ -307,7 +315,7 @@ def _read(path: Path) -> PackContent:
 @lru_cache(maxsize=32)
 def _parsed(path: Path, state: tuple[int, int, int]) -> PackContent:
     """Read a file once until it is changed: that of the furniture takes 0.1 s to parse."""
-    return PackContent.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+    return PackContent.model_validate(from_yaml(path.read_text(encoding="utf-8")))
 
 
 def _shapes(

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sailenv_ros.assets.finishes import FINISHES
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.system.yaml_text import from_yaml
 
 __all__ = [
     "MaterialRule",
@@ -162,7 +163,7 @@ def recipe_files() -> tuple[Path, ...]:
 def read_recipe(path: Path) -> Recipe:
     """Read a recipe; see `standard_recipe`."""
     try:
-        recipe = Recipe.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        recipe = Recipe.model_validate(from_yaml(path.read_text(encoding="utf-8")))
         for entry in recipe.assets.values():
             for pattern in entry.materials:
                 finish = entry.rule(pattern).finish

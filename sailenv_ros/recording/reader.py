@@ -17,6 +17,7 @@ from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.recording.bag_metadata import METADATA_FILE
 from sailenv_ros.recording.mcap.file_index import ENTRY, FileIndex, RawMessage
 from sailenv_ros.recording.topics import RecordedTopic, qos_of_yaml
+from sailenv_ros.system.yaml_text import from_yaml
 
 __all__ = ["RecordingReader", "files_of"]
 
@@ -191,7 +192,7 @@ def files_of(path: Path) -> list[Path]:
 def _named_files(metadata: Path) -> list[str]:
     try:
         text = metadata.read_text(encoding="utf-8")
-        names = yaml.safe_load(text)["rosbag2_bagfile_information"]["relative_file_paths"]
+        names = from_yaml(text)["rosbag2_bagfile_information"]["relative_file_paths"]
     except (OSError, yaml.YAMLError, KeyError, TypeError):
         return []  # as after a crash: the files alone tell
     return [name for name in names if isinstance(name, str)] if isinstance(names, list) else []

@@ -14,6 +14,7 @@ import yaml
 
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.recording.mcap import Compression
+from sailenv_ros.system.yaml_text import from_yaml
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["OfferedQos", "RecordedTopic", "RecordingOptions", "qos_of_yaml"]
@@ -62,7 +63,7 @@ class OfferedQos:
 def qos_of_yaml(text: str) -> OfferedQos:
     """Read the first profile of a channel's text; what it does not say is as by default."""
     try:
-        profiles = yaml.safe_load(text) if text else None
+        profiles = from_yaml(text) if text else None
     except yaml.YAMLError as problem:
         raise RecordingError(f"offered_qos_profiles of a channel is no YAML: {problem}") from None
     first = profiles[0] if isinstance(profiles, list) and profiles else {}

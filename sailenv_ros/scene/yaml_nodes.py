@@ -14,6 +14,8 @@ from typing import Any, TypeAlias
 
 import yaml
 
+from sailenv_ros.system.yaml_text import LOADER
+
 __all__ = ["Loc", "Mark", "Node", "TextDiagnostic", "compose", "plain_scalar"]
 
 MAX_DEPTH = 32
@@ -222,9 +224,8 @@ class _Composer:
 
 
 def _parse(text: str) -> Iterator[yaml.Event]:
-    """Yield PyYAML's events; libyaml's parser is far faster where it was built in."""
-    loader = yaml.CSafeLoader if hasattr(yaml, "CSafeLoader") else yaml.SafeLoader
-    return iter(yaml.parse(text, Loader=loader))
+    """Yield PyYAML's events."""
+    return iter(yaml.parse(text, Loader=LOADER))
 
 
 def _mark(event: yaml.Event) -> Mark:

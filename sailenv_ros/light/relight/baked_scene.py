@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.bounces import patches_of
+from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
-from sailenv_ros.light.bake.texels import Texels, rasterised
+from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
-from sailenv_ros.rays.light_rays import glass_of
+from sailenv_ros.rays.light_rays import RayScene, glass_of
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
@@ -114,7 +115,7 @@ class BakedScene:
         self.side = len(baked.layers[0].direct)
         geometry = static_geometry_of(_as_baked(baked, contents, tuple(self.drawn.values())))
         self.materials = geometry.materials
-        self._lay_out(geometry)
+        self._lay_out(geometry, threads)
         self.panes = glass_of(geometry)
         self.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
         with ThreadPoolExecutor(max(threads, 1)) as pool:
@@ -182,9 +183,9 @@ class BakedScene:
         radiance[:, 0] += self.patches.emission if emission is None else emission
         return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
 
-    def _lay_out(self, geometry: StaticGeometry) -> None:
+    def _lay_out(self, geometry: StaticGeometry, threads: int) -> None:
         layout = Layout(side=self.side, charts={}, places=self._places(geometry))
-        texels = rasterised(geometry, layout)
+        texels = lit_texels(geometry, RayScene(geometry), layout, max(threads, 1))
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
         self.places = (texels.rows * self.side + texels.columns).astype(np.int32)
         self.positions = np.ascontiguousarray(texels.positions, np.float32)

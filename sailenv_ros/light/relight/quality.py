@@ -51,7 +51,7 @@ class Quality:
 
 QUICK = Quality(
     first_rays=0,
-    rays=4,
+    rays=16,
     area_rays=2,
     light_rays=4,
     probe_rays=16,

@@ -18,6 +18,7 @@ from sailenv_ros.ros.nodes.parameter_table import (
     SimParameters,
     sim_parameters,
 )
+from sailenv_ros.system.yaml_text import from_yaml
 
 __all__ = ["plain_parameters"]
 
@@ -71,7 +72,7 @@ def _assignments(arguments: Sequence[str]) -> dict[str, str] | None:
 
 def _checked(name: str, entry: Parameter, written: str) -> Any:
     try:
-        value = yaml.safe_load(written)
+        value = from_yaml(written)
     except yaml.YAMLError as problem:
         raise InvalidRequest(f"parameter {name}", written, f"a value in YAML ({problem})") from None
     kind = type(entry.default)

@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 
 from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.quality import FINE
+from sailenv_ros.light.relight.relighting import relit
+from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Model
@@ -40,6 +44,18 @@ def test_layers_that_crossed_are_lit_from_outside(gap_m: float) -> None:
     _, share = read(baked, 1, snapshot, baked.layers[1].direct)
     assert np.allclose(share[upper], share[upper].max(), rtol=0.01)
     assert share[upper].max() > 0.2
+
+
+def test_layers_that_crossed_stay_lit_when_they_move() -> None:
+    """Relighting looks from where the bake did."""
+    sheet = Model(name="sheet", parts=(*ground(2.0).parts, *ceiling(2.0, 0.003).parts))
+    snapshot = still([Thing(sheet, pose=Pose((0.0, 0.0, 1.0)))], environment=EVEN, lights=())
+    baked = bake(snapshot, settings=COARSE)
+    before, after = (Pose((0.0, 0.0, height)).matrix() for height in (1.0, 1.6))
+    scene = BakedScene(baked, snapshot.contents, 2)
+    moved = relit(scene, [Change(id=1, before=before, after=after)], FINE, threads=2)
+    points, bounced = read(moved, 1, snapshot, moved.layers[0].bounced)
+    assert np.allclose(bounced[np.isclose(points[:, 2], 1.0)], 1.0, atol=0.02)
 
 
 def test_a_thing_that_lies_on_another_still_hides_it() -> None:

@@ -217,3 +217,14 @@ def test_paint_gives_the_same_bytes_on_any_number_of_threads(scene: BakedScene) 
     for a, b in zip(one.layers, two.layers, strict=True):
         np.testing.assert_array_equal(a.bounced, b.bounced)
         np.testing.assert_array_equal(a.probe_bounced, b.probe_bounced)
+
+
+def test_a_quick_answer_has_no_stains(scene: BakedScene) -> None:
+    """Where the chest stood, single texels differ little from the finished light."""
+    at = scene.places[within(scene.positions, 0.6)]
+    quick, fine = (
+        np.sum([layer.bounced.reshape(-1, 3)[at].astype(float) for layer in light.layers], axis=0)
+        for light in (moved(scene, QUICK), moved(scene, FINE))
+    )
+    assert len(at) > 50
+    assert np.sqrt(((quick - fine) ** 2).mean()) < 0.06 * fine.mean()
