@@ -21,6 +21,7 @@ import numpy as np
 from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
+from sailenv_ros.dataset.findings import Findings
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
@@ -74,6 +75,7 @@ class ShardMaker:
         self._store = ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
+        self._findings = Findings()
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
         # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
         # of it may depend on what was seen before.
@@ -115,6 +117,7 @@ class ShardMaker:
         shard = self._plan.shard(number)
         writer = ShardWriter(folder, self._recipe, shard)
         skipped: Counter[str] = Counter()
+        self._findings = Findings()
         frames = 0
         try:
             for group in clip_groups(shard, self._recipe.clip.per_scene):
@@ -133,6 +136,7 @@ class ShardMaker:
             written={name: dict(one) for name, one in writer.written.items()},
             left_out={name: dict(one) for name, one in writer.left_out.items()},
             skipped=dict(skipped),
+            findings=self._findings.plain(),
             made={
                 "machine": platform.machine(),
                 "processors": os.cpu_count(),
@@ -166,12 +170,16 @@ class ShardMaker:
                     skipped[f"{clip.scene}: {problem}"] += 1
                     continue
                 writer.begin_clip(clip)
-                frames += self._take_clip(tracks, core, writer)
+                frames += self._take_clip(clip.scene, tracks, core, writer)
                 writer.end_clip()
         return frames
 
     def _take_clip(
-        self, tracks: dict[str, Track | None], core: SynchronousSimulation, writer: ShardWriter
+        self,
+        scene: SceneSource,
+        tracks: dict[str, Track | None],
+        core: SynchronousSimulation,
+        writer: ShardWriter,
     ) -> int:
         recipe = self._recipe
         for camera in recipe.cameras:
@@ -185,6 +193,7 @@ class ShardMaker:
                 if track is not None:
                     core.set_pose(track[number], teleport=number == 0, agent=_agent_name(camera))
                 frame = core.capture(recipe.views, agent=_agent_name(camera))
+                self._findings.look_at(frame, scene)
                 writer.add(camera.name, self._kept(frame, camera))
                 frames += 1
                 self._on_frame()
