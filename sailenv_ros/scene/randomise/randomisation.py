@@ -30,7 +30,8 @@ __all__ = [
 
 Values: TypeAlias = dict[str, Any]
 """Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
-``environment`` by its keys, ``added`` a list of objects."""
+``environment`` by its keys, ``added`` a list of objects. ``relative`` holds in the same order the
+amounts by which values differ from the scene's own."""
 
 Pick: TypeAlias = Callable[[str, str, Draw], Any]
 """``pick(target, key, draw)`` returns a value; each target and key has a generator of its own."""
@@ -48,12 +49,21 @@ class RandomTargets:
         Objects, parts of the room, cameras.
     lights : mapping of str to (3,) tuple of float
         Where each light is [m].
+    own : mapping
+        The scene's own values, which others are drawn relative to: by the keys of `Values`, by
+        names and by the keys of a file.
     """
 
     objects: tuple[str, ...] = ()
     surfaces: tuple[str, ...] = ()
     agents: tuple[str, ...] = ()
     lights: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    own: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def own_value(self, kind: str, name: str, key: str) -> Any:
+        """Return the scene's own value of a key; of what has no names, `name` is empty."""
+        named = self.own.get(kind, {})
+        return (named.get(name, {}) if name else named).get(key)
 
 
 class _Names:

@@ -90,7 +90,8 @@ def _arrange_waiting(
 def _with_drawn(entry: ObjectSpec, keys: Mapping[str, Any]) -> ObjectSpec:
     update: dict[str, Any] = {"asset": keys["asset"]} if "asset" in keys else {}
     if "scale" in keys:
-        update["scale"] = (float(keys["scale"]),) * 3
+        scale = keys["scale"]  # one factor for all axes, or one for each
+        update["scale"] = tuple(scale) if isinstance(scale, list | tuple) else (float(scale),) * 3
     return entry.model_copy(update=update) if update else entry
 
 

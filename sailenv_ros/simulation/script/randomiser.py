@@ -19,6 +19,7 @@ from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTarge
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.simulation.script.drawn_objects import arrange_drawn
+from sailenv_ros.simulation.script.own_values import OwnCameraValues, scene_values
 from sailenv_ros.simulation.script.rule_places import placed_by_rules
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
@@ -81,6 +82,8 @@ class Randomiser:
         self._epoch: Values = {}
         self._frame: Values = {}
         self._drawn_at: int | None = None
+        self._own: Mapping[str, Mapping[str, Any]] = {}
+        self._own_cameras = OwnCameraValues()
 
     def begin(self, chance: RandomisationRequest) -> None:
         """Draw what is drawn for an epoch, and change the world that has just been built."""
@@ -89,6 +92,8 @@ class Randomiser:
         of_scene = () if described is None else described.randomise
         self._things = of_scene if chance.things is None else chance.things
         self._frame, self._drawn_at = {}, None
+        # Later the world has what was drawn instead.
+        self._own = {} if described is None else scene_values(described)
         if chance.record is not None:
             self._epoch = dict(chance.record.get("epoch", {}))
         else:
@@ -189,12 +194,14 @@ class Randomiser:
         scene, described = self._scene, self._scene.world.described
         objects = () if described is None else tuple(entry.name for entry in described.objects)
         lights = () if described is None else described.lights
+        own_of_agents = {one.spec.name: self._own_cameras.of(one.spec) for one in scene.agents}
         surfaces = [b.placement.name for b in scene.world.bodies if b.placement.entry is None]
         return RandomTargets(
             objects=objects,
             surfaces=tuple(surfaces),
             agents=tuple(scene.agent_specs),
             lights={light.name: light.to_light().position_m for light in lights},
+            own={**self._own, "agents": own_of_agents},
         )
 
     def _checked(self, things: object) -> tuple[Randomisation, ...]:
@@ -262,6 +269,7 @@ class Randomiser:
             picture = {key: keys[key] for key in _PICTURE if key in keys}
             if picture:
                 agents.set_picture(name, spec.picture.changed(picture))
+            self._own_cameras.keep(spec, agents[name].spec)
             self._scene.announce()
 
 

@@ -305,3 +305,37 @@ def test_cameras_of_programs_are_drawn_too(folder: Path) -> None:
         for name in ("mine", "eye"):
             place = record["epoch"]["agents"][name]["position"]
             np.testing.assert_allclose(plain.get_pose(agent=name).position_m, place, atol=1e-12)
+
+
+RELATIVE = [
+    {"name": "stops", "type": "environment", "every": "frame",
+     "exposure": {"add": {"uniform": [-0.5, 0.5]}}},
+    {"name": "lamp", "type": "light", "of": "lamp", "every": "frame",
+     "intensity": {"times": {"log_uniform": [0.5, 2]}}},
+    {"name": "eye", "type": "camera", "of": "eye", "every": "frame", "exposure": {"add": 0.25}},
+    {"name": "size", "type": "object", "of": "desk", "scale": {"times": 0.5}},
+]  # fmt: skip
+
+
+def test_relative_values_start_from_the_files_own_in_every_frame(den: Simulation) -> None:
+    """They do not pile up from frame to frame, and the record alone makes a frame again."""
+    den.randomise(seed=4, things=RELATIVE)
+    desk = den.get_object("desk")
+    assert desk.scale == (0.5, 0.3, 0.35)
+    frames = []
+    for _ in range(4):
+        den.step(3)
+        frames.append(capture(den))
+        record = frames[-1].randomised
+        assert record is not None
+        drawn, amounts = record["frame"], record["frame"]["relative"]
+        stops = amounts["environment"]["exposure"]["add"]
+        assert drawn["environment"]["exposure"] == stops  # the scene's own is 0
+        factor = amounts["lights"]["lamp"]["intensity"]["times"]
+        assert drawn["lights"]["lamp"]["intensity"] == factor  # the scene's own is 1
+        assert drawn["agents"]["eye"]["exposure"] == 0.25
+    assert len({frame.randomised["frame"]["environment"]["exposure"] for frame in frames}) == 4  # type: ignore[index]
+    record = json.loads(json.dumps(frames[2].randomised))
+    den.randomise(record=record)
+    den.step(record["step"])
+    assert same(frames[2], capture(den))

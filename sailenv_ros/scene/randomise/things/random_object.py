@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Number, Switch, Text, optional
-from sailenv_ros.scene.fields import Position
+from sailenv_ros.scene.fields import Position, Scale
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
     EpochRandomisation,
@@ -16,6 +16,7 @@ from sailenv_ros.scene.randomise.randomisation import (
     Values,
     Which,
 )
+from sailenv_ros.scene.randomise.relative import DrawnNumber
 
 __all__ = ["RandomObject"]
 
@@ -36,7 +37,7 @@ class RandomObject(EpochRandomisation):
     there: Annotated[Draw, Drawn(_Bool)] | None = optional(
         "false takes it out, with what stands on it"
     )
-    scale: Annotated[Draw, Drawn(_Factor)] | None = optional(
+    scale: Annotated[Draw, DrawnNumber(_Factor, Scale, vector=True)] | None = optional(
         "instead of its scale: one factor for all axes"
     )
     offset: Annotated[Draw, Drawn(Position)] | None = optional(
