@@ -23,6 +23,7 @@ from sailenv_ros.dataset.recipe_cameras import (
     WalkCamera,
 )
 from sailenv_ros.errors import InvalidRequest, InvalidState, NoFreeSpace
+from sailenv_ros.scene.randomise.selectors import Selector, is_meant
 from sailenv_ros.simulation.operations import WorldOperations
 from sailenv_ros.space.free_space import FreeSpace
 from sailenv_ros.types.geometry import Pose, look_at
@@ -115,7 +116,7 @@ def _orbit(
         if camera.point is not None:
             middle = np.asarray(camera.point)
         else:
-            target = _target(camera.object, scene, random)
+            target = _target(camera.object or (), scene, random)
             middle = target.middle
         away, turn = _within(camera.distance, random), _within(camera.turn, random)
         elevation = math.radians(_within(camera.elevation, random))
@@ -125,7 +126,8 @@ def _orbit(
         ways = np.stack([flat * np.cos(angles), flat * np.sin(angles), up], axis=1)
         if _in_sight(scene, middle, middle + ways, target):
             return [look_at(eye, middle) for eye in middle + ways]
-    raise NoFreeSpace(f"no free sight of {camera.object or camera.point}")
+    sought = camera.point if camera.object is None else _told(camera.object)
+    raise NoFreeSpace(f"no free sight of {sought}")
 
 
 TRACKS: Mapping[type, Callable[..., Track]] = MappingProxyType(
@@ -190,13 +192,18 @@ class _Target:
     ids: tuple[int, ...]
 
 
-def _target(name: str | None, scene: WorldOperations, random: np.random.Generator) -> _Target:
-    """Return the object of that name, or one of that category."""
+def _target(
+    selectors: Sequence[Selector], scene: WorldOperations, random: np.random.Generator
+) -> _Target:
+    """Return one of the objects that are meant; a name that none has may be a category."""
     instances = scene.info.instances
-    named = [one for one in instances if one.name == name]
-    chosen = named or [one for one in instances if one.category == name]
+    ids: set[int] = set()
+    for selector in selectors:
+        met = {one.id for one in instances if is_meant(selector, one.name, one.category)}
+        ids |= met or {one.id for one in instances if one.category == selector}
+    chosen = [one for one in instances if one.id in ids]
     if not chosen:
-        raise NoFreeSpace(f"no object and no category {name!r} in the scene")
+        raise NoFreeSpace(f"no object and no category {_told(selectors)} in the scene")
     one = chosen[int(random.integers(len(chosen)))]
     try:
         body = scene.get_object(one.id)
@@ -206,6 +213,10 @@ def _target(name: str | None, scene: WorldOperations, random: np.random.Generato
     middle = (body.pose.matrix() @ (x, y, z, 1.0))[:3]
     ids = (one.id, *(other.id for other in instances if other.parent == one.id))
     return _Target(middle, ids)
+
+
+def _told(selectors: Sequence[Selector]) -> str:
+    return ", ".join(repr(one) if isinstance(one, str) else str(one) for one in selectors)
 
 
 def _in_sight(

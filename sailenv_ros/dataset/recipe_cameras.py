@@ -12,6 +12,7 @@ from sailenv_ros.errors import InvalidEntry
 from sailenv_ros.scene.field_types import Choice, Number, Text, Vector, optional
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.placing import Aimed
+from sailenv_ros.scene.randomise.selectors import WhichObjects
 from sailenv_ros.scene.rules import at_most_one, few_samples, within_half
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
@@ -181,7 +182,9 @@ class OrbitCamera(CameraModel):
     )
 
     type: Literal["orbit"] = Field(description="around an object or a point")
-    object: Name | None = optional("an object's name or a category; one of these each time")
+    object: WhichObjects | None = optional(
+        "an object's name, a pattern or a category, or several; one of these each time"
+    )
     point: Position | None = optional("instead of an object [m]")
     distance: Annotated[tuple[_Metres, _Metres], _ENDS] = Field(
         default=(0.8, 2.5), description="range of distances from its middle [m]"

@@ -25,6 +25,13 @@ from sailenv_ros.dataset.findings import Findings
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
+from sailenv_ros.dataset.recipe_choices import (
+    AGENT_PREFIX,
+    choices_of,
+    fitting_settings,
+    fitting_things,
+)
+from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
 from sailenv_ros.dataset.shard_writer import ShardWriter
 from sailenv_ros.dataset.storage import Storage
@@ -75,6 +82,7 @@ class ShardMaker:
         self._store = ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
+        self._camera_data = [one.model_dump(mode="json") for one in self._recipe.cameras]
         self._findings = Findings()
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
         # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
@@ -153,6 +161,7 @@ class ShardMaker:
         with self._scene(group[0]) as core:
             if recipe.clip.settle:
                 core.step(round(recipe.clip.settle * STEPS_PER_SECOND))
+            self._note_missed_targets(core, group[0].scene)
             chosen = {
                 one.name: self._chosen(one, group, core)
                 for one in recipe.cameras
@@ -221,12 +230,16 @@ class ShardMaker:
     ) -> list[Pose]:
         """Return the places that a rule finds for the clips of a group, perhaps fewer."""
         random = named_generator(self._recipe.seed, "rule", camera.name, str(group[0].number))
+        names = self._names(core)
+        settings = fitting_settings(camera.settings, names)
+        if settings is None:
+            return []
         found = sample_cameras(
             core.view_scene(camera.intrinsics),
             camera.rule,
             len(group),
             seed=int(random.integers(2**63)),
-            settings=camera.settings,
+            settings=settings,
         )
         return [one.pose for one in found]
 
@@ -283,14 +296,25 @@ class ShardMaker:
             if self._baked:
                 bake_missing(core.world)
             if self._recipe.randomise:
-                things = [
-                    one.model_dump(mode="json", exclude_defaults=True)
-                    for one in self._recipe.randomise
-                ]
-                core.randomise(int(random.integers(2**31)), index=0, things=things)
+                seed = int(random.integers(2**31))
+                things, missed = fitting_things(self._recipe, self._names(core))
+                for label in missed:
+                    self._findings.add(f"nothing was met by `{label}`", first.scene)
+                if things:
+                    core.randomise(seed, index=0, things=things)
             yield core
         finally:
             core.close()
+
+    def _note_missed_targets(self, core: SynchronousSimulation, scene: SceneSource) -> None:
+        names = self._names(core)
+        for choice in choices_of({"cameras": self._camera_data}):
+            if not choice.meets(names):
+                self._findings.add(f"nothing was met by `{choice.label}`", scene)
+
+    def _names(self, core: SynchronousSimulation) -> SceneNames:
+        assert core.world.described is not None
+        return SceneNames.of(core.world.described, self._library)
 
     def _path(self, scene: SceneSource) -> Path:
         """Return the file of a scene; a generated one is made now."""
@@ -307,4 +331,4 @@ class ShardMaker:
 
 def _agent_name(camera: AnyCamera) -> str:
     """Return the name of a camera's agent, which no agent of a scene has."""
-    return f"dataset_{camera.name}"
+    return f"{AGENT_PREFIX}{camera.name}"

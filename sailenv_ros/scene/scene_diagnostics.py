@@ -17,7 +17,7 @@ from sailenv_ros.scene.field_types import FIELD_ERROR
 from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
-from sailenv_ros.scene.randomise.random_rules import drawn_names
+from sailenv_ros.scene.randomise.random_rules import drawn_names, random_categories_exist
 from sailenv_ros.scene.randomise.randomisation import Randomisation
 from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
 from sailenv_ros.scene.spec_materials import LookSpec
@@ -117,6 +117,8 @@ def _unknown_names(
     own_names = [c["name"] for c in own if isinstance(c.get("name"), str)]
     categories = [name for name in knowledge.categories if name != "background"] + own_names
     for place, sentence in knowledge.lesson_errors(data):
+        yield Diagnostic(place, sentence)
+    for place, sentence in random_categories_exist(data, knowledge.category_of):
         yield Diagnostic(place, sentence)
     for loc, model, entry in found:
         if issubclass(model, ObjectSpec):

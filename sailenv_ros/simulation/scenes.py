@@ -132,6 +132,7 @@ class SceneLibrary:
             object_errors=ObjectFit(self._assets),
             lesson_errors=lesson_errors,
             camera_errors=rule_errors,
+            category_of=self._assets.category_of,
             surfaces=surface_names(),
             skies=tuple(self._packs.skies),
         )

@@ -83,6 +83,7 @@ class Randomiser:
         self._frame: Values = {}
         self._drawn_at: int | None = None
         self._own: Mapping[str, Mapping[str, Any]] = {}
+        self._categories: Mapping[str, str] = {}
         self._own_cameras = OwnCameraValues()
 
     def begin(self, chance: RandomisationRequest) -> None:
@@ -94,6 +95,7 @@ class Randomiser:
         self._frame, self._drawn_at = {}, None
         # Later the world has what was drawn instead.
         self._own = {} if described is None else scene_values(described)
+        self._categories = self._categories_now()
         if chance.record is not None:
             self._epoch = dict(chance.record.get("epoch", {}))
         else:
@@ -201,8 +203,21 @@ class Randomiser:
             surfaces=tuple(surfaces),
             agents=tuple(scene.agent_specs),
             lights={light.name: light.to_light().position_m for light in lights},
+            categories=self._categories,
             own={**self._own, "agents": own_of_agents},
         )
+
+    def _categories_now(self) -> Mapping[str, str]:
+        """Return the category of each object, those that wait among them, and part of the room."""
+        scene, described = self._scene, self._scene.world.described
+        entries = () if described is None else described.objects
+        placements = [body.placement for body in scene.world.bodies]
+        table = scene.world.categories
+        found = {one.name: table[one.category_id].name for one in placements}
+        for entry in entries:
+            if entry.name not in found:
+                found[entry.name] = entry.category or scene.library.peek_asset(entry.asset).category
+        return found
 
     def _checked(self, things: object) -> tuple[Randomisation, ...]:
         described = self._scene.world.described

@@ -14,9 +14,9 @@ from sailenv_ros.scene.randomise.randomisation import (
     Randomisation,
     RandomTargets,
     Values,
-    Which,
 )
 from sailenv_ros.scene.randomise.relative import DrawnNumber
+from sailenv_ros.scene.randomise.selectors import Which
 from sailenv_ros.scene.rules import at_most_one, only_beside
 from sailenv_ros.types.camera import INTRINSICS_LIMITS
 from sailenv_ros.types.picture_settings import LIMITS

@@ -14,9 +14,9 @@ from sailenv_ros.scene.randomise.randomisation import (
     Randomisation,
     RandomTargets,
     Values,
-    Which,
 )
 from sailenv_ros.scene.randomise.relative import DrawnNumber
+from sailenv_ros.scene.randomise.selectors import Which
 from sailenv_ros.types.lights import LIGHT_LIMITS
 
 __all__ = ["RandomLight"]

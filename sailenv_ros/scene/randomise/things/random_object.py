@@ -14,9 +14,9 @@ from sailenv_ros.scene.randomise.randomisation import (
     Pick,
     RandomTargets,
     Values,
-    Which,
 )
 from sailenv_ros.scene.randomise.relative import DrawnNumber
+from sailenv_ros.scene.randomise.selectors import WhichObjects
 
 __all__ = ["RandomObject"]
 
@@ -32,7 +32,7 @@ class RandomObject(EpochRandomisation):
     KEY: ClassVar[str] = "objects"
 
     type: Literal["object"]
-    of: Which = Field(description="names of objects; * and ?")
+    of: WhichObjects = Field(description="names of objects; * and ?; or {category: chair}")
     asset: Annotated[Draw, Drawn(_Asset)] | None = optional("what it is: names of the catalogue")
     there: Annotated[Draw, Drawn(_Bool)] | None = optional(
         "false takes it out, with what stands on it"
@@ -49,4 +49,4 @@ class RandomObject(EpochRandomisation):
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return asset, there, scale, offset and turn for each object."""
-        return {"objects": self.drawn(self.of, targets.objects, pick)}
+        return {"objects": self.drawn(self.of, targets.with_categories(targets.objects), pick)}

@@ -1,0 +1,48 @@
+"""A scene → the names and categories of all that a recipe may choose in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sailenv_ros.scene.randomise.random_rules import selectable
+from sailenv_ros.scene.randomise.selectors import Selector, is_meant
+from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.labels import PART_MARK
+
+__all__ = ["SceneNames"]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneNames:
+    """Names of a scene with their categories.
+
+    Attributes
+    ----------
+    by_kind : mapping of str to mapping of str to str
+        By the `type` of an entry of `randomise`, and of what cameras may look at: ``camera``.
+    agents : tuple of str
+        Agents that the scene brings along.
+    """
+
+    by_kind: Mapping[str, Mapping[str, str]]
+    agents: tuple[str, ...] = field(default=())
+
+    @classmethod
+    def of(cls, spec: SceneSpec, library: SceneLibrary) -> SceneNames:
+        """Return the names of a scene."""
+        plain = spec.model_dump(mode="json", exclude_unset=True)
+        kinds = {
+            kind: selectable(plain, kind, lambda asset: library.peek_asset(asset).category) or {}
+            for kind in ("object", "material", "light")
+        }
+        seen = dict(kinds["material"])
+        for entry in spec.objects:
+            for part in library.peek_asset(entry.asset).parts:
+                seen[f"{entry.name}{PART_MARK}{part.name}"] = part.category
+        return cls({**kinds, "camera": seen}, tuple(one.name for one in spec.agents))
+
+    def has(self, kind: str, selector: Selector) -> bool:
+        """Return whether a selector of an entry of that kind means anything here."""
+        return any(is_meant(selector, *pair) for pair in self.by_kind[kind].items())
