@@ -305,8 +305,7 @@ class SceneLibrary:
     def path(self, scene: str | Path) -> Path:
         """Find a scene's file; see `load`.
 
-        A name such as ``generated:kitchen:17`` is made first, if it has not been; see `generation`
-        for errors.
+        ``generated:kitchen:17`` is made first, if it has not been; see `generation` for errors.
         """
         if str(scene).startswith(PREFIX):
             return self._generated.path(str(scene))

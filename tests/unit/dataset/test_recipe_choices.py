@@ -10,7 +10,9 @@ import yaml
 
 from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset
 from sailenv_ros.dataset.recipe_choices import choices_of
+from sailenv_ros.errors import SceneError
 from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.simulation.scenes import SceneLibrary
 from tests.unit.dataset.conftest import written_recipe
 
 CUBES = {
@@ -111,9 +113,6 @@ def test_a_scene_file_chooses_by_category(tmp_path: Path) -> None:
     (thing,) = spec.model_dump(mode="json", exclude_unset=True)["randomise"]
     assert thing["of"] == [{"category": "couch"}, {"category": "bed"}]
     assert SceneSpec.model_validate({**CUBES, "randomise": [thing]}) == spec
-    from sailenv_ros.errors import SceneError
-    from sailenv_ros.simulation.scenes import SceneLibrary
-
     bad = {**CUBES, "randomise": [{**entry, "of": {"category": "chairs"}}]}
     (tmp_path / "bad.yaml").write_text(yaml.safe_dump(bad))
     with pytest.raises(SceneError, match="nothing of the category 'chairs'; did you mean 'chair'"):
@@ -121,8 +120,8 @@ def test_a_scene_file_chooses_by_category(tmp_path: Path) -> None:
     for wrong in ({"category": []}, {"kind": "chair"}, [], {"category": 3}):
         with pytest.raises(ValueError, match="randomise"):
             SceneSpec.model_validate({**CUBES, "randomise": [{**entry, "of": wrong}]})
+    lamp = {"name": "l", "type": "light", "of": {"category": "lamp"}, "intensity": 1}
     with pytest.raises(ValueError, match="name or a list of names"):
-        lamp = {"name": "l", "type": "light", "of": {"category": "lamp"}, "intensity": 1}
         SceneSpec.model_validate({**CUBES, "randomise": [lamp]})
 
 
