@@ -197,11 +197,11 @@ def _target(
 ) -> _Target:
     """Return one of the objects that are meant; a name that none has may be a category."""
     instances = scene.info.instances
-    ids: set[int] = set()
+    meant: set[int] = set()
     for selector in selectors:
         met = {one.id for one in instances if is_meant(selector, one.name, one.category)}
-        ids |= met or {one.id for one in instances if one.category == selector}
-    chosen = [one for one in instances if one.id in ids]
+        meant |= met or {one.id for one in instances if one.category == selector}
+    chosen = [one for one in instances if one.id in meant]
     if not chosen:
         raise NoFreeSpace(f"no object and no category {_told(selectors)} in the scene")
     one = chosen[int(random.integers(len(chosen)))]

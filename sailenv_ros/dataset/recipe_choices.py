@@ -13,6 +13,7 @@ from typing import Any
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.scene.randomise.selectors import OfCategory, Selector, selectors_in
+from sailenv_ros.scene.spec_materials import ALL_PARTS
 from sailenv_ros.scene.yaml_nodes import Loc
 
 __all__ = ["AGENT_PREFIX", "RecipeChoice", "choices_of", "fitting_settings", "fitting_things"]
@@ -35,16 +36,27 @@ class RecipeChoice:
         Of `SceneNames.by_kind`.
     selectors : tuple of Selector
         Of which one needs to mean something: a text of an orbit is a name or a category.
+    part : str
+        Material that the objects need to have; `all` for any.
     """
 
     loc: Loc
     label: str
     kind: str
     selectors: tuple[Selector, ...]
+    part: str = ALL_PARTS
 
     def meets(self, names: SceneNames) -> bool:
         """Return whether it means anything in a scene."""
-        return any(names.has(self.kind, one) for one in self.selectors)
+        return any(names.meant(self.kind, one, self.part) for one in self.selectors)
+
+    def as_fitting(self, names: SceneNames) -> Iterator[object]:
+        """Yield it as a file has it; names where only some of what it means have the material."""
+        for one in self.selectors:
+            if self.part != ALL_PARTS:
+                yield from names.meant(self.kind, one, self.part)
+            else:
+                yield {"category": one.category} if isinstance(one, OfCategory) else one
 
 
 def choices_of(data: Mapping[str, Any]) -> Iterator[RecipeChoice]:
@@ -52,9 +64,13 @@ def choices_of(data: Mapping[str, Any]) -> Iterator[RecipeChoice]:
     for index, entry in _mappings(data, "randomise"):
         kind = entry.get("type")
         if kind in ("object", "material", "light"):
+            given = entry.get("part")
+            part = given if isinstance(given, str) else ALL_PARTS
             for one in selectors_in(entry.get("of")):
                 label = f"{entry.get('name')}: {one}"
-                yield RecipeChoice(("randomise", index, "of"), label, kind, (one,))
+                if part != ALL_PARTS:
+                    label += f", material {part}"
+                yield RecipeChoice(("randomise", index, "of"), label, kind, (one,), part)
     for index, entry in _mappings(data, "cameras"):
         name = f"camera {entry.get('name', 'camera')}"
         if entry.get("type") == "orbit":
@@ -89,11 +105,11 @@ def fitting_things(
     choices = list(choices_of({"randomise": plain}))
     for index, entry in enumerate(plain):
         own = [one for one in choices if one.loc[1] == index]
-        met = [selector for one in own if one.meets(names) for selector in one.selectors]
+        met = [plain for one in own if one.meets(names) for plain in one.as_fitting(names)]
         if own and not met:
             continue
         if own:
-            entry = {**entry, "of": [_plain(one) for one in met]}
+            entry = {**entry, "of": met}
         elif entry["type"] == "camera":
             given = entry.get("of", "*")
             listed = [given] if isinstance(given, str) else given
@@ -126,7 +142,3 @@ def _mappings(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[
     for index, entry in enumerate(listed if isinstance(listed, list | tuple) else ()):
         if isinstance(entry, Mapping):
             yield index, entry
-
-
-def _plain(selector: Selector) -> object:
-    return {"category": selector.category} if isinstance(selector, OfCategory) else selector

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from sailenv_ros.assets.material_library import material_names
 from sailenv_ros.scene.randomise.random_rules import selectable
 from sailenv_ros.scene.randomise.selectors import Selector, is_meant
 from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.scene.spec_materials import ALL_PARTS
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.labels import PART_MARK
 
@@ -24,10 +26,13 @@ class SceneNames:
         By the `type` of an entry of `randomise`, and of what cameras may look at: ``camera``.
     agents : tuple of str
         Agents that the scene brings along.
+    materials : mapping of str to frozenset of str
+        Names of the materials of each object.
     """
 
     by_kind: Mapping[str, Mapping[str, str]]
-    agents: tuple[str, ...] = field(default=())
+    agents: tuple[str, ...] = ()
+    materials: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, spec: SceneSpec, library: SceneLibrary) -> SceneNames:
@@ -37,12 +42,19 @@ class SceneNames:
             kind: selectable(plain, kind, lambda asset: library.peek_asset(asset).category) or {}
             for kind in ("object", "material", "light")
         }
-        seen = dict(kinds["material"])
+        seen, materials = dict(kinds["material"]), {}
         for entry in spec.objects:
-            for part in library.peek_asset(entry.asset).parts:
+            asset = library.peek_asset(entry.asset)
+            materials[entry.name] = frozenset(material_names(asset))
+            for part in asset.parts:
                 seen[f"{entry.name}{PART_MARK}{part.name}"] = part.category
-        return cls({**kinds, "camera": seen}, tuple(one.name for one in spec.agents))
+        return cls({**kinds, "camera": seen}, tuple(one.name for one in spec.agents), materials)
 
-    def has(self, kind: str, selector: Selector) -> bool:
-        """Return whether a selector of an entry of that kind means anything here."""
-        return any(is_meant(selector, *pair) for pair in self.by_kind[kind].items())
+    def meant(self, kind: str, selector: Selector, part: str = ALL_PARTS) -> list[str]:
+        """Return what a selector of an entry of that kind means, of that with a material `part`."""
+        return [
+            name
+            for name, category in self.by_kind[kind].items()
+            if is_meant(selector, name, category)
+            and (part == ALL_PARTS or part in self.materials.get(name, ()))
+        ]
