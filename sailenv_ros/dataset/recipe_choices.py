@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from sailenv_ros.behaviours import behaviour_kinds
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.scene.randomise.selectors import OfCategory, Selector, selectors_in
@@ -53,7 +54,7 @@ class RecipeChoice:
     def as_fitting(self, names: SceneNames) -> Iterator[object]:
         """Yield it as a file has it; names where only some of what it means have the material."""
         for one in self.selectors:
-            if self.part != ALL_PARTS:
+            if self.part != ALL_PARTS or self.kind == "jointed":
                 yield from names.meant(self.kind, one, self.part)
             else:
                 yield {"category": one.category} if isinstance(one, OfCategory) else one
@@ -63,14 +64,15 @@ def choices_of(data: Mapping[str, Any]) -> Iterator[RecipeChoice]:
     """Yield the choices of a recipe's plain data, however wrong the rest is."""
     for index, entry in _mappings(data, "randomise"):
         kind = entry.get("type")
-        if kind in ("object", "material", "light"):
+        if kind in ("object", "material", "light", "behaviour"):
             given = entry.get("part")
             part = given if isinstance(given, str) else ALL_PARTS
             for one in selectors_in(entry.get("of")):
                 label = f"{entry.get('name')}: {one}"
                 if part != ALL_PARTS:
                     label += f", material {part}"
-                yield RecipeChoice(("randomise", index, "of"), label, kind, (one,), part)
+                among = "jointed" if kind == "behaviour" and _needs_joint(entry) else kind
+                yield RecipeChoice(("randomise", index, "of"), label, among, (one,), part)
     for index, entry in _mappings(data, "cameras"):
         name = f"camera {entry.get('name', 'camera')}"
         if entry.get("type") == "orbit":
@@ -135,6 +137,14 @@ def fitting_settings(settings: Mapping[str, Any], names: SceneNames) -> Mapping[
         (selector,) = one.selectors
         kept[str(one.loc[-1])].append(getattr(selector, "category", str(selector)))
     return {**settings, **kept} if met else None
+
+
+def _needs_joint(entry: Mapping[str, Any]) -> bool:
+    """Return whether a behaviour moves joints alone, as that of doors does."""
+    kinds = (
+        behaviour_kinds().get(str(one.get("type"))) for _, one in _mappings(entry, "behaviours")
+    )
+    return any(kind.parameters.model_construct().needs_joint for kind in kinds if kind is not None)
 
 
 def _mappings(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:

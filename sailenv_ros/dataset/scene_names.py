@@ -23,7 +23,8 @@ class SceneNames:
     Attributes
     ----------
     by_kind : mapping of str to mapping of str to str
-        By the `type` of an entry of `randomise`, and of what cameras may look at: ``camera``.
+        By the `type` of an entry of `randomise`; ``jointed``: objects on joints; ``camera``: what
+        cameras may look at.
     agents : tuple of str
         Agents that the scene brings along.
     materials : mapping of str to frozenset of str
@@ -42,6 +43,9 @@ class SceneNames:
             kind: selectable(plain, kind, lambda asset: library.peek_asset(asset).category) or {}
             for kind in ("object", "material", "light")
         }
+        joints = {entry.name for entry in spec.objects if entry.joint is not None}
+        kinds["behaviour"] = kinds["object"]
+        kinds["jointed"] = {k: v for k, v in kinds["object"].items() if k in joints}
         seen, materials = dict(kinds["material"]), {}
         for entry in spec.objects:
             asset = library.peek_asset(entry.asset)

@@ -301,7 +301,9 @@ class ShardMaker:
                 for label in missed:
                     self._findings.add(f"nothing was met by `{label}`", first.scene)
                 if things:
-                    core.randomise(seed, index=0, things=things)
+                    record = core.randomise(seed, index=0, things=things)
+                    for name in record["epoch"].get("left_out", ()):
+                        self._findings.add(f"no place upon the floor for `{name}`", first.scene)
             yield core
         finally:
             core.close()

@@ -42,6 +42,8 @@ _TITLES = {
     "PointLightSpec": "A point light",
     "RandomCamera": "Random cameras",
     "RandomDistractors": "Random distractors",
+    "RandomSpawn": "Random spawns",
+    "RandomBehaviour": "Random behaviours",
     "RandomEnvironment": "Random surroundings",
     "RandomLight": "Random lights",
     "RandomMaterial": "Random materials",

@@ -9,7 +9,13 @@ from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.randomise.selectors import OfCategory, is_meant, selectors_in
 from sailenv_ros.scene.room_rules import room_part_names
 
-__all__ = ["drawn_names", "random_categories_exist", "random_targets_exist", "selectable"]
+__all__ = [
+    "box_in_order",
+    "drawn_names",
+    "random_categories_exist",
+    "random_targets_exist",
+    "selectable",
+]
 
 _PARTS = ("wall", "floor", "ceiling", "skirting", "window", "door", "curtain")
 
@@ -25,7 +31,9 @@ def random_targets_exist(scene: Entry) -> Iterator[tuple[tuple[str | int, ...], 
         for pattern in selectors_in(entry.get("of")):
             if isinstance(pattern, OfCategory) or any(is_meant(pattern, name) for name in names):
                 continue
-            what = "object or part of the room" if entry["type"] == "material" else entry["type"]
+            what = {"material": "object or part of the room", "light": "light"}.get(
+                entry["type"], "object"
+            )
             near = suggestion(pattern, names, listing="there are")
             yield ("randomise", index, "of"), f"the scene has no {what} {pattern!r}; {near}"
 
@@ -61,7 +69,7 @@ def selectable(
     """
     if kind == "light":
         return dict.fromkeys(_names(scene, "lights"), "")
-    if kind not in ("object", "material"):
+    if kind not in ("object", "material", "behaviour"):
         return None
     found: dict[str, str] = {}
     listed = scene.get("objects")
@@ -75,6 +83,20 @@ def selectable(
     if kind == "material" and isinstance(room, Mapping):
         found |= {name: _part_category(name) for name in room_part_names(room)}
     return found
+
+
+def box_in_order(entry: Entry) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Refuse a box whose highest corner is below its lowest."""
+    within = entry.get("within")
+    if not isinstance(within, list | tuple) or len(within) != 2:
+        return
+    low, high = within
+    try:
+        wrong = any(a > b for a, b in zip(low, high, strict=True))
+    except (TypeError, ValueError):
+        return
+    if wrong:
+        yield ("within",), "must be the lowest corner, then the highest"
 
 
 def drawn_names(value: object) -> list[str]:

@@ -26,9 +26,9 @@ __all__ = [
 ]
 
 Values: TypeAlias = dict[str, Any]
-"""Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
-``environment`` by its keys, ``added`` a list of objects. ``relative`` holds in the same order the
-amounts by which values differ from the scene's own."""
+"""Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` and ``behaviours``
+by name, ``environment`` by its keys, ``added`` a list of objects. ``relative`` holds in the same
+order the amounts by which values differ from the scene's own."""
 
 Pick: TypeAlias = Callable[[str, str, Draw], Any]
 """``pick(target, key, draw)`` returns a value; each target and key has a generator of its own."""

@@ -18,7 +18,7 @@ from sailenv_ros.scene.randomise.random_values import sampled
 from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTargets, Values
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.live_scene import LiveScene
-from sailenv_ros.simulation.script.drawn_objects import arrange_drawn
+from sailenv_ros.simulation.script.drawn_objects import add_drawn, arrange_drawn, move_drawn
 from sailenv_ros.simulation.script.own_values import OwnCameraValues, scene_values
 from sailenv_ros.simulation.script.rule_places import placed_by_rules
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -101,7 +101,7 @@ class Randomiser:
         else:
             self._epoch = self._sampled("epoch", 0)
         with self._scene.announce.once():
-            self._change_objects(self._epoch)
+            self._epoch = self._change_objects(self._epoch)
             self._change_looks(self._epoch)
         # A rule looks at the scene as it was drawn.
         self._epoch = self._placed(self._epoch)
@@ -229,21 +229,23 @@ class Randomiser:
 
     # -- what is changed -------------------------------------------------------------------
 
-    def _change_objects(self, values: Values) -> None:
+    def _change_objects(self, values: Values) -> Values:
+        """Bring objects to what was drawn; return it with the places that were found."""
         drawn: Mapping[str, Mapping[str, Any]] = values.get("objects", {})
         world = self._scene.world
         if drawn:
             assert world.described is not None
             arrange_drawn(self._editor, world.described, drawn)
-        for entry in values.get("added", ()):
-            place = {key: value for key, value in entry.items() if key != "orientation"}
-            pose = Pose(tuple(entry["position"]), tuple(entry["orientation"]))
-            del place["position"]
-            self._editor.spawn(place, pose)
+        values = add_drawn(self._editor, values, self._view_scene(CameraIntrinsics()).free_space)
+        for name, behaviours in values.get("behaviours", {}).items():
+            if any(body.placement.name == name for body in world.bodies):
+                move_drawn(self._editor, world.find(name), behaviours)
+        return values
 
-    def apply_materials(self, number: int) -> None:
-        """Apply the looks that were drawn for an object that has just entered."""
+    def apply_drawn(self, number: int) -> None:
+        """Apply looks and behaviours that were drawn for an object that has just entered."""
         name = self._scene.world.body(number).placement.name
+        move_drawn(self._editor, number, self._epoch.get("behaviours", {}).get(name, ()))
         for values in (self._epoch, self._frame):
             for part, keys in values.get("materials", {}).get(name, {}).items():
                 if keys:
