@@ -45,6 +45,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.types.agents import AgentSpec
@@ -235,7 +236,7 @@ class ShardMaker:
         if settings is None:
             return []
         found = sample_cameras(
-            core.view_scene(camera.intrinsics),
+            core.view_scene(look_lens(camera.intrinsics)),
             camera.rule,
             len(group),
             seed=int(random.integers(2**63)),
