@@ -406,3 +406,18 @@ def test_an_object_for_which_there_is_no_floor_is_left_out(den: Simulation) -> N
 def test_spawns_that_are_none_are_told(den: Simulation, change: dict[str, Any], told: str) -> None:
     with pytest.raises(InvalidEntry, match=told):
         den.randomise(things=[{**MOVING[0], **change}])
+
+
+def test_what_comes_later_moves_as_it_was_drawn(tmp_path: Path) -> None:
+    """An object that appears after the beginning gets its behaviours when it comes."""
+    plain = DEN[: DEN.index("randomise:")].replace(
+        "{name: ball, asset: sphere,", "{name: ball, asset: sphere, appear: 0.1, gravity: false,"
+    )
+    (tmp_path / "late.yaml").write_text(plain, encoding="utf-8")
+    spin = {"type": "rotate_rigidbody", "angular_velocity": [0, 0, 90]}
+    thing = {"name": "spin", "type": "behaviour", "of": {"category": "sphere"}}
+    with simulation(tmp_path, "late") as made:
+        record = made.randomise(things=[{**thing, "behaviours": [spin]}])
+        assert record["epoch"] == {"behaviours": {"ball": [spin]}}
+        made.step(144)  # 0.6 s, of which it is there 0.5 s
+        assert abs(made.get_object("ball").pose.rpy_deg[2] - 45.0) < 1.0
