@@ -121,6 +121,10 @@ class AssetLibrary:
             loaded = self._loaded.get(name)
         return loaded or self._source_of[name].load(name)
 
+    def category_of(self, name: str) -> str:
+        """Return the category of an asset; empty if there is none of that name."""
+        return self.peek(name).category if name in self.all_names else ""
+
     def drawn_model(self, name: str) -> Model:
         """Return what is drawn of an instance by its ``asset``; keeps none that was not in use.
 

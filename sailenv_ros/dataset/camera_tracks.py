@@ -23,7 +23,9 @@ from sailenv_ros.dataset.recipe_cameras import (
     WalkCamera,
 )
 from sailenv_ros.errors import InvalidRequest, InvalidState, NoFreeSpace
-from sailenv_ros.simulation.operations import WorldOperations
+from sailenv_ros.scene.randomise.selectors import Selector, is_meant
+from sailenv_ros.simulation.script.rule_places import look_lens
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import FreeSpace
 from sailenv_ros.types.geometry import Pose, look_at
 
@@ -31,6 +33,11 @@ __all__ = ["Track", "track_of", "turning"]
 
 ATTEMPTS = 200
 """Places that are tried before a camera has none."""
+
+WALKS = 24
+"""Walks that are looked at for one that shows enough; then the best of them is taken."""
+
+LOOK_EVERY_S = 0.5
 
 BODY_HEAD_M = 0.1
 """Room above a camera's eye [m]."""
@@ -48,14 +55,14 @@ Vector3: TypeAlias = NDArray[np.float64]
 
 
 def track_of(
-    camera: Any, scene: WorldOperations, times_s: Times, random: np.random.Generator
+    camera: Any, scene: SynchronousSimulation, times_s: Times, random: np.random.Generator
 ) -> Track:
     """Return where a camera of a recipe is at each time.
 
     Parameters
     ----------
     camera : FixedCamera, WalkCamera or OrbitCamera
-    scene : WorldOperations
+    scene : SynchronousSimulation
         Is asked for free space, for rays and for its objects, as they are now.
     times_s : (T,) float64
         Since the first frame [s].
@@ -81,15 +88,37 @@ def turning(start: Pose, camera: RuleCamera, times_s: Times, random: np.random.G
 
 
 def _fixed(
-    camera: FixedCamera, scene: WorldOperations, times_s: Times, random: np.random.Generator
+    camera: FixedCamera, scene: SynchronousSimulation, times_s: Times, random: np.random.Generator
 ) -> Track:
     return [camera.pose_at(camera.position)] * len(times_s)
 
 
 def _walk(
-    camera: WalkCamera, scene: WorldOperations, times_s: Times, random: np.random.Generator
+    camera: WalkCamera, scene: SynchronousSimulation, times_s: Times, random: np.random.Generator
 ) -> Track:
     space = _space(camera, scene)
+    if camera.filled == 0.0:
+        return _walk_in(space, camera, times_s, random)
+    view = scene.view_scene(look_lens(camera.intrinsics))
+    looks = _looks(times_s)
+    best: tuple[float, Track] = (-1.0, ())
+    for _ in range(WALKS):
+        track = _walk_in(space, camera, times_s, random)
+        least = 1.0
+        for number in looks:
+            least = min(least, view.filled(track[number]))
+            if least <= best[0]:
+                break
+        else:
+            best = least, track
+        if best[0] >= camera.filled:
+            break
+    return best[1]
+
+
+def _walk_in(
+    space: FreeSpace, camera: WalkCamera, times_s: Times, random: np.random.Generator
+) -> Track:
     height = _within(camera.eye_height, random)
     pitch, speed = _within(camera.pitch, random), _within(camera.speed, random)
     needed_m = speed * float(times_s[-1])
@@ -107,15 +136,21 @@ def _walk(
     return _along(path, speed * times_s, pitch)
 
 
+def _looks(times_s: Times) -> list[int]:
+    """Return the numbers of frames at which a walk is looked at, the first and the last too."""
+    count = 1 + math.ceil(float(times_s[-1] - times_s[0]) / LOOK_EVERY_S)
+    return sorted(set(np.linspace(0, len(times_s) - 1, count).round().astype(int).tolist()))
+
+
 def _orbit(
-    camera: OrbitCamera, scene: WorldOperations, times_s: Times, random: np.random.Generator
+    camera: OrbitCamera, scene: SynchronousSimulation, times_s: Times, random: np.random.Generator
 ) -> Track:
     for _ in range(ATTEMPTS):
         target = None
         if camera.point is not None:
             middle = np.asarray(camera.point)
         else:
-            target = _target(camera.object, scene, random)
+            target = _target(camera.object or (), scene, random)
             middle = target.middle
         away, turn = _within(camera.distance, random), _within(camera.turn, random)
         elevation = math.radians(_within(camera.elevation, random))
@@ -125,7 +160,8 @@ def _orbit(
         ways = np.stack([flat * np.cos(angles), flat * np.sin(angles), up], axis=1)
         if _in_sight(scene, middle, middle + ways, target):
             return [look_at(eye, middle) for eye in middle + ways]
-    raise NoFreeSpace(f"no free sight of {camera.object or camera.point}")
+    sought = camera.point if camera.object is None else _told(camera.object)
+    raise NoFreeSpace(f"no free sight of {sought}")
 
 
 TRACKS: Mapping[type, Callable[..., Track]] = MappingProxyType(
@@ -144,7 +180,7 @@ def _within(ends: Range, random: np.random.Generator) -> float:
     return float(random.uniform(*ends)) if ends[0] < ends[1] else ends[0]
 
 
-def _space(camera: WalkCamera, scene: WorldOperations) -> FreeSpace:
+def _space(camera: WalkCamera, scene: SynchronousSimulation) -> FreeSpace:
     try:
         return scene.free_space(camera.eye_height[1] + BODY_HEAD_M, camera.clearance)
     except InvalidState as problem:
@@ -190,13 +226,18 @@ class _Target:
     ids: tuple[int, ...]
 
 
-def _target(name: str | None, scene: WorldOperations, random: np.random.Generator) -> _Target:
-    """Return the object of that name, or one of that category."""
+def _target(
+    selectors: Sequence[Selector], scene: SynchronousSimulation, random: np.random.Generator
+) -> _Target:
+    """Return one of the objects that are meant; a name that none has may be a category."""
     instances = scene.info.instances
-    named = [one for one in instances if one.name == name]
-    chosen = named or [one for one in instances if one.category == name]
+    meant: set[int] = set()
+    for selector in selectors:
+        met = {one.id for one in instances if is_meant(selector, one.name, one.category)}
+        meant |= met or {one.id for one in instances if one.category == selector}
+    chosen = [one for one in instances if one.id in meant]
     if not chosen:
-        raise NoFreeSpace(f"no object and no category {name!r} in the scene")
+        raise NoFreeSpace(f"no object and no category {_told(selectors)} in the scene")
     one = chosen[int(random.integers(len(chosen)))]
     try:
         body = scene.get_object(one.id)
@@ -208,8 +249,12 @@ def _target(name: str | None, scene: WorldOperations, random: np.random.Generato
     return _Target(middle, ids)
 
 
+def _told(selectors: Sequence[Selector]) -> str:
+    return ", ".join(repr(one) if isinstance(one, str) else str(one) for one in selectors)
+
+
 def _in_sight(
-    scene: WorldOperations, middle: Vector3, eyes: NDArray[np.float64], target: _Target | None
+    scene: SynchronousSimulation, middle: Vector3, eyes: NDArray[np.float64], target: _Target | None
 ) -> bool:
     """Return whether from all these places a point is seen, or the object around it."""
     hits = scene.cast_rays(eyes, middle - eyes)

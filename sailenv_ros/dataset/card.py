@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.content_counts import ContentCounts, content_counts
+from sailenv_ros.dataset.findings import finding_lines
 from sailenv_ros.dataset.formats.data_files import write_bytes
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
@@ -69,6 +70,9 @@ def _text(
         lines += ["Clips that could not be made:", ""]
         lines += [f"- {reason}: {count}" for reason, count in sorted(skipped.items())]
         lines += [""]
+    told = list(finding_lines(one.findings for one in shards.values()))
+    if told:
+        lines += ["Look at these:", "", *told, ""]
     if found.objects:
         lines += ["| category | objects | frames |", "|---|---:|---:|"]
         lines += [

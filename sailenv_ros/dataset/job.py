@@ -5,19 +5,23 @@ from __future__ import annotations
 import hashlib
 import importlib.metadata
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from pydantic import ValidationError
 
 from sailenv_ros.assets.pack import PACK_FILE
 from sailenv_ros.assets.sources import installed_packs
 from sailenv_ros.dataset.identity import WorkIdentity
 from sailenv_ros.dataset.recipe import DatasetRecipe
-from sailenv_ros.errors import RecordingError, SceneDiagnostic, SceneError
+from sailenv_ros.dataset.recipe_checks import recipe_errors
+from sailenv_ros.dataset.recipe_scenes import RecipeScenes
+from sailenv_ros.errors import RecordingError, SceneError
 from sailenv_ros.light.bake.settings import BAKE_VERSION
 from sailenv_ros.scene.documents import load_document
-from sailenv_ros.scene.scene_catalogue import SUFFIXES
+from sailenv_ros.scene.scene_diagnostics import Diagnostic, model_diagnostics
 from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.version import __version__
@@ -147,40 +151,34 @@ def load_recipe(path: Path) -> DatasetRecipe:
 
 
 def load_job(path: Path) -> Job:
-    """Read and check a recipe and what it names.
+    """Read and check a recipe and what it names; makes nothing but generated scenes.
 
     Raises
     ------
     RecipeError
-        All errors, in the order of the file; those of its scenes after them.
+        All errors, in the order of the file: of values, names, choices of objects and packages
+        that are not installed; those of its scenes' files after them.
     """
-    recipe = load_document(path, DatasetRecipe, "a recipe", error=RecipeError)
-    library = SceneLibrary()
-    texts, hashes = {}, {}
-    problems: list[SceneDiagnostic] = []
-    for index, entry in enumerate(recipe.scenes):
-        if entry.scene is None:
-            continue
-        beside = path.parent / entry.scene
-        is_file = beside.suffix in SUFFIXES
-        try:
-            file = library.path(beside if is_file else entry.scene)
-            library.load(file)
-            content = file.read_bytes()
-        except SceneError as problem:
-            problems += problem.diagnostics
-            continue
-        except (ValueError, OSError) as problem:
-            field = f"scenes[{index}].scene"
-            problems.append(
-                SceneDiagnostic(path=str(path), line=0, column=0, field=field, message=str(problem))
-            )
-            continue
-        hashes[entry.scene] = _hash(content)
-        if is_file:
-            texts[entry.scene] = content.decode("utf-8-sig")
-    if problems:
-        raise RecipeError(problems)
+    scenes = RecipeScenes(path.parent)
+
+    def find_errors(data: dict[str, Any], error: ValidationError | None) -> Iterator[Diagnostic]:
+        yield from model_diagnostics(DatasetRecipe, data, error)
+        yield from recipe_errors(data, path, scenes)
+
+    try:
+        recipe = load_document(
+            path, DatasetRecipe, "a recipe", find_errors=find_errors, error=RecipeError
+        )
+    except RecipeError as problem:
+        raise RecipeError([*problem.diagnostics, *scenes.problems]) from None
+    if scenes.problems:
+        raise RecipeError(scenes.problems)
+    hashes = {name: _hash(file.content) for name, file in scenes.files.items()}
+    texts = {
+        name: file.content.decode("utf-8-sig")
+        for name, file in scenes.files.items()
+        if file.is_beside
+    }
     return Job(
         recipe=recipe,
         recipe_text=path.read_text(encoding="utf-8-sig"),

@@ -69,6 +69,8 @@ class MadeDataset:
         Of each format.
     skipped : mapping of str to int
         Clips that could not be made, by the reason.
+    findings : mapping of str to mapping of str to int
+        What people should know, such as dark frames: how often in which scene.
     """
 
     frames: int
@@ -78,6 +80,7 @@ class MadeDataset:
     written: Mapping[str, Mapping[str, int]]
     left_out: Mapping[str, Mapping[str, int]]
     skipped: Mapping[str, int] = field(default_factory=dict)
+    findings: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
 
 def make_dataset(
@@ -208,6 +211,7 @@ def _manifest(
         "written": _sums(one.written for one in shards.values()),
         "left_out": _sums(one.left_out for one in shards.values()),
         "skipped": _sum(one.skipped for one in shards.values()),
+        "findings": _sums(one.findings for one in shards.values()),
         "job": job.fingerprint,
         "machines": sorted({str(one.get("machine", "")) for one in made}),
         "seconds": round(sum(float(one.get("seconds", 0.0)) for one in made), 3),
@@ -223,6 +227,7 @@ def _made(manifest: Mapping[str, Any]) -> MadeDataset:
         written=manifest["written"],
         left_out=manifest["left_out"],
         skipped=manifest["skipped"],
+        findings=manifest.get("findings", {}),
     )
 
 

@@ -58,6 +58,8 @@ class ShardSummary:
         Of each format: how many of what, and how many not by the reason.
     skipped : mapping of str to int
         Clips that could not be made, by the reason.
+    findings : mapping of str to mapping of str to int
+        What people should know: how often in which scene; see `findings`.
     made : mapping
         On which machine and how fast; not a part of the content.
     """
@@ -71,6 +73,7 @@ class ShardSummary:
     written: Mapping[str, Mapping[str, int]]
     left_out: Mapping[str, Mapping[str, int]]
     skipped: Mapping[str, int]
+    findings: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     made: Mapping[str, Any] = field(default_factory=dict)
 
     @property

@@ -21,9 +21,17 @@ import numpy as np
 from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
+from sailenv_ros.dataset.findings import Findings
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
+from sailenv_ros.dataset.recipe_choices import (
+    AGENT_PREFIX,
+    choices_of,
+    fitting_settings,
+    fitting_things,
+)
+from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
 from sailenv_ros.dataset.shard_writer import ShardWriter
 from sailenv_ros.dataset.storage import Storage
@@ -37,6 +45,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.types.agents import AgentSpec
@@ -74,6 +83,8 @@ class ShardMaker:
         self._store = ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
+        self._camera_data = [one.model_dump(mode="json") for one in self._recipe.cameras]
+        self._findings = Findings()
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
         # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
         # of it may depend on what was seen before.
@@ -115,6 +126,7 @@ class ShardMaker:
         shard = self._plan.shard(number)
         writer = ShardWriter(folder, self._recipe, shard)
         skipped: Counter[str] = Counter()
+        self._findings = Findings()
         frames = 0
         try:
             for group in clip_groups(shard, self._recipe.clip.per_scene):
@@ -133,6 +145,7 @@ class ShardMaker:
             written={name: dict(one) for name, one in writer.written.items()},
             left_out={name: dict(one) for name, one in writer.left_out.items()},
             skipped=dict(skipped),
+            findings=self._findings.plain(),
             made={
                 "machine": platform.machine(),
                 "processors": os.cpu_count(),
@@ -149,6 +162,7 @@ class ShardMaker:
         with self._scene(group[0]) as core:
             if recipe.clip.settle:
                 core.step(round(recipe.clip.settle * STEPS_PER_SECOND))
+            self._note_missed_targets(core, group[0].scene)
             chosen = {
                 one.name: self._chosen(one, group, core)
                 for one in recipe.cameras
@@ -166,12 +180,16 @@ class ShardMaker:
                     skipped[f"{clip.scene}: {problem}"] += 1
                     continue
                 writer.begin_clip(clip)
-                frames += self._take_clip(tracks, core, writer)
+                frames += self._take_clip(clip.scene, tracks, core, writer)
                 writer.end_clip()
         return frames
 
     def _take_clip(
-        self, tracks: dict[str, Track | None], core: SynchronousSimulation, writer: ShardWriter
+        self,
+        scene: SceneSource,
+        tracks: dict[str, Track | None],
+        core: SynchronousSimulation,
+        writer: ShardWriter,
     ) -> int:
         recipe = self._recipe
         for camera in recipe.cameras:
@@ -185,6 +203,7 @@ class ShardMaker:
                 if track is not None:
                     core.set_pose(track[number], teleport=number == 0, agent=_agent_name(camera))
                 frame = core.capture(recipe.views, agent=_agent_name(camera))
+                self._findings.look_at(frame, scene)
                 writer.add(camera.name, self._kept(frame, camera))
                 frames += 1
                 self._on_frame()
@@ -212,12 +231,16 @@ class ShardMaker:
     ) -> list[Pose]:
         """Return the places that a rule finds for the clips of a group, perhaps fewer."""
         random = named_generator(self._recipe.seed, "rule", camera.name, str(group[0].number))
+        names = self._names(core)
+        settings = fitting_settings(camera.settings, names)
+        if settings is None:
+            return []
         found = sample_cameras(
-            core.view_scene(camera.intrinsics),
+            core.view_scene(look_lens(camera.intrinsics)),
             camera.rule,
             len(group),
             seed=int(random.integers(2**63)),
-            settings=camera.settings,
+            settings=settings,
         )
         return [one.pose for one in found]
 
@@ -274,14 +297,27 @@ class ShardMaker:
             if self._baked:
                 bake_missing(core.world)
             if self._recipe.randomise:
-                things = [
-                    one.model_dump(mode="json", exclude_defaults=True)
-                    for one in self._recipe.randomise
-                ]
-                core.randomise(int(random.integers(2**31)), index=0, things=things)
+                seed = int(random.integers(2**31))
+                things, missed = fitting_things(self._recipe, self._names(core))
+                for label in missed:
+                    self._findings.add(f"nothing was met by `{label}`", first.scene)
+                if things:
+                    record = core.randomise(seed, index=0, things=things)
+                    for name in record["epoch"].get("left_out", ()):
+                        self._findings.add(f"no place upon the floor for `{name}`", first.scene)
             yield core
         finally:
             core.close()
+
+    def _note_missed_targets(self, core: SynchronousSimulation, scene: SceneSource) -> None:
+        names = self._names(core)
+        for choice in choices_of({"cameras": self._camera_data}):
+            if not choice.meets(names):
+                self._findings.add(f"nothing was met by `{choice.label}`", scene)
+
+    def _names(self, core: SynchronousSimulation) -> SceneNames:
+        assert core.world.described is not None
+        return SceneNames.of(core.world.described, self._library)
 
     def _path(self, scene: SceneSource) -> Path:
         """Return the file of a scene; a generated one is made now."""
@@ -298,4 +334,4 @@ class ShardMaker:
 
 def _agent_name(camera: AnyCamera) -> str:
     """Return the name of a camera's agent, which no agent of a scene has."""
-    return f"dataset_{camera.name}"
+    return f"{AGENT_PREFIX}{camera.name}"

@@ -40,6 +40,8 @@ class SceneKnowledge:
     camera_errors : callable
         ``camera_errors(rule, settings)`` yields what is wrong with a camera rule: below ``rule`` or
         ``settings``.
+    category_of : callable
+        ``category_of(asset)`` returns its category; an empty text if that is not known.
     surfaces : tuple of str
         Every name that the material of a room's walls, floor or ceiling may have.
     skies : tuple of str
@@ -55,6 +57,7 @@ class SceneKnowledge:
     object_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
     lesson_errors: Callable[[Mapping[str, Any]], Diagnostics] = _no_errors
     camera_errors: Callable[[str, Mapping[str, Any]], Diagnostics] = _no_camera_errors
+    category_of: Callable[[str], str] = lambda asset: ""
     surfaces: tuple[str, ...] = ()
     skies: tuple[str, ...] = ()
     material_fault: Callable[[str], str] | None = None

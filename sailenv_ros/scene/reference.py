@@ -42,6 +42,8 @@ _TITLES = {
     "PointLightSpec": "A point light",
     "RandomCamera": "Random cameras",
     "RandomDistractors": "Random distractors",
+    "RandomSpawn": "Random spawns",
+    "RandomBehaviour": "Random behaviours",
     "RandomEnvironment": "Random surroundings",
     "RandomLight": "Random lights",
     "RandomMaterial": "Random materials",
@@ -122,7 +124,9 @@ def _takes(entry: Mapping[str, Any]) -> str:
 def _plain(entry: Mapping[str, Any]) -> str:
     kind = entry.get("type")
     if "log_uniform" in entry.get("properties", ()):
-        return "[a distribution](randomisation.md#distributions)"
+        relative = " or [a relative one](randomisation.md#relative-values)"
+        told = relative if "times" in entry["properties"] else ""
+        return f"[a distribution](randomisation.md#distributions){told}"
     if kind == "array":
         items = entry.get("items")
         each = _takes(items) if isinstance(items, Mapping) else "values"

@@ -17,7 +17,7 @@ from sailenv_ros.scene.field_types import FIELD_ERROR
 from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
 from sailenv_ros.scene.knowledge import SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
-from sailenv_ros.scene.randomise.random_rules import drawn_names
+from sailenv_ros.scene.randomise.random_rules import drawn_names, random_categories_exist
 from sailenv_ros.scene.randomise.randomisation import Randomisation
 from sailenv_ros.scene.spec import CategorySpec, EnvironmentSpec, SceneSpec
 from sailenv_ros.scene.spec_materials import LookSpec
@@ -29,10 +29,10 @@ from sailenv_ros.scene.spec_room import (
     SurfaceSpec,
     WallMaterialsSpec,
 )
-from sailenv_ros.scene.traversal import Entry, entries
+from sailenv_ros.scene.traversal import entries
 from sailenv_ros.scene.yaml_nodes import Loc
 
-__all__ = ["Diagnostic", "diagnose", "model_diagnostics"]
+__all__ = ["Diagnostic", "diagnose", "model_diagnostics", "name_diagnostics"]
 
 
 Models: TypeAlias = Mapping[Loc, type[SceneModel]]
@@ -73,7 +73,9 @@ def diagnose(
     """
     yield from model_diagnostics(SceneSpec, data, error)
     if knowledge is not None:
-        yield from _unknown_names(data, list(entries(SceneSpec, data)), knowledge)
+        yield from name_diagnostics(SceneSpec, data, knowledge)
+        for place, sentence in random_categories_exist(data, knowledge.category_of):
+            yield Diagnostic(place, sentence)
 
 
 def model_diagnostics(
@@ -109,16 +111,26 @@ def _counts_the_right_alone(details: ErrorDetails) -> bool:
     return len(details["input"]) >= int(details["ctx"]["min_length"])
 
 
-def _unknown_names(
-    data: Mapping[str, Any], found: Iterable[Entry], knowledge: SceneKnowledge
+def name_diagnostics(
+    whole: type[SceneModel], data: Mapping[str, Any], knowledge: SceneKnowledge
 ) -> Iterator[Diagnostic]:
+    """Yield which names of assets, categories, behaviours, materials and skies there are not.
+
+    Parameters
+    ----------
+    whole : type of SceneModel
+        Of the whole: a scene, or what has entries of scenes in it.
+    data : mapping
+        Plain data.
+    knowledge : SceneKnowledge
+    """
     listed = data.get("categories")
     own = [c for c in listed if isinstance(c, Mapping)] if isinstance(listed, list) else []
     own_names = [c["name"] for c in own if isinstance(c.get("name"), str)]
     categories = [name for name in knowledge.categories if name != "background"] + own_names
     for place, sentence in knowledge.lesson_errors(data):
         yield Diagnostic(place, sentence)
-    for loc, model, entry in found:
+    for loc, model, entry in entries(whole, data):
         if issubclass(model, ObjectSpec):
             yield from _unknown(loc, entry, "asset", knowledge.assets)
             yield from _unknown(loc, entry, "category", categories)

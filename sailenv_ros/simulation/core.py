@@ -118,7 +118,7 @@ class SimulationCore:
         self.editor = SceneEditor(self.scene)
         self.scene_writer = SceneWriter(self.scene)
         self.randomiser = Randomiser(self.scene, self.editor, self.view_scene)
-        self.orchestrator = Orchestrator(self.scene, self.clock, self.randomiser.apply_materials)
+        self.orchestrator = Orchestrator(self.scene, self.clock, self.randomiser.apply_drawn)
         for spec in library.agents_of(self.world.scene):
             self.agents.add(spec, self.world)
         self.randomiser.begin(RandomisationRequest())

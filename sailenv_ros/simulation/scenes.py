@@ -132,6 +132,7 @@ class SceneLibrary:
             object_errors=ObjectFit(self._assets),
             lesson_errors=lesson_errors,
             camera_errors=rule_errors,
+            category_of=self._assets.category_of,
             surfaces=surface_names(),
             skies=tuple(self._packs.skies),
         )
@@ -304,8 +305,7 @@ class SceneLibrary:
     def path(self, scene: str | Path) -> Path:
         """Find a scene's file; see `load`.
 
-        A name such as ``generated:kitchen:17`` is made first, if it has not been; see `generation`
-        for errors.
+        ``generated:kitchen:17`` is made first, if it has not been; see `generation` for errors.
         """
         if str(scene).startswith(PREFIX):
             return self._generated.path(str(scene))

@@ -39,6 +39,12 @@ class FreeView(RuleSettings):
     cover: float = Field(
         default=0.002, ge=0.0, le=1.0, description="of the picture, from which an object counts"
     )
+    filled: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1.0,
+        description="least share of the picture that objects take, not parts of the room",
+    )
     apart_m: float = Field(
         default=0.5, ge=0.0, le=100.0, description="between two cameras that look the same way [m]"
     )
@@ -102,6 +108,8 @@ def free_view(
         if not (depth >= settings.nearest_m).all():
             continue
         if len(scene.seen(pose, settings.cover)) < settings.objects:
+            continue
+        if scene.filled(pose) < settings.filled:
             continue
         chosen.append(CameraView(pose=pose))
         forwards.append(forward)

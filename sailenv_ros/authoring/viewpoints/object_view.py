@@ -27,6 +27,7 @@ from sailenv_ros.authoring.viewpoints.view_scene import (
     camera_rule,
 )
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.scene.randomise.selectors import is_meant
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 
 __all__ = ["ObjectView", "SeenTarget", "object_view", "views_in_turn"]
@@ -38,7 +39,7 @@ class ObjectView(RuleSettings):
     """Settings of `object_view`."""
 
     objects: tuple[str, ...] = Field(
-        default=(), description="names of the objects to look at; none: by category"
+        default=(), description="names of the objects to look at, or patterns; none: by category"
     )
     categories: tuple[str, ...] = Field(
         default=(), description="categories to look at; none: every object but parts of rooms"
@@ -158,9 +159,10 @@ def _targets(scene: ViewScene, settings: ObjectView) -> list[Target]:
         ("category", settings.categories, {c.name for c in contents.categories.values()}),
     ):
         for name in wanted:
-            if name not in known:
+            if not any(is_meant(name, one) for one in known):
                 raise UnknownName(kind, name, sorted(known))
-    named, categories = set(settings.objects), set(settings.categories)
+    named = {i.name for i in shown for one in settings.objects if is_meant(one, i.name)}
+    categories = set(settings.categories)
     rows = [
         row
         for row, instance in enumerate(shown)

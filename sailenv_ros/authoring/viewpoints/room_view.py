@@ -120,6 +120,7 @@ def room_view(
         view
         for view in itertools.islice(seen, settings.attempts)
         if view.nearest_m >= settings.nearest_m
+        and sum(view.shares.values()) >= settings.filled
         and sum(share >= settings.cover for share in view.shares.values()) >= settings.objects
     ]
     times: Counter[int] = Counter()

@@ -45,7 +45,7 @@ def coverage(
             shown = frozenset(
                 id_ for id_, pixels in seen.items() if pixels >= settings.visible * whole[id_]
             )
-            if len(shown) >= settings.objects:
+            if len(shown) >= settings.objects and scene.filled(pose) >= settings.filled:
                 candidates.append((pose, shown))
     times: Counter[int] = Counter()
     chosen: list[CameraView] = []

@@ -105,6 +105,10 @@ class ViewScene(ABC):
         pairs = zip(ids[enough].tolist(), pixels[enough].tolist(), strict=True)
         return {id_: count for id_, count in pairs if id_ in self.object_ids}
 
+    def filled(self, pose: Pose) -> float:
+        """Return which share of the picture objects take: all but parts of the room."""
+        return float(np.isin(self.instances(pose), list(self.object_ids)).mean())
+
     def camera(self, pose: Pose) -> Camera:
         """Return the lens at a pose."""
         return Camera(intrinsics=self.lens, pose=pose)

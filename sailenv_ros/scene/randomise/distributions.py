@@ -191,7 +191,8 @@ def _pair(given: object, accept: Accept) -> Any:
     if not isinstance(given, list | tuple) or len(given) != 2:
         return None
     ends = tuple(accept(end) for end in given)
-    return ends if all(map(_is_numeric, ends)) else None
+    same = len(_each(ends[0])) == len(_each(ends[1]))
+    return ends if same and all(map(_is_numeric, ends)) else None
 
 
 def _is_numeric(value: Any) -> bool:

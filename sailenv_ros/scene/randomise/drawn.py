@@ -73,7 +73,7 @@ class Drawn:
         if isinstance(value, Draw):
             return value
         if not isinstance(value, Mapping):
-            return Draw("", self._accept(value), value, self._accept)
+            return Draw("", self.accept(value), value, self.accept)
         names = ", ".join(DISTRIBUTIONS)
         if len(value) != 1:
             raise field_error(
@@ -85,14 +85,15 @@ class Drawn:
             raise field_error(f"must be a value or a distribution, got {shown(name)}; {near}")
         kind = DISTRIBUTIONS[name]
         try:
-            kept = kind.check(given, self._accept)
+            kept = kind.check(given, self.accept)
         except PydanticCustomError as problem:
             raise field_error(f"is refused: each value of {name} {problem.message()}") from None
         if kept is None:
             raise field_error(f"must give {name} {kind.takes}, got {shown(given)}")
-        return Draw(name, kept, value, self._accept)
+        return Draw(name, kept, value, self.accept)
 
-    def _accept(self, value: object) -> Any:
+    def accept(self, value: object) -> Any:
+        """Return a single value as it is kept, or raise a `field_error`."""
         try:
             return self._adapter.validate_python(value)
         except ValidationError as problem:

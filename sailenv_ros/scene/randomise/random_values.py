@@ -14,6 +14,7 @@ import numpy as np
 
 from sailenv_ros.scene.randomise.drawn import Draw
 from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTargets, Values
+from sailenv_ros.scene.randomise.relative import RelativeDraw
 
 __all__ = ["merged", "sampled"]
 
@@ -46,22 +47,34 @@ def sampled(
     Returns
     -------
     values : dict
-        Plain data that JSON can hold; see `Values`. Later entries win over earlier ones.
+        Plain data that JSON can hold; see `Values`. Later entries win over earlier ones. Of what
+        is drawn relative to the scene's own value it has both the result and the amount.
     """
     drawn: Values = {}
+    amounts: dict[tuple[str, str, str], Values] = {}
     instant = step if every == "frame" else -1
     for thing in things:
         if thing.every != every:
             continue
 
-        def pick(target: str, key: str, draw: Draw, of: str = thing.name) -> object:
-            words = "\0".join((str(seed), str(index), str(instant), of, target, key))
+        def pick(target: str, key: str, draw: Draw, of: Randomisation = thing) -> object:
+            words = "\0".join((str(seed), str(index), str(instant), of.name, target, key))
             digest = hashlib.blake2b(words.encode(), digest_size=16).digest()
             generator = np.random.default_rng(int.from_bytes(digest, "little"))
-            value = draw.sample(generator)
-            return list(value) if isinstance(value, tuple) else value
+            place = (of.KEY, target, key)
+            amounts.pop(place, None)
+            if isinstance(draw, RelativeDraw):
+                own = targets.own_value(*place)
+                amount, value = draw.sample_from(own, generator)
+                amounts[place] = {draw.distribution: _plain(amount)}
+            else:
+                value = draw.sample(generator)
+            return _plain(value)
 
         drawn = merged(drawn, thing.values(targets, pick))
+    for (kind, target, key), amount in amounts.items():
+        named = {target: {key: amount}} if target else {key: amount}
+        drawn = merged(drawn, {"relative": {kind: named}})
     return drawn
 
 

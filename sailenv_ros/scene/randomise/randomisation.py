@@ -7,16 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import core_schema
+from pydantic import Field
 
-from sailenv_ros.scene.field_types import Choice, Text, field_error
+from sailenv_ros.scene.field_types import Choice
 from sailenv_ros.scene.fields import Name, SceneModel
-from sailenv_ros.scene.messages import shown
 from sailenv_ros.scene.randomise.drawn import Draw
+from sailenv_ros.scene.randomise.selectors import Selector, is_meant
 
 __all__ = [
     "EVERY",
@@ -25,12 +23,12 @@ __all__ = [
     "Randomisation",
     "EpochRandomisation",
     "Values",
-    "Which",
 ]
 
 Values: TypeAlias = dict[str, Any]
-"""Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` by name,
-``environment`` by its keys, ``added`` a list of objects."""
+"""Drawn values as plain data: ``objects``, ``materials``, ``lights``, ``agents`` and ``behaviours``
+by name, ``environment`` by its keys, ``added`` a list of objects. ``relative`` holds in the same
+order the amounts by which values differ from the scene's own."""
 
 Pick: TypeAlias = Callable[[str, str, Draw], Any]
 """``pick(target, key, draw)`` returns a value; each target and key has a generator of its own."""
@@ -48,42 +46,28 @@ class RandomTargets:
         Objects, parts of the room, cameras.
     lights : mapping of str to (3,) tuple of float
         Where each light is [m].
+    categories : mapping of str to str
+        Of objects and parts of the room, by their names.
+    own : mapping
+        The scene's own values, which others are drawn relative to: by the keys of `Values`, by
+        names and by the keys of a file.
     """
 
     objects: tuple[str, ...] = ()
     surfaces: tuple[str, ...] = ()
     agents: tuple[str, ...] = ()
     lights: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    categories: Mapping[str, str] = field(default_factory=dict)
+    own: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
+    def with_categories(self, names: Iterable[str]) -> dict[str, str]:
+        """Return the category of each name; empty where it is not known."""
+        return {name: self.categories.get(name, "") for name in names}
 
-class _Names:
-    """One name or pattern, or several; kept as a tuple."""
-
-    _text = Text(r"[^\x00-\x1f]{1,100}", "a name, or a pattern with * and ?")
-
-    def check(self, value: object) -> tuple[str, ...]:
-        names = [value] if isinstance(value, str) else value
-        if not isinstance(names, list | tuple) or not names:
-            raise field_error(f"must be a name or a list of names, got {shown(value)}")
-        return tuple(self._text.check(name) for name in names)
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        writing = core_schema.plain_serializer_function_ser_schema(
-            lambda names: names[0] if len(names) == 1 else list(names),
-            when_used="json-unless-none",
-        )
-        return core_schema.no_info_plain_validator_function(self.check, serialization=writing)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        text = self._text.json_schema()
-        return {"anyOf": [text, {"type": "array", "items": text, "minItems": 1}]}
-
-
-Which: TypeAlias = Annotated[tuple[str, ...], _Names()]
+    def own_value(self, kind: str, name: str, key: str) -> Any:
+        """Return the scene's own value of a key; of what has no names, `name` is empty."""
+        named = self.own.get(kind, {})
+        return (named.get(name, {}) if name else named).get(key)
 
 
 class Randomisation(SceneModel):
@@ -110,11 +94,19 @@ class Randomisation(SceneModel):
         return {key: value for key, value in given.items() if isinstance(value, Draw)}
 
     def drawn(
-        self, which: Iterable[str], names: Iterable[str], pick: Pick, *besides: str
+        self,
+        which: Iterable[Selector],
+        names: Mapping[str, str] | Iterable[str],
+        pick: Pick,
+        *besides: str,
     ) -> dict[str, dict[str, Any]]:
-        """Return what is drawn, by its keys, for the names that a name or pattern means."""
-        draws, patterns = self.draws(*besides), tuple(which)
-        meant = [n for n in names if any(n == p or fnmatchcase(n, p) for p in patterns)]
+        """Return what is drawn, by its keys, for the names that are meant.
+
+        Names may be given with their categories.
+        """
+        draws, selectors = self.draws(*besides), tuple(which)
+        of = names if isinstance(names, Mapping) else dict.fromkeys(names, "")
+        meant = [n for n, kind in of.items() if any(is_meant(one, n, kind) for one in selectors)]
         return {name: {key: pick(name, key, draw) for key, draw in draws.items()} for name in meant}
 
 

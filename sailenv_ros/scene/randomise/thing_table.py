@@ -6,12 +6,14 @@ from typing import Annotated, TypeAlias
 
 from pydantic import Field
 
+from sailenv_ros.scene.randomise.things.random_behaviour import RandomBehaviour
 from sailenv_ros.scene.randomise.things.random_camera import RandomCamera
 from sailenv_ros.scene.randomise.things.random_distractors import RandomDistractors
 from sailenv_ros.scene.randomise.things.random_environment import RandomEnvironment
 from sailenv_ros.scene.randomise.things.random_light import RandomLight
 from sailenv_ros.scene.randomise.things.random_material import RandomMaterial
 from sailenv_ros.scene.randomise.things.random_object import RandomObject
+from sailenv_ros.scene.randomise.things.random_spawn import RandomSpawn
 
 __all__ = ["RandomThing"]
 
@@ -21,6 +23,8 @@ RandomThing: TypeAlias = Annotated[
     | RandomLight
     | RandomEnvironment
     | RandomCamera
-    | RandomDistractors,
+    | RandomDistractors
+    | RandomSpawn
+    | RandomBehaviour,
     Field(discriminator="type"),
 ]

@@ -5,20 +5,23 @@ Drawn keys in, a changed world out; what stands on something goes along with it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from sailenv_ros.assets.arranging import arranged
+from sailenv_ros.scene.randomise.randomisation import Values
 from sailenv_ros.scene.serialisation import PLACE_KEYS
 from sailenv_ros.scene.spec import ObjectSpec, SceneSpec
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.simulation.script.floor_places import placed_on_floor
+from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.types.geometry import Pose
 
-__all__ = ["arrange_drawn"]
+__all__ = ["add_drawn", "arrange_drawn", "move_drawn"]
 
 
 def arrange_drawn(
@@ -71,6 +74,47 @@ def arrange_drawn(
             world.put_body(number, pose, teleport=True)
 
 
+def add_drawn(
+    editor: SceneEditor, values: Values, free_space: Callable[[BodySize], FreeSpace]
+) -> Values:
+    """Add the objects that were drawn, each where the floor is free beside those before it.
+
+    Returns
+    -------
+    values : mapping
+        With the places that were found; ``left_out`` names objects for which there was none.
+    """
+    if not values.get("added"):
+        return values
+    added, left_out = [], []
+    for drawn in values["added"]:
+        entry = placed_on_floor(drawn, editor.scene.library.peek_asset(drawn["asset"]), free_space)
+        if entry is None:
+            left_out.append(drawn["name"])
+            continue
+        added.append(entry)
+        keys = {key: value for key, value in entry.items() if key not in PLACE_KEYS}
+        editor.spawn(keys, _pose_of(entry))
+    return {**values, "added": added, **({"left_out": left_out} if left_out else {})}
+
+
+def move_drawn(editor: SceneEditor, number: int, behaviours: Sequence[Mapping[str, Any]]) -> None:
+    """Let an object move by behaviours that were drawn; one that was static moves from now on."""
+    if not behaviours:
+        return
+    if editor.scene.world.body(number).placement.static:
+        editor.change_object(number, {"static": False})
+    for behaviour in behaviours:
+        editor.add_behaviour(number, behaviour)
+
+
+def _pose_of(entry: Mapping[str, Any]) -> Pose:
+    position = tuple(entry["position"])
+    if "orientation" in entry:
+        return Pose(position, tuple(entry["orientation"]))
+    return Pose.from_rpy_deg(position, tuple(entry["rotation"]))
+
+
 def _arrange_waiting(
     scene: LiveScene, number: int, entry: ObjectSpec, begun: ObjectSpec, pose: Pose
 ) -> None:
@@ -90,7 +134,8 @@ def _arrange_waiting(
 def _with_drawn(entry: ObjectSpec, keys: Mapping[str, Any]) -> ObjectSpec:
     update: dict[str, Any] = {"asset": keys["asset"]} if "asset" in keys else {}
     if "scale" in keys:
-        update["scale"] = (float(keys["scale"]),) * 3
+        scale = keys["scale"]  # one factor for all axes, or one for each
+        update["scale"] = tuple(scale) if isinstance(scale, list | tuple) else (float(scale),) * 3
     return entry.model_copy(update=update) if update else entry
 
 

@@ -18,7 +18,8 @@ from sailenv_ros.scene.randomise.random_values import sampled
 from sailenv_ros.scene.randomise.randomisation import Randomisation, RandomTargets, Values
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.live_scene import LiveScene
-from sailenv_ros.simulation.script.drawn_objects import arrange_drawn
+from sailenv_ros.simulation.script.drawn_objects import add_drawn, arrange_drawn, move_drawn
+from sailenv_ros.simulation.script.own_values import OwnCameraValues, scene_values
 from sailenv_ros.simulation.script.rule_places import placed_by_rules
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
@@ -81,6 +82,9 @@ class Randomiser:
         self._epoch: Values = {}
         self._frame: Values = {}
         self._drawn_at: int | None = None
+        self._own: Mapping[str, Mapping[str, Any]] = {}
+        self._categories: Mapping[str, str] = {}
+        self._own_cameras = OwnCameraValues()
 
     def begin(self, chance: RandomisationRequest) -> None:
         """Draw what is drawn for an epoch, and change the world that has just been built."""
@@ -89,12 +93,15 @@ class Randomiser:
         of_scene = () if described is None else described.randomise
         self._things = of_scene if chance.things is None else chance.things
         self._frame, self._drawn_at = {}, None
+        # Later the world has what was drawn instead.
+        self._own = {} if described is None else scene_values(described)
+        self._categories = self._categories_now()
         if chance.record is not None:
             self._epoch = dict(chance.record.get("epoch", {}))
         else:
             self._epoch = self._sampled("epoch", 0)
         with self._scene.announce.once():
-            self._change_objects(self._epoch)
+            self._epoch = self._change_objects(self._epoch)
             self._change_looks(self._epoch)
         # A rule looks at the scene as it was drawn.
         self._epoch = self._placed(self._epoch)
@@ -189,13 +196,28 @@ class Randomiser:
         scene, described = self._scene, self._scene.world.described
         objects = () if described is None else tuple(entry.name for entry in described.objects)
         lights = () if described is None else described.lights
+        own_of_agents = {one.spec.name: self._own_cameras.of(one.spec) for one in scene.agents}
         surfaces = [b.placement.name for b in scene.world.bodies if b.placement.entry is None]
         return RandomTargets(
             objects=objects,
             surfaces=tuple(surfaces),
             agents=tuple(scene.agent_specs),
             lights={light.name: light.to_light().position_m for light in lights},
+            categories=self._categories,
+            own={**self._own, "agents": own_of_agents},
         )
+
+    def _categories_now(self) -> Mapping[str, str]:
+        """Return the category of each object, those that wait among them, and part of the room."""
+        scene, described = self._scene, self._scene.world.described
+        entries = () if described is None else described.objects
+        placements = [body.placement for body in scene.world.bodies]
+        table = scene.world.categories
+        found = {one.name: table[one.category_id].name for one in placements}
+        for entry in entries:
+            if entry.name not in found:
+                found[entry.name] = entry.category or scene.library.peek_asset(entry.asset).category
+        return found
 
     def _checked(self, things: object) -> tuple[Randomisation, ...]:
         described = self._scene.world.described
@@ -207,21 +229,23 @@ class Randomiser:
 
     # -- what is changed -------------------------------------------------------------------
 
-    def _change_objects(self, values: Values) -> None:
+    def _change_objects(self, values: Values) -> Values:
+        """Bring objects to what was drawn; return it with the places that were found."""
         drawn: Mapping[str, Mapping[str, Any]] = values.get("objects", {})
         world = self._scene.world
         if drawn:
             assert world.described is not None
             arrange_drawn(self._editor, world.described, drawn)
-        for entry in values.get("added", ()):
-            place = {key: value for key, value in entry.items() if key != "orientation"}
-            pose = Pose(tuple(entry["position"]), tuple(entry["orientation"]))
-            del place["position"]
-            self._editor.spawn(place, pose)
+        values = add_drawn(self._editor, values, self._view_scene(CameraIntrinsics()).free_space)
+        for name, behaviours in values.get("behaviours", {}).items():
+            if any(body.placement.name == name for body in world.bodies):
+                move_drawn(self._editor, world.find(name), behaviours)
+        return values
 
-    def apply_materials(self, number: int) -> None:
-        """Apply the looks that were drawn for an object that has just entered."""
+    def apply_drawn(self, number: int) -> None:
+        """Apply looks and behaviours that were drawn for an object that has just entered."""
         name = self._scene.world.body(number).placement.name
+        move_drawn(self._editor, number, self._epoch.get("behaviours", {}).get(name, ()))
         for values in (self._epoch, self._frame):
             for part, keys in values.get("materials", {}).get(name, {}).items():
                 if keys:
@@ -262,6 +286,7 @@ class Randomiser:
             picture = {key: keys[key] for key in _PICTURE if key in keys}
             if picture:
                 agents.set_picture(name, spec.picture.changed(picture))
+            self._own_cameras.keep(spec, agents[name].spec)
             self._scene.announce()
 
 

@@ -14,7 +14,7 @@ from sailenv_ros.scene.randomise.randomisation import Values
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["placed_by_rules"]
+__all__ = ["look_lens", "placed_by_rules"]
 
 LOOK_PX = 160
 """Longer side of the pictures that rules look at."""
@@ -51,7 +51,7 @@ def placed_by_rules(
         keys = dict(given)
         rule = keys.pop("rule", None)
         if rule is not None and name in specs:
-            lens = _small(specs[name].intrinsics, keys.get("vertical_fov"))
+            lens = look_lens(specs[name].intrinsics, keys.get("vertical_fov"))
             views = sample_cameras(
                 view_scene(lens), rule["name"], seed=rule["seed"], settings=rule["settings"]
             )
@@ -62,7 +62,7 @@ def placed_by_rules(
     return {**values, "agents": placed}
 
 
-def _small(lens: CameraIntrinsics, fov_deg: float | None) -> CameraIntrinsics:
+def look_lens(lens: CameraIntrinsics, fov_deg: float | None = None) -> CameraIntrinsics:
     """Return a lens of the same angles with few pixels."""
     share = min(1.0, LOOK_PX / max(lens.width, lens.height))
     width, height = (max(16, round(share * size)) for size in (lens.width, lens.height))

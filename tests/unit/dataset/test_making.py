@@ -338,12 +338,18 @@ def test_verifying_finds_a_summary_that_tells_of_other_files(small: Path, tmp_pa
 
 def test_cameras_without_a_place_are_counted(tmp_path: Path) -> None:
     """A clip whose camera finds nothing to look at is left out, and the card says so."""
-    cameras = [{"type": "orbit", "object": "no such thing", "width": 32, "height": 24}]
-    path = written_recipe(tmp_path, cameras=cameras, formats=["webdataset"], clips={"train": 3})
+    (tmp_path / "bare.yaml").write_text("version: 1\nobjects: [{name: one, asset: cube}]\n")
+    path = written_recipe(
+        tmp_path,
+        scenes=[{"scene": "optical"}, {"scene": "bare.yaml"}],
+        cameras=[{"type": "orbit", "object": "red cube", "width": 32, "height": 24}],
+        formats=["webdataset"],
+        clips={"train": 4},
+    )
     made = make_dataset(load_job(path), tmp_path / "made", engine_of(1, None))
-    reason = "optical: no object and no category 'no such thing' in the scene"
-    assert (made.frames, dict(made.skipped)) == (0, {reason: 3})
-    assert f"{reason}: 3" in (tmp_path / "made" / "README.md").read_text()
+    reason = "bare.yaml: no object and no category 'red cube' in the scene"
+    assert (made.frames, dict(made.skipped)) == (2 * 3, {reason: 2})
+    assert f"{reason}: 2" in (tmp_path / "made" / "README.md").read_text()
 
 
 def test_the_card_tells_what_is_there(small: Path) -> None:

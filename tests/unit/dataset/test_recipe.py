@@ -40,6 +40,7 @@ def test_all_errors_are_told_with_their_places(tmp_path: Path) -> None:
     told = [(one.line, one.field) for one in caught.value.diagnostics]
     assert told == [
         (2, "seeds"),
+        (4, "scenes[0].scene"),
         (6, "scenes[1].seeds"),
         (7, "scenes[2]"),
         (8, "clips"),

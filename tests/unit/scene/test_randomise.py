@@ -216,3 +216,81 @@ randomise:
     assert "did you mean 'cube'" in found[10, "randomise[5].asset"]
     for name in DISTRIBUTIONS:
         assert name in found[8, "randomise[3].intensity"]
+
+
+class TestRelative:
+    """`times` and `add` change the scene's own value; the record tells by how much."""
+
+    TARGETS = RandomTargets(
+        objects=("box 1",),
+        lights={"sun": (0.0, 0.0, 3.0)},
+        agents=("eye",),
+        own={
+            "environment": {"exposure": 0.7, "ambient": (0.1, 0.2, 0.4), "sky_share": 0.9},
+            "lights": {"sun": {"intensity": 3.0, "colour": (1.0, 0.5, 0.25)}},
+            "objects": {"box 1": {"scale": (1.0, 2.0, 3.0)}},
+            "agents": {"eye": {"exposure": -0.5}},
+        },
+    )
+
+    def values(self, *entries: dict[str, Any], seed: int = 1) -> Any:
+        return sampled(things(*entries), self.TARGETS, seed=seed, index=0)
+
+    def test_the_own_value_is_changed_and_the_amount_recorded(self) -> None:
+        drawn = self.values(
+            {"name": "a", "type": "environment", "exposure": {"add": {"uniform": [-0.5, 0.5]}},
+             "ambient": {"times": {"uniform": [0.5, 2]}}},
+            {"name": "b", "type": "light", "of": "sun", "intensity": {"times": 2},
+             "colour": {"times": [1, 2, 4]}},
+            {"name": "c", "type": "object", "of": "box 1", "scale": {"times": 0.5}},
+            {"name": "d", "type": "camera", "exposure": {"add": 1}},
+        )  # fmt: skip
+        stops = drawn["relative"]["environment"]["exposure"]["add"]
+        assert -0.5 <= stops <= 0.5
+        assert drawn["environment"]["exposure"] == 0.7 + stops
+        factor = drawn["relative"]["environment"]["ambient"]["times"]
+        assert drawn["environment"]["ambient"] == [0.1 * factor, 0.2 * factor, 0.4 * factor]
+        assert drawn["lights"]["sun"] == {"intensity": 6.0, "colour": [1.0, 1.0, 1.0]}
+        assert drawn["relative"]["lights"]["sun"] == {
+            "intensity": {"times": 2.0},
+            "colour": {"times": [1.0, 2.0, 4.0]},
+        }
+        assert drawn["objects"]["box 1"]["scale"] == [0.5, 1.0, 1.5]
+        assert drawn["agents"]["eye"]["exposure"] == 0.5
+        assert json.loads(json.dumps(drawn)) == drawn
+
+    def test_what_the_key_refuses_is_drawn_again(self) -> None:
+        entry = {"name": "a", "type": "environment", "sky_share": {"add": {"uniform": [-1, 1]}}}
+        shares = [self.values(entry, seed=s)["environment"]["sky_share"] for s in range(40)]
+        assert 0.0 <= min(shares) < 0.3
+        assert 0.7 < max(shares) <= 1.0
+        never = self.values({"name": "a", "type": "environment", "sky_share": {"add": 5}})
+        assert never["environment"]["sky_share"] == 0.9
+        assert never["relative"]["environment"]["sky_share"] == {"add": 0.0}
+
+    def test_a_later_absolute_value_has_no_amount(self) -> None:
+        drawn = self.values(
+            {"name": "a", "type": "environment", "exposure": {"add": 1}},
+            {"name": "b", "type": "environment", "exposure": 2},
+        )
+        assert drawn == {"environment": {"exposure": 2.0}}
+
+    @pytest.mark.parametrize(
+        ("entry", "told"),
+        [
+            ({"exposure": {"add": [1, 2, 3]}}, "must be a number"),
+            ({"exposure": {"times": {"uniform": [2, 1]}}}, "must give uniform"),
+            ({"ambient": {"times": [1, 2]}}, "one number or three"),
+            ({"ambient": {"times": {"uniform": [1, [1, 2, 3]]}}}, "must give uniform"),
+            ({"sky_map": {"times": 2}}, "got 'times'"),
+        ],
+    )
+    def test_amounts_that_are_none_are_refused(self, entry: dict[str, Any], told: str) -> None:
+        with pytest.raises(ValueError, match=told):
+            things({"name": "a", "type": "environment", **entry})
+
+    def test_it_is_written_as_it_was_read(self) -> None:
+        spread = {"times": {"normal": [1, 0.1]}}
+        entry = {"name": "a", "type": "light", "of": "sun", "intensity": spread}
+        (thing,) = things(entry)
+        assert thing.model_dump(mode="json", exclude_defaults=True) == entry

@@ -305,3 +305,119 @@ def test_cameras_of_programs_are_drawn_too(folder: Path) -> None:
         for name in ("mine", "eye"):
             place = record["epoch"]["agents"][name]["position"]
             np.testing.assert_allclose(plain.get_pose(agent=name).position_m, place, atol=1e-12)
+
+
+RELATIVE = [
+    {"name": "stops", "type": "environment", "every": "frame",
+     "exposure": {"add": {"uniform": [-0.5, 0.5]}}},
+    {"name": "lamp", "type": "light", "of": "lamp", "every": "frame",
+     "intensity": {"times": {"log_uniform": [0.5, 2]}}},
+    {"name": "eye", "type": "camera", "of": "eye", "every": "frame", "exposure": {"add": 0.25}},
+    {"name": "size", "type": "object", "of": "desk", "scale": {"times": 0.5}},
+]  # fmt: skip
+
+
+def test_relative_values_start_from_the_files_own_in_every_frame(den: Simulation) -> None:
+    """They do not pile up from frame to frame, and the record alone makes a frame again."""
+    den.randomise(seed=4, things=RELATIVE)
+    desk = den.get_object("desk")
+    assert desk.scale == (0.5, 0.3, 0.35)
+    frames = []
+    for _ in range(4):
+        den.step(3)
+        frames.append(capture(den))
+        record = frames[-1].randomised
+        assert record is not None
+        drawn, amounts = record["frame"], record["frame"]["relative"]
+        stops = amounts["environment"]["exposure"]["add"]
+        assert drawn["environment"]["exposure"] == stops  # the scene's own is 0
+        factor = amounts["lights"]["lamp"]["intensity"]["times"]
+        assert drawn["lights"]["lamp"]["intensity"] == factor  # the scene's own is 1
+        assert drawn["agents"]["eye"]["exposure"] == 0.25
+    assert len({frame.randomised["frame"]["environment"]["exposure"] for frame in frames}) == 4  # type: ignore[index]
+    record = json.loads(json.dumps(frames[2].randomised))
+    den.randomise(record=record)
+    den.step(record["step"])
+    assert same(frames[2], capture(den))
+
+
+MOVING = [
+    {"name": "toy", "type": "spawn", "assets": ["sphere", "cone"], "count": {"uniform": [2, 4]},
+     "scale": {"uniform": [0.1, 0.2]}, "height": {"uniform": [0, 0.5]}},
+    {"name": "kite", "type": "spawn", "assets": ["cube"], "within": [[-1, -1, 1.5], [1, 1, 2]],
+     "gravity": False, "scale": 0.2, "velocity": [0.1, 0, 0],
+     "behaviours": [{"type": "rotate_rigidbody", "angular_velocity": [0, 0, 90]}]},
+    {"name": "stir", "type": "behaviour", "of": ["crate", "ball"], "choose": "one",
+     "behaviours": [{"type": "rotate_rigidbody", "angular_velocity": [0, 0, 45]},
+                    {"type": "rotate_rigidbody", "angular_velocity": [0, 0, -45]}]},
+]  # fmt: skip
+
+
+def test_spawned_objects_stand_free_and_move(den: Simulation) -> None:
+    """Each has a place of its own; what was static in the file turns, too."""
+    record = den.randomise(seed=6, things=MOVING)
+    toys = [one for one in record["epoch"]["added"] if one["name"].startswith("toy")]
+    assert 2 <= len(toys) <= 4
+    for number, one in enumerate(toys):
+        for other in toys[:number]:
+            apart = np.linalg.norm(np.subtract(one["position"][:2], other["position"][:2]))
+            assert apart > 0.5 * (one["scale"] + other["scale"])
+    assert set(record["epoch"]["behaviours"]) == {"crate", "ball"}
+    crate = den.get_object("crate").pose.rpy_deg[2]
+    first = capture(den)
+    den.step(60)
+    kite = den.get_object("kite 1")
+    turned = (kite.pose.rpy_deg[2] - record["epoch"]["added"][-1]["rotation"][2]) % 360.0
+    assert abs(turned - 22.5) < 1.0
+    assert 5.0 < abs(den.get_object("crate").pose.rpy_deg[2] - crate) < 12.0  # rubs on the floor
+    assert not same(first, capture(den))
+
+
+def test_what_moves_is_made_again_from_the_record(den: Simulation, folder: Path) -> None:
+    """The record has the places that were found; nothing is looked for again."""
+    den.randomise(seed=9, things=MOVING)
+    den.step(30)
+    frame = capture(den)
+    assert frame.randomised is not None
+    assert not any("floor" in one for one in frame.randomised["epoch"]["added"])
+    with simulation(folder, "plain", seed=1) as other:
+        other.randomise(record=json.loads(json.dumps(frame.randomised)))
+        other.step(30)
+        assert same(frame, capture(other))
+
+
+def test_an_object_for_which_there_is_no_floor_is_left_out(den: Simulation) -> None:
+    thing = {"name": "hall", "type": "spawn", "assets": ["cube"], "scale": 6}
+    record = den.randomise(seed=9, things=[thing])
+    assert record["epoch"] == {"added": [], "left_out": ["hall 1"]}
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"behaviours": [{"type": "dance"}]}, "dance"),
+        ({"behaviours": [{"type": "rotate_rigidbody", "angle": 3}]}, "angle"),
+        ({"assets": ["cuube"]}, "cuube"),
+        ({"within": [[0, 0, 1], [0, 0, 0]]}, "lowest corner"),
+        ({"within": [[0, 0, 0], [0, 0, 1]], "height": 1}, "height"),
+        ({"every": "frame"}, "every"),
+    ],
+)
+def test_spawns_that_are_none_are_told(den: Simulation, change: dict[str, Any], told: str) -> None:
+    with pytest.raises(InvalidEntry, match=told):
+        den.randomise(things=[{**MOVING[0], **change}])
+
+
+def test_what_comes_later_moves_as_it_was_drawn(tmp_path: Path) -> None:
+    """An object that appears after the beginning gets its behaviours when it comes."""
+    plain = DEN[: DEN.index("randomise:")].replace(
+        "{name: ball, asset: sphere,", "{name: ball, asset: sphere, appear: 0.1, gravity: false,"
+    )
+    (tmp_path / "late.yaml").write_text(plain, encoding="utf-8")
+    spin = {"type": "rotate_rigidbody", "angular_velocity": [0, 0, 90]}
+    thing = {"name": "spin", "type": "behaviour", "of": {"category": "sphere"}}
+    with simulation(tmp_path, "late") as made:
+        record = made.randomise(things=[{**thing, "behaviours": [spin]}])
+        assert record["epoch"] == {"behaviours": {"ball": [spin]}}
+        made.step(144)  # 0.6 s, of which it is there 0.5 s
+        assert abs(made.get_object("ball").pose.rpy_deg[2] - 45.0) < 1.0

@@ -14,8 +14,9 @@ from sailenv_ros.scene.randomise.randomisation import (
     Randomisation,
     RandomTargets,
     Values,
-    Which,
 )
+from sailenv_ros.scene.randomise.relative import DrawnNumber
+from sailenv_ros.scene.randomise.selectors import Which
 from sailenv_ros.scene.rules import at_most_one, only_beside
 from sailenv_ros.types.camera import INTRINSICS_LIMITS
 from sailenv_ros.types.picture_settings import LIMITS
@@ -56,13 +57,13 @@ class RandomCamera(Randomisation):
     settings: dict[str, Any] = Field(
         default_factory=dict, description="of the rule, those that differ from its own"
     )
-    vertical_fov: Annotated[Draw, Drawn(_Angle)] | None = optional(
+    vertical_fov: Annotated[Draw, DrawnNumber(_Angle)] | None = optional(
         "full vertical angle of view [deg]"
     )
-    exposure: Annotated[Draw, Drawn(_Stops)] | None = optional(
+    exposure: Annotated[Draw, DrawnNumber(_Stops)] | None = optional(
         "of its pictures, on top of the scene's [stops]"
     )
-    full_well: Annotated[Draw, Drawn(_Well)] | None = optional(
+    full_well: Annotated[Draw, DrawnNumber(_Well)] | None = optional(
         "of its pictures, see the keys of a picture; 0: no noise"
     )
 

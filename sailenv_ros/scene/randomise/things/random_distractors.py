@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -11,6 +10,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Number, Text, Vector, optional
 from sailenv_ros.scene.fields import LinearColour, Position, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
+from sailenv_ros.scene.randomise.random_rules import box_in_order
 from sailenv_ros.scene.randomise.randomisation import (
     EpochRandomisation,
     Pick,
@@ -26,26 +26,12 @@ _Factor = Annotated[float, Number(least=1e-3, most=1e3)]
 _Share = Annotated[float, Number(least=0.0, most=1.0)]
 
 
-def _box_in_order(entry: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Refuse a box whose highest corner is below its lowest."""
-    within = entry.get("within")
-    if not isinstance(within, list | tuple) or len(within) != 2:
-        return
-    low, high = within
-    try:
-        wrong = any(a > b for a, b in zip(low, high, strict=True))
-    except (TypeError, ValueError):
-        return
-    if wrong:
-        yield ("within",), "must be the lowest corner, then the highest"
-
-
 class RandomDistractors(EpochRandomisation):
     """Objects in the air, turned in any way."""
 
     KEY: ClassVar[str] = "added"
 
-    rules: ClassVar[tuple[Rule, ...]] = (_box_in_order,)
+    rules: ClassVar[tuple[Rule, ...]] = (box_in_order,)
 
     type: Literal["distractors"]
     assets: tuple[_Asset, ...] = Field(

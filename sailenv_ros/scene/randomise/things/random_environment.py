@@ -8,6 +8,7 @@ from sailenv_ros.scene.field_types import Number, Text, optional
 from sailenv_ros.scene.fields import Radiance
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import Pick, Randomisation, RandomTargets, Values
+from sailenv_ros.scene.randomise.relative import DrawnNumber
 from sailenv_ros.types.lights import ENVIRONMENT_LIMITS
 
 __all__ = ["RandomEnvironment"]
@@ -26,21 +27,27 @@ class RandomEnvironment(Randomisation):
     sky_map: Annotated[Draw, Drawn(_Sky)] | None = optional(
         "name of a photographed sky; empty for that of the three colours"
     )
-    exposure: Annotated[Draw, Drawn(_Stops)] | None = optional(
+    exposure: Annotated[Draw, DrawnNumber(_Stops)] | None = optional(
         "the picture is brightened by 2 to the power of it [stops]"
     )
-    sky_share: Annotated[Draw, Drawn(_Share)] | None = optional(
+    sky_share: Annotated[Draw, DrawnNumber(_Share)] | None = optional(
         "share of the sky's light that reaches the objects"
     )
-    ambient: Annotated[Draw, Drawn(Radiance)] | None = optional(
+    ambient: Annotated[Draw, DrawnNumber(Radiance, vector=True)] | None = optional(
         "light that arrives from everywhere"
     )
-    background_colour: Annotated[Draw, Drawn(Radiance)] | None = optional(
+    background_colour: Annotated[Draw, DrawnNumber(Radiance, vector=True)] | None = optional(
         "the colour for `background: colour`"
     )
-    sky_zenith: Annotated[Draw, Drawn(Radiance)] | None = optional("sky straight above")
-    sky_horizon: Annotated[Draw, Drawn(Radiance)] | None = optional("sky at the horizon")
-    sky_ground: Annotated[Draw, Drawn(Radiance)] | None = optional("below the horizon")
+    sky_zenith: Annotated[Draw, DrawnNumber(Radiance, vector=True)] | None = optional(
+        "sky straight above"
+    )
+    sky_horizon: Annotated[Draw, DrawnNumber(Radiance, vector=True)] | None = optional(
+        "sky at the horizon"
+    )
+    sky_ground: Annotated[Draw, DrawnNumber(Radiance, vector=True)] | None = optional(
+        "below the horizon"
+    )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return keys of `environment`."""

@@ -14,8 +14,9 @@ from sailenv_ros.scene.randomise.randomisation import (
     Randomisation,
     RandomTargets,
     Values,
-    Which,
 )
+from sailenv_ros.scene.randomise.relative import DrawnNumber
+from sailenv_ros.scene.randomise.selectors import Which
 from sailenv_ros.types.lights import LIGHT_LIMITS
 
 __all__ = ["RandomLight"]
@@ -31,9 +32,11 @@ class RandomLight(Randomisation):
 
     type: Literal["light"]
     of: Which = Field(description="names of lights; * and ?")
-    intensity: Annotated[Draw, Drawn(_Intensity)] | None = optional("as of a light")
-    colour: Annotated[Draw, Drawn(Radiance)] | None = optional("drawn in linear numbers")
-    indirect_multiplier: Annotated[Draw, Drawn(_Indirect)] | None = optional(
+    intensity: Annotated[Draw, DrawnNumber(_Intensity)] | None = optional("as of a light")
+    colour: Annotated[Draw, DrawnNumber(Radiance, vector=True)] | None = optional(
+        "drawn in linear numbers"
+    )
+    indirect_multiplier: Annotated[Draw, DrawnNumber(_Indirect)] | None = optional(
         "scales only the light that bounces"
     )
     offset: Annotated[Draw, Drawn(Position)] | None = optional(

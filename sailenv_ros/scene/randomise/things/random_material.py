@@ -14,8 +14,8 @@ from sailenv_ros.scene.randomise.randomisation import (
     Randomisation,
     RandomTargets,
     Values,
-    Which,
 )
+from sailenv_ros.scene.randomise.selectors import WhichObjects
 from sailenv_ros.scene.spec_materials import ALL_PARTS, MaterialName, PictureName
 
 __all__ = ["RandomMaterial"]
@@ -30,7 +30,9 @@ class RandomMaterial(Randomisation):
     KEY: ClassVar[str] = "materials"
 
     type: Literal["material"]
-    of: Which = Field(description="names of objects, `floor`, `ceiling`, `north wall` …; * and ?")
+    of: WhichObjects = Field(
+        description="names of objects, `floor`, `ceiling`, `north wall` …; * and ?; or a category"
+    )
     part: Annotated[str, Text(r"[^\x00-\x1f]{1,200}", "the name of a material")] = Field(
         default=ALL_PARTS, description="name of one of its materials; `all` for every one"
     )
@@ -59,5 +61,6 @@ class RandomMaterial(Randomisation):
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return the keys of a material for each target."""
-        drawn = self.drawn(self.of, (*targets.objects, *targets.surfaces), pick)
+        names = targets.with_categories((*targets.objects, *targets.surfaces))
+        drawn = self.drawn(self.of, names, pick)
         return {"materials": {name: {self.part: values} for name, values in drawn.items()}}

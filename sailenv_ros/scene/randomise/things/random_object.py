@@ -7,15 +7,16 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Number, Switch, Text, optional
-from sailenv_ros.scene.fields import Position
+from sailenv_ros.scene.fields import Position, Scale
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.randomisation import (
     EpochRandomisation,
     Pick,
     RandomTargets,
     Values,
-    Which,
 )
+from sailenv_ros.scene.randomise.relative import DrawnNumber
+from sailenv_ros.scene.randomise.selectors import WhichObjects
 
 __all__ = ["RandomObject"]
 
@@ -31,12 +32,12 @@ class RandomObject(EpochRandomisation):
     KEY: ClassVar[str] = "objects"
 
     type: Literal["object"]
-    of: Which = Field(description="names of objects; * and ?")
+    of: WhichObjects = Field(description="names of objects; * and ?; or {category: chair}")
     asset: Annotated[Draw, Drawn(_Asset)] | None = optional("what it is: names of the catalogue")
     there: Annotated[Draw, Drawn(_Bool)] | None = optional(
         "false takes it out, with what stands on it"
     )
-    scale: Annotated[Draw, Drawn(_Factor)] | None = optional(
+    scale: Annotated[Draw, DrawnNumber(_Factor, Scale, vector=True)] | None = optional(
         "instead of its scale: one factor for all axes"
     )
     offset: Annotated[Draw, Drawn(Position)] | None = optional(
@@ -48,4 +49,4 @@ class RandomObject(EpochRandomisation):
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return asset, there, scale, offset and turn for each object."""
-        return {"objects": self.drawn(self.of, targets.objects, pick)}
+        return {"objects": self.drawn(self.of, targets.with_categories(targets.objects), pick)}
