@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import yaml
 
+from sailenv_ros.assets import pack
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack
 from sailenv_ros.errors import AssetError
 
@@ -16,8 +16,8 @@ def test_a_file_is_parsed_again_only_when_it_has_changed(
 ) -> None:
     """Each page that connects looks for skies in all packs, and costs nobody frames."""
     parsed: list[str] = []
-    parse = yaml.safe_load
-    monkeypatch.setattr(yaml, "safe_load", lambda text: parsed.append(text) or parse(text))
+    parse = pack.from_yaml
+    monkeypatch.setattr(pack, "from_yaml", lambda text: parsed.append(text) or parse(text))
     (tmp_path / PACK_FILE).write_text("version: 1\ntitle: one\n")
     assert [AssetPack(tmp_path).content.title for _ in range(3)] == ["one"] * 3
     assert len(parsed) == 1
