@@ -52,6 +52,9 @@ NOTE = ".known"
 
 SEGMENTS = Path("/dev/shm")
 
+GONE_S = 60.0
+"""Time in which workers end: one that starts looks for its parent after its imports [s]."""
+
 RECIPE: Mapping[str, Any] = {
     "version": 1,
     "seed": 5,
@@ -196,7 +199,7 @@ class WorkProcess:
         self._segments |= set(self._mapped())
         self._process.kill()
         self._process.wait()
-        until(lambda: not self.children(), "what a killed process began to be gone", 10.0)
+        until(lambda: not self.children(), "what a killed process began to be gone", GONE_S)
 
     def children(self) -> list[int]:
         """Processes of its session that run."""
@@ -234,7 +237,7 @@ def run_to_its_end(work: Work, folder: Path, timeout_s: float = 600.0) -> Digest
     """
     with WorkProcess(work, folder) as process:
         process.wait(timeout_s)
-        until(lambda: not process.children(), "what a process began to be gone", 10.0)
+        until(lambda: not process.children(), "what a process began to be gone", GONE_S)
         left = [*process.temporary.rglob("*"), *_drafts(folder / work.made)]
         assert not left, f"left behind: {left}"
     return files_whole(work, folder)
