@@ -343,8 +343,7 @@ class MissingPackage(SailenvError, ImportError):
 
 def _shown(value: object) -> str:
     """Show a value on one short line, whatever it is."""
-    text = " ".join(repr(value).split())
-    return _shortened(text, 80)
+    return _shortened(" ".join(repr(value).split()), 80)
 
 
 def _shortened(text: str, most: int = 200) -> str:
