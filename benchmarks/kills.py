@@ -26,6 +26,7 @@ from sailenv_ros import Simulation
 from sailenv_ros.gateway import GatewayServer
 from tests.support.kill_trials import (
     WORKS,
+    Digests,
     Work,
     WorkProcess,
     files_whole,
@@ -89,7 +90,7 @@ def _moments(trials: int, duration_s: float, random: np.random.Generator) -> Ite
         yield duration_s * (number + random.random()) / trials
 
 
-def _killed(work: Work, folder: Path, moment_s: float, found: list[str]) -> dict[str, str] | None:
+def _killed(work: Work, folder: Path, moment_s: float, found: list[str]) -> Digests | None:
     """Begin a work and kill it; return what is whole, None if it ended before."""
     with WorkProcess(work, folder) as process:
         deadline = time.monotonic() + moment_s
@@ -99,10 +100,10 @@ def _killed(work: Work, folder: Path, moment_s: float, found: list[str]) -> dict
             time.sleep(0.002)
         process.kill()
         found += [f"left: {leak}" for leak in process.lasting()]
-        return dict(files_whole(work, folder))
+        return files_whole(work, folder)
 
 
-def _compare(made: dict[str, str], wanted: dict[str, str], found: list[str], when: str) -> None:
+def _compare(made: Digests, wanted: Digests, found: list[str], when: str) -> None:
     found += [
         f"{path} is not as it should be {when}"
         for path, digest in made.items()
