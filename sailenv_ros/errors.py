@@ -73,7 +73,7 @@ class InvalidRequest(SailenvError, ValueError):
         self.what = what
         self.got = got
         self.accepted = accepted
-        super().__init__(f"{what} must be {accepted}, got {_shown(got)}")
+        super().__init__(f"{_shortened(what)} must be {accepted}, got {_shown(got)}")
 
 
 class UnknownName(InvalidRequest):
@@ -125,7 +125,7 @@ class InvalidEntry(InvalidRequest):
         self.accepted = "; ".join(
             f"{field} {diagnostic}".strip() for field, diagnostic in self.diagnostics
         )
-        SailenvError.__init__(self, f"{what}: {self.accepted}")
+        SailenvError.__init__(self, f"{_shortened(what)}: {self.accepted}")
 
 
 class InvalidState(SailenvError):
@@ -343,5 +343,8 @@ class MissingPackage(SailenvError, ImportError):
 
 def _shown(value: object) -> str:
     """Show a value on one short line, whatever it is."""
-    text = " ".join(repr(value).split())
-    return text if len(text) <= 80 else text[:77] + "..."
+    return _shortened(" ".join(repr(value).split()), 80)
+
+
+def _shortened(text: str, most: int = 200) -> str:
+    return text if len(text) <= most else text[: most - 3] + "..."

@@ -12,7 +12,6 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from sailenv_ros.dataset.engine import ATTEMPTS, Engine, OnFrames, interleave_shards
@@ -24,6 +23,7 @@ from sailenv_ros.errors import RecordingError
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_with_parent
+from sailenv_ros.system.temporary_folders import temporary_folder
 
 __all__ = ["ProcessEngine", "SerialEngine", "engine_of"]
 
@@ -60,9 +60,9 @@ class ProcessEngine:
     ) -> Iterator[ShardSummary]:
         """Yield the summary of each shard."""
         # Ours, so that it goes however the workers end.
-        with TemporaryDirectory(prefix="sailenv-dataset-") as scratch:
+        with temporary_folder("sailenv-dataset-") as scratch:
             waiting = deque(interleave_shards(shards, self.workers))
-            yield from self._run_pools(job, where, scratch, waiting, on_frames)
+            yield from self._run_pools(job, where, str(scratch), waiting, on_frames)
 
     def _run_pools(
         self, job: Job, where: str, scratch: str, waiting: deque[int], on_frames: OnFrames

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from sailenv_ros.dataset.folder_storage import FolderStorage
 from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.errors import RecordingError, WriteFailed
 from sailenv_ros.extras import need
+from sailenv_ros.system.temporary_folders import temporary_folder
 
 __all__ = ["RemoteStorage", "open_storage"]
 
@@ -65,8 +65,8 @@ class RemoteStorage(Storage):
     @contextlib.contextmanager
     def staging(self, scratch: Path | None = None) -> Iterator[Path]:
         """Yield an empty folder, which goes in the end."""
-        with tempfile.TemporaryDirectory(prefix="sailenv-dataset-", dir=scratch) as made:
-            yield Path(made)
+        with temporary_folder("sailenv-dataset-", place=scratch) as made:
+            yield made
 
     def publish(self, folder: Path, paths: Sequence[str]) -> None:
         """Put files of a staging folder into their places."""

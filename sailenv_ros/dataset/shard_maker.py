@@ -10,10 +10,9 @@ import platform
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -48,6 +47,7 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
+from sailenv_ros.system.temporary_folders import temporary_folder
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
@@ -89,7 +89,10 @@ class ShardMaker:
         # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
         # of it may depend on what was seen before.
         self._stores = MeshStore(), TextureStore()
-        self._folder = TemporaryDirectory(prefix="sailenv-scenes-", dir=scratch)
+        self._temporary = ExitStack()
+        self._folder = self._temporary.enter_context(
+            temporary_folder("sailenv-scenes-", place=scratch)
+        )
         self._baked = self._recipe.light == "baked"
         self._library = SceneLibrary(baked_light=self._baked, drafts=False)
         self._paths = {
@@ -99,7 +102,7 @@ class ShardMaker:
 
     def close(self) -> None:
         """Remove what was kept for the shards."""
-        self._folder.cleanup()
+        self._temporary.close()
 
     def __enter__(self) -> ShardMaker:
         return self
@@ -115,7 +118,7 @@ class ShardMaker:
         SailenvError
             If a scene cannot be built or a file not be written.
         """
-        with self._store.part(Path(self._folder.name)) as part:
+        with self._store.part(self._folder) as part:
             summary = self.make_into(number, part.folder)
             part.note = summary.path, summary.to_json()
         return summary
@@ -326,7 +329,7 @@ class ShardMaker:
         return self._library.path(f"{PREFIX}{scene.name}:{scene.seed}")
 
     def _written(self, name: str, text: str) -> Path:
-        path = Path(self._folder.name) / name
+        path = self._folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path

@@ -106,10 +106,12 @@ class FreeSpace:
         None outside of the map.
         """
         x, y = _xy("position", position)
-        column = math.floor((x - self.origin_m[0]) / self.resolution_m)
-        row = math.floor((y - self.origin_m[1]) / self.resolution_m)
+        column = (x - self.origin_m[0]) / self.resolution_m
+        row = (y - self.origin_m[1]) / self.resolution_m
         height, width = self.cells.shape
-        return (row, column) if 0 <= row < height and 0 <= column < width else None
+        # Before rounding: what is too far away is infinitely many cells.
+        inside = 0.0 <= row < height and 0.0 <= column < width
+        return (math.floor(row), math.floor(column)) if inside else None
 
     def position_of(self, row: int, column: int) -> tuple[float, float, float]:
         """Return the middle of a cell upon the floor, in the world [m]."""

@@ -69,7 +69,7 @@ class AccessControl:
     def refusal_of_socket(self, headers: Mapping[str, str], token: str) -> str:
         """Return why a socket is refused; empty if it is not."""
         origin, host = headers.get("Origin", ""), headers.get("Host", "")
-        if urlsplit(origin).scheme not in ("http", "https") or urlsplit(origin).netloc != host:
+        if not _is_page_of(host, origin):
             return f"the origin {origin[:80]!r} is another than the page's own, {host[:80]!r}"
         return self.refusal_of_token(token)
 
@@ -78,6 +78,14 @@ class AccessControl:
         if self.token and not hmac.compare_digest(token.encode(), self.token.encode()):
             return "the address needs the token that the simulator printed when it started"
         return ""
+
+
+def _is_page_of(host: str, origin: str) -> bool:
+    try:
+        parts = urlsplit(origin)
+    except ValueError:  # brackets that are not those of an address
+        return False
+    return parts.scheme in ("http", "https") and parts.netloc == host
 
 
 def _hostname(host: str) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import itertools
 import os
-import shutil
 import tempfile
 import threading
 from collections.abc import Iterator, Sequence
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.system.temporary_folders import temporary_folder
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
     BoxShape,
@@ -189,19 +189,12 @@ def _hull_folder() -> Iterator[Path]:
     hull that comes again must have the name that it had before.
     """
     key = os.getpid(), tempfile.gettempdir()
-    with _HULL_LOCK:
-        folder = _HULL_FOLDERS.get(key)
-        try:
-            if folder is not None:
-                folder.mkdir(mode=0o700)
-        except FileExistsError:
-            folder = None  # somebody else's: it may hold anything
-        if folder is None:
-            folder = _HULL_FOLDERS[key] = Path(tempfile.mkdtemp(prefix="sailenv-hulls-"))
-        try:
-            yield folder
-        finally:
-            shutil.rmtree(folder)
+    with (
+        _HULL_LOCK,
+        temporary_folder("sailenv-hulls-", again=_HULL_FOLDERS.get(key)) as folder,
+    ):
+        _HULL_FOLDERS[key] = folder
+        yield folder
 
 
 def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:

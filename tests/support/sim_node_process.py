@@ -60,7 +60,11 @@ class NodeProcess:
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
         if ready:
-            self.await_ready()
+            try:
+                self.await_ready()
+            except BaseException:
+                self.close()  # nobody else could
+                raise
 
     @property
     def pid(self) -> int:

@@ -83,3 +83,13 @@ def test_a_pool_of_processes_gives_the_error_back() -> None:
         with pytest.raises(errors.UnknownName, match="did you mean 'depth'"):
             pool.submit(refuse).result(60)
         assert pool.submit(len, "abc").result(60) == 3
+
+
+def test_a_sentence_repeats_no_long_names() -> None:
+    """Names come from clients too, who may send a megabyte."""
+    long = "x" * 1_000_000
+    wrong = (
+        errors.InvalidRequest(f"behaviour {long!r}", long, "one of: spin"),
+        errors.InvalidEntry(f"object {long!r}", long, [("mass", "must be more than 0")]),
+    )
+    assert all(len(str(error)) < 400 for error in wrong)

@@ -13,6 +13,7 @@ from pathlib import Path
 from sailenv_ros.assets.importing import import_asset
 from sailenv_ros.errors import AssetError, InvalidRequest
 from sailenv_ros.system.files import storage_errors
+from sailenv_ros.system.temporary_folders import temporary_folder
 from sailenv_ros.types.model import Asset
 from sailenv_ros.types.validation import IDENTIFIER
 
@@ -56,10 +57,10 @@ def asset_from_upload(
     chosen, suffix = checked_upload(data, name=name, filename=filename)
     with (
         storage_errors(f"the model {filename!r}", Path(tempfile.gettempdir())),
-        tempfile.TemporaryDirectory(prefix="sailenv-upload-") as folder,
+        temporary_folder("sailenv-upload-") as folder,
     ):
         # The user's file name goes to no file system.
-        path = Path(folder) / f"{chosen}{suffix}"
+        path = folder / f"{chosen}{suffix}"
         path.write_bytes(data)
         try:
             return import_asset(

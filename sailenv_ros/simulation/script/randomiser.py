@@ -308,7 +308,7 @@ def _record(given: object) -> Mapping[str, Any]:
     if isinstance(given, str):
         try:
             record = json.loads(given)
-        except ValueError:
+        except (ValueError, RecursionError):
             raise InvalidRequest("record", given, accepted) from None
     if not isinstance(record, Mapping) or set(record) != set(_RECORD):
         raise InvalidRequest("record", given, accepted)

@@ -255,6 +255,7 @@ def test_things_of_a_call_take_the_place_of_the_scenes(folder: Path) -> None:
         {"things": "[{"},
         {"record": {}},
         {"record": "no json"},
+        {"record": "[" * 2000},
         {"record": {"seed": -1, "index": 0, "step": 0, "epoch": {}, "frame": {}}},
         {"seed": -1},
         {"index": 1.5},

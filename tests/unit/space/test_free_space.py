@@ -78,6 +78,13 @@ def test_a_rug_is_stepped_over_and_a_sill_is_not() -> None:
     assert not space.is_free((1.0, 0.0))
 
 
+def test_no_cell_is_infinitely_far_away() -> None:
+    """Not even where the number of cells to it is larger than any number."""
+    space = map_free_space(solids(FLOOR), BODY)
+    for place in ((1.7e308, 0.0), (0.0, -1.7e308)):
+        assert space.cell_of(place) is None
+
+
 def test_where_there_is_no_floor_nothing_is_known() -> None:
     """Between two floors there is a gap, which no body crosses."""
     left = BoxShape(half_extents_m=(0.5, 1.0, 0.1), centre_m=(-1.0, 0.0, -0.1))

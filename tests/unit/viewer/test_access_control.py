@@ -32,7 +32,14 @@ def test_a_socket_of_another_site_is_refused() -> None:
     """Only the page that came from the same host and port may open a socket."""
     host = {"Host": "localhost:8090"}
     assert HERE.refusal_of_socket({**host, "Origin": "http://localhost:8090"}, "") == ""
-    for origin in ("http://evil.example", "http://localhost:3000", "null", "file://", ""):
+    for origin in (
+        "http://evil.example",
+        "http://localhost:3000",
+        "null",
+        "file://",
+        "",
+        "http://[",
+    ):
         assert "origin" in HERE.refusal_of_socket({**host, "Origin": origin}, "")
     assert "origin" in HERE.refusal_of_socket(host, "")
 

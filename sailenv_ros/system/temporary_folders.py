@@ -1,0 +1,96 @@
+"""Temporary folders that do not outlive their process for long, however it ends.
+
+A folder's maker holds a lock on it. One that a killed process left is locked by nobody, and is
+removed by whoever makes the next of that kind.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+__all__ = ["temporary_folder"]
+
+_HELD = ".held"
+"""End of the names of such folders: others are not known to be locked while they are in use."""
+
+
+@contextmanager
+def temporary_folder(
+    prefix: str, *, place: Path | None = None, again: Path | None = None
+) -> Iterator[Path]:
+    """Yield an empty folder that is gone afterwards.
+
+    Parameters
+    ----------
+    prefix : str
+        How its name begins; those of killed processes that begin so are removed.
+    place : Path or None
+        Folder that it is made in; None means that of temporary files.
+    again : Path or None
+        Folder of an earlier call, whose name it gets if that is free.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made.
+    """
+    parent = Path(tempfile.gettempdir()) if place is None else place
+    _remove_abandoned(parent, prefix)
+    folder, lock = _made(parent, prefix, again)
+    try:
+        yield folder
+    finally:
+        # In this order: what is not locked may be removed by others.
+        shutil.rmtree(folder, ignore_errors=True)
+        os.close(lock)
+
+
+def _made(parent: Path, prefix: str, again: Path | None) -> tuple[Path, int]:
+    while True:
+        folder = again
+        try:
+            if folder is not None:
+                folder.mkdir(mode=0o700)
+        except FileExistsError:
+            folder = None  # somebody else's: it may hold anything
+        if folder is None:
+            folder = Path(tempfile.mkdtemp(prefix=prefix, suffix=_HELD, dir=parent))
+        # Another one may take it for abandoned until it is locked.
+        with contextlib.suppress(FileNotFoundError):
+            lock = _opened(folder)
+            with contextlib.suppress(OSError):  # a file system without locks: nobody removes it
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            if _is_there(folder, lock):
+                return folder, lock
+            os.close(lock)
+
+
+def _remove_abandoned(parent: Path, prefix: str) -> None:
+    for folder in parent.glob(f"{prefix}*{_HELD}"):
+        # Others' and links cannot be opened, those in use not be locked.
+        with contextlib.suppress(OSError):
+            lock = _opened(folder)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if os.fstat(lock).st_uid == os.getuid():
+                    shutil.rmtree(folder, ignore_errors=True)
+            finally:
+                os.close(lock)
+
+
+def _opened(folder: Path) -> int:
+    return os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+
+
+def _is_there(folder: Path, lock: int) -> bool:
+    try:
+        return os.path.samestat(os.lstat(folder), os.fstat(lock))
+    except FileNotFoundError:
+        return False
