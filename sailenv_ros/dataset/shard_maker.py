@@ -35,6 +35,8 @@ from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.cpu.texture_store import TextureStore
+from sailenv_ros.render.scene.reflection_store import ReflectionStore
+from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
@@ -75,9 +77,10 @@ class ShardMaker:
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
-        # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
-        # of it may depend on what was seen before.
+        # What is drawn of furniture serves all scenes that have it, and what a room mirrors all
+        # that are equal to it. Other light does not: it may depend on what was seen before.
         self._stores = MeshStore(), TextureStore()
+        self._reflections: ReflectionStore[Share] = ReflectionStore()
         self._folder = TemporaryDirectory(prefix="sailenv-scenes-", dir=scratch)
         self._baked = self._recipe.light == "baked"
         self._library = SceneLibrary(baked_light=self._baked, drafts=False)
@@ -264,7 +267,7 @@ class ShardMaker:
         core = SynchronousSimulation(
             self._library,
             self._path(first.scene),
-            NativeRenderer(table=PartTable(*self._stores)),
+            NativeRenderer(table=PartTable(*self._stores), reflections=self._reflections),
             mode="lockstep",
             real_time_factor=1.0,
             seed=int(random.integers(2**31)),

@@ -74,9 +74,17 @@ class _Place:
 
 
 class Relighter:
-    """Follows one simulation; used by one thread."""
+    """Follows one simulation; used by one thread.
+
+    Attributes
+    ----------
+    beforehand : bool
+        True prepares a scene for moves on a thread of its own, so that the first one finds
+        everything ready; False when something moves first, if anything does. Light is the same.
+    """
 
     def __init__(self) -> None:
+        self.beforehand = True
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
         self._preparing: Future[BakedScene] | None = None
@@ -137,7 +145,7 @@ class Relighter:
         if wanted:
             self._rendered += 1
             soon = not lockstep or self._rendered > READY_FRAMES
-            if soon and self._scene is None and self._preparing is None:
+            if self.beforehand and soon and self._scene is None and self._preparing is None:
                 # Beside the frames, so that the first move finds everything ready.
                 self._preparing = self._background().submit(_scene_of, self._original, 1)
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
