@@ -16,12 +16,15 @@ if TYPE_CHECKING:
     from sailenv_ros.dataset.opening import open_dataset as open
     from sailenv_ros.dataset.reader import Dataset, DatasetFrame
     from sailenv_ros.dataset.samples import DatasetSamples
+    from sailenv_ros.dataset.streaming import DatasetStream, stream_dataset
+    from sailenv_ros.dataset.streaming import stream_dataset as stream
     from sailenv_ros.dataset.verifying import Difference, verify_dataset
 
 __all__ = [
     "Dataset",
     "DatasetFrame",
     "DatasetSamples",
+    "DatasetStream",
     "Difference",
     "Job",
     "MadeDataset",
@@ -33,6 +36,8 @@ __all__ = [
     "make_dataset",
     "open",
     "open_dataset",
+    "stream",
+    "stream_dataset",
     "verify_dataset",
 ]
 
@@ -43,12 +48,13 @@ _HOMES = {
     "opening": ("open_dataset",),
     "reader": ("Dataset", "DatasetFrame"),
     "samples": ("DatasetSamples",),
+    "streaming": ("DatasetStream", "stream_dataset"),
     "verifying": ("Difference", "verify_dataset"),
 }
 
 
 def __getattr__(name: str) -> Any:
-    wanted = "open_dataset" if name == "open" else name
+    wanted = {"open": "open_dataset", "stream": "stream_dataset"}.get(name, name)
     for module, names in _HOMES.items():
         if wanted in names:
             value = getattr(importlib.import_module(f"sailenv_ros.dataset.{module}"), wanted)

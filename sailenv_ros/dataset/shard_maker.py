@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -46,7 +46,20 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
 
-__all__ = ["ShardMaker"]
+__all__ = ["FrameSink", "ShardMaker"]
+
+
+class FrameSink(Protocol):
+    """Takes the frames of a shard, clip by clip; what it raises ends the work."""
+
+    def begin_clip(self, clip: Clip) -> None:
+        """Begin with the frames of a clip."""
+
+    def add(self, camera: str, frame: Frame) -> None:
+        """Take the next frame of a camera."""
+
+    def end_clip(self) -> None:
+        """End the clip: no object of its frames can be drawn alone from now on."""
 
 
 class ShardMaker:
@@ -55,7 +68,8 @@ class ShardMaker:
     Parameters
     ----------
     job : Job
-    storage : Storage
+    storage : Storage or None
+        None for who takes frames alone, see `take`.
     on_frame : callable
         Called after each frame.
     scratch : Path or None
@@ -65,7 +79,7 @@ class ShardMaker:
     def __init__(
         self,
         job: Job,
-        storage: Storage,
+        storage: Storage | None,
         on_frame: Callable[[], None] = lambda: None,
         *,
         scratch: Path | None = None,
@@ -73,7 +87,7 @@ class ShardMaker:
         self._job = job
         self._recipe = job.recipe
         self._plan = ShardPlan(job.recipe)
-        self._store = ResumableStore(storage, job.identity)
+        self._store = None if storage is None else ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
@@ -107,6 +121,7 @@ class ShardMaker:
         SailenvError
             If a scene cannot be built or a file not be written.
         """
+        assert self._store is not None
         with self._store.part(Path(self._folder.name)) as part:
             summary = self.make_into(number, part.folder)
             part.note = summary.path, summary.to_json()
@@ -117,11 +132,8 @@ class ShardMaker:
         began = time.monotonic()
         shard = self._plan.shard(number)
         writer = ShardWriter(folder, self._recipe, shard)
-        skipped: Counter[str] = Counter()
-        frames = 0
         try:
-            for group in clip_groups(shard, self._recipe.clip.per_scene):
-                frames += self._take(group, writer, skipped)
+            frames, skipped = self.take(number, writer)
             writer.finish()
         except BaseException:
             writer.close()
@@ -143,9 +155,17 @@ class ShardMaker:
             },
         )
 
+    def take(self, number: int, sink: FrameSink) -> tuple[int, Counter[str]]:
+        """Hand all frames of a shard on; return how many, and the clips that could not be made."""
+        skipped: Counter[str] = Counter()
+        frames = 0
+        for group in clip_groups(self._plan.shard(number), self._recipe.clip.per_scene):
+            frames += self._take(group, sink, skipped)
+        return frames, skipped
+
     # -- one scene ---------------------------------------------------------------------------
 
-    def _take(self, group: tuple[Clip, ...], writer: ShardWriter, skipped: Counter[str]) -> int:
+    def _take(self, group: tuple[Clip, ...], writer: FrameSink, skipped: Counter[str]) -> int:
         """Take all clips of a group from its scene; return how many frames they have."""
         recipe = self._recipe
         frames = 0
@@ -174,7 +194,7 @@ class ShardMaker:
         return frames
 
     def _take_clip(
-        self, tracks: dict[str, Track | None], core: SynchronousSimulation, writer: ShardWriter
+        self, tracks: dict[str, Track | None], core: SynchronousSimulation, writer: FrameSink
     ) -> int:
         recipe = self._recipe
         for camera in recipe.cameras:

@@ -97,7 +97,7 @@ class ShardWriter:
                     formats[entry] = kind(self._folder / entry / clip.split / name)
                     formats[entry].flow = self._recipe.flow
             self._sequences[camera.name] = _Sequence(
-                name, clip.number * cameras + place, formats, {one: [] for one in formats}
+                name, clip.sequence(place, cameras), formats, {one: [] for one in formats}
             )
 
     def add(self, camera: str, frame: Frame) -> None:

@@ -19,12 +19,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
-from sailenv_ros.dataset.formats.coco_rle import amodal_segmentation
 from sailenv_ros.dataset.formats.data_files import discard_drafts, open_draft
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
-from sailenv_ros.dataset.formats.object_records import object_record
+from sailenv_ros.dataset.formats.object_records import told_objects
 from sailenv_ros.dataset.formats.tar_files import Content, TarWriter
 from sailenv_ros.frame.pictures.codecs import encode_png
 
@@ -64,15 +62,7 @@ class WebDatasetExport(DatasetFormat):
         }
         left_out: dict[str, int] = {}
         if frame.info is not None and "instance" in frame.views:
-            found = annotated_objects(sample, "WebDataset")
-            objects = [object_record(found.table, row) for row in range(len(found.table))]
-            if found.masks is not None:
-                size = (lens.height, lens.width)
-                for row, one in enumerate(objects):
-                    masks, table = found.masks, found.table
-                    one["amodal_segmentation"] = amodal_segmentation(masks, table, row, size)
-            record["objects"] = objects
-            left_out = dict(found.left_out)
+            record["objects"], left_out = told_objects(sample, "WebDataset")
         tar.append(f"{name}.json", [json.dumps(record).encode()])
         return WriteResult(written={"samples": 1}, left_out=left_out)
 
