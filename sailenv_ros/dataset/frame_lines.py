@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 from sailenv_ros.dataset.formats.dataset_format import Sample
 from sailenv_ros.dataset.formats.object_records import told_objects
+from sailenv_ros.dataset.formats.view_files import as_kept
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.reader import DatasetFrame
 from sailenv_ros.dataset.shard_maker import ShardMaker
@@ -63,6 +64,10 @@ class _Frames:
         # What files do not keep is not here either, so that nobody comes to need it.
         plain = replace(
             frame,
+            views={
+                view: as_kept(view, values, self._recipe.compression_of_views.get(view))
+                for view, values in frame.views.items()
+            },
             camera=Camera(intrinsics=frame.camera.intrinsics, pose=frame.camera.pose),
             info=None,
             states=None,

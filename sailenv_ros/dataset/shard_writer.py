@@ -79,6 +79,7 @@ class ShardWriter:
             if not kind.is_sequence or kind.has_sequences:
                 made = self._own[name] = kind(format_folder(folder, kind, name, shard.split))
                 made.part, made.flow = shard.number, recipe.flow
+                made.compression = recipe.compression_of_views
 
     def begin_clip(self, clip: Clip) -> None:
         """Begin with the frames of a clip."""
