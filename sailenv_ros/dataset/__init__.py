@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from sailenv_ros.dataset.engines import engine_of
     from sailenv_ros.dataset.job import Job, RecipeError, load_job, load_recipe
     from sailenv_ros.dataset.making import MadeDataset, Progress, make_dataset
-    from sailenv_ros.dataset.opening import open_dataset
+    from sailenv_ros.dataset.opening import open_dataset, stream_dataset
     from sailenv_ros.dataset.opening import open_dataset as open
+    from sailenv_ros.dataset.opening import stream_dataset as stream
     from sailenv_ros.dataset.reader import Dataset, DatasetFrame
     from sailenv_ros.dataset.samples import DatasetSamples
-    from sailenv_ros.dataset.streaming import DatasetStream, stream_dataset
-    from sailenv_ros.dataset.streaming import stream_dataset as stream
+    from sailenv_ros.dataset.streaming import DatasetStream
     from sailenv_ros.dataset.verifying import Difference, verify_dataset
 
 __all__ = [
@@ -45,10 +45,10 @@ _HOMES = {
     "engines": ("engine_of",),
     "job": ("Job", "RecipeError", "load_job", "load_recipe"),
     "making": ("MadeDataset", "Progress", "make_dataset"),
-    "opening": ("open_dataset",),
+    "opening": ("open_dataset", "stream_dataset"),
     "reader": ("Dataset", "DatasetFrame"),
     "samples": ("DatasetSamples",),
-    "streaming": ("DatasetStream", "stream_dataset"),
+    "streaming": ("DatasetStream",),
     "verifying": ("Difference", "verify_dataset"),
 }
 

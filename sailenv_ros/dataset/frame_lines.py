@@ -39,6 +39,7 @@ class _Frames:
 
     def __init__(self, job: Job, put: Callable[[DatasetFrame], None]) -> None:
         self._recipe = job.recipe
+        self._rules = job.recipe.annotation_rules
         self._put = put
         self._places = {one.name: place for place, one in enumerate(job.recipe.cameras)}
         self._clip: Clip | None = None
@@ -57,7 +58,7 @@ class _Frames:
         sequence = self._clip.sequence(place, len(self._places))
         number = sequence * self._recipe.clip.frames + time
         objects, _ = (
-            told_objects(Sample(number=number, frame=frame), "a stream")
+            told_objects(Sample(number=number, frame=frame, rules=self._rules), "a stream")
             if "instance" in frame.views
             else ([], {})
         )

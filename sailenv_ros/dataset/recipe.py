@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 from pydantic import Field
 
 from sailenv_ros.authoring.room_rules.rule_files import room_kinds
+from sailenv_ros.dataset.formats.annotation_rules import AnnotationRules
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.dataset.formats.view_files import COMPRESSIONS, Compression, compression_fault
@@ -151,6 +152,32 @@ def _clips_above_zero(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | in
         yield ("clips",), "must have at least one clip in one split"
 
 
+def _no_stuff_wanted(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    stuff, wanted = entry.get("stuff"), entry.get("categories")
+    if isinstance(stuff, list | tuple) and isinstance(wanted, list | tuple):
+        for index, name in enumerate(wanted):
+            if name in stuff:
+                yield ("categories", index), f"{name} is stuff; name it in one of both"
+
+
+class AnnotationRecipe(SceneModel):
+    """Objects that are annotated."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (_no_stuff_wanted,)
+
+    least_pixels: Annotated[int, Number(least=1, most=2**31 - 1, whole=True)] = Field(
+        default=1, description="objects of which fewer are visible are left out"
+    )
+    categories: tuple[str, ...] = Field(
+        default=(), description="objects of other categories are left out; all if left out"
+    )
+    stuff: tuple[str, ...] = Field(
+        default=(),
+        description="categories that are no objects, such as wall, floor and ceiling: in none of "
+        "the annotations but coco's panoptic ones, one segment each",
+    )
+
+
 def _compressions_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
     """Return which views cannot be compressed so, are not made or named twice."""
     listed, formats = entry.get("compression") or (), entry.get("formats", ())
@@ -238,6 +265,9 @@ class DatasetRecipe(SceneModel):
     formats: tuple[Annotated[str, Choice(tuple(FORMATS))], ...] = Field(
         min_length=1, description="what is written, each into a folder of its own"
     )
+    annotations: AnnotationRecipe = Field(
+        default_factory=AnnotationRecipe, description="which objects are annotated"
+    )
     compression: tuple[CompressionRecipe, ...] = Field(
         default=(),
         max_length=len(RENDERED_VIEWS),
@@ -252,3 +282,8 @@ class DatasetRecipe(SceneModel):
     def compression_of_views(self) -> dict[str, Compression]:
         """How views are compressed, by their names; others are not."""
         return {view: one.kind for one in self.compression for view in one.views}
+
+    @property
+    def annotation_rules(self) -> AnnotationRules:
+        """Which objects are annotated, as formats take it."""
+        return AnnotationRules(**self.annotations.model_dump())

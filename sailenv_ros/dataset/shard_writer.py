@@ -146,6 +146,7 @@ class ShardWriter:
             following=following,
             sequence=sequence.name,
             sequence_number=sequence.number + 1,
+            rules=self._recipe.annotation_rules,
         )
         kept: dict[str, Any] = {}
         for name, made in sequence.formats.items():

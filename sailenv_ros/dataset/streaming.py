@@ -6,14 +6,13 @@ import contextlib
 import os
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from pathlib import Path
 from typing import Any, Literal
 
 from sailenv_ros.dataset.frame_lines import FrameLine
-from sailenv_ros.dataset.job import Job, load_job
+from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.reader import DatasetFrame
 from sailenv_ros.dataset.samples import SampleFormat, check_format, sample_of
 from sailenv_ros.dataset.shard_plan import ShardPlan
@@ -22,10 +21,7 @@ from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_with_parent
 
-__all__ = ["DatasetStream", "stream_dataset"]
-
-AHEAD = 8
-"""Frames that each worker makes before they are taken."""
+__all__ = ["DatasetStream"]
 
 
 class DatasetStream:
@@ -70,7 +66,7 @@ class DatasetStream:
         *,
         format: Literal["frame"] | SampleFormat = "frame",
         workers: int = 1,
-        ahead: int = AHEAD,
+        ahead: int = 8,
     ) -> None:
         if split and split not in job.recipe.clips.by_name:
             raise UnknownName("split", split, job.recipe.clips.by_name)
@@ -108,14 +104,14 @@ class DatasetStream:
                 return _part(shards, worker.id, worker.num_workers)
         return shards
 
-    def _alone(self, shards: Sequence[int]) -> Iterator[DatasetFrame]:
+    def _alone(self, shards: Sequence[int]) -> Generator[DatasetFrame, None, None]:
         line = FrameLine(self.job, shards, self.ahead)
         try:
             yield from line
         finally:
             line.close()
 
-    def _by_processes(self, shards: Sequence[int]) -> Iterator[DatasetFrame]:
+    def _by_processes(self, shards: Sequence[int]) -> Generator[DatasetFrame, None, None]:
         context = get_context("spawn")
         count = max(1, min(self.workers, len(shards)))
         threads = max(1, (os.cpu_count() or 1) // count)
@@ -143,34 +139,6 @@ class DatasetStream:
                     process.kill()
                     process.join()
                 process.close()
-
-
-def stream_dataset(
-    recipe: str | Path | Job,
-    split: str = "",
-    *,
-    format: Literal["frame"] | SampleFormat = "frame",
-    workers: int = 1,
-    ahead: int = AHEAD,
-) -> DatasetStream:
-    """Return the frames of a recipe, without files; see `DatasetStream`.
-
-    With ``format="torch"`` it is a PyTorch `IterableDataset`, for a `DataLoader`.
-
-    Raises
-    ------
-    RecipeError
-        If the recipe's file has errors.
-    """
-    job = recipe if isinstance(recipe, Job) else load_job(Path(recipe))
-    kind = DatasetStream
-    if format == "torch":
-        check_format(format)
-        # Its base class is PyTorch's, which takes long to import.
-        from sailenv_ros.dataset.torch_streams import TorchStream
-
-        kind = TorchStream
-    return kind(job, split, format=format, workers=workers, ahead=ahead)
 
 
 def _part(shards: Sequence[int], worker: int, workers: int) -> list[int]:

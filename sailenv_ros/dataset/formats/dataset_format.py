@@ -12,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, Literal, TypeAlias
 
+from sailenv_ros.dataset.formats.annotation_rules import ALL_OBJECTS, AnnotationRules
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.scene_info import SceneInfo
@@ -38,6 +39,8 @@ class Sample:
         Name of what it is a part of, where a data set has several sequences; else empty.
     sequence_number : int or None
         Of that, from 1; None for frames of one recording, whose epochs are counted.
+    rules : AnnotationRules
+        Which objects are annotated.
     """
 
     number: int
@@ -47,6 +50,7 @@ class Sample:
     following: Frame | None = None
     sequence: str = ""
     sequence_number: int | None = None
+    rules: AnnotationRules = ALL_OBJECTS
 
     @property
     def stem(self) -> str:

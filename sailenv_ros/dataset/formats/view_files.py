@@ -99,6 +99,7 @@ def decoded(view: str, ending: str, data: bytes) -> NDArray[Any]:
     ValueError, OSError, KeyError
         If it is something else.
     """
+    values: NDArray[Any]
     if ending == "png":
         values = _from_png(view, data)
     elif ending == "npy":
