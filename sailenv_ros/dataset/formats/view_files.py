@@ -112,7 +112,9 @@ def decoded(view: str, ending: str, data: bytes) -> NDArray[Any]:
     else:
         with np.load(io.BytesIO(data), allow_pickle=False) as file:
             values = file[view]
-    return values.astype(VIEWS[view].dtype) if values.dtype == np.float16 else values
+    if values.dtype == np.float16:
+        return values.astype(VIEWS[view].dtype)
+    return values
 
 
 def as_kept(view: str, values: NDArray[Any], kind: Compression | None) -> NDArray[Any]:
@@ -140,8 +142,10 @@ def _from_png(view: str, data: bytes) -> NDArray[Any]:
     if spec.png_per_unit is not None:
         # 0 stands for what was not hit, or does not fit.
         distance = picture.astype(spec.dtype) / spec.dtype.type(spec.png_per_unit)
-        return np.where(picture == 0, spec.dtype.type(np.inf), distance)
-    return np.asarray(picture > 0) if spec.dtype == np.bool_ else picture
+        return np.asarray(np.where(picture == 0, spec.dtype.type(np.inf), distance))
+    if spec.dtype == np.bool_:
+        return np.asarray(picture > 0)
+    return picture
 
 
 def _from_npy(view: str, data: bytes) -> NDArray[Any]:
