@@ -52,6 +52,23 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("--seed", type=int, default=0, help="of the split; default: 0")
     parser.add_argument(
+        "--least-pixels",
+        type=int,
+        default=1,
+        metavar="N",
+        help="leave objects out of annotations of which fewer pixels are visible",
+    )
+    parser.add_argument(
+        "--categories", nargs="+", default=(), metavar="NAME", help="annotate these alone"
+    )
+    parser.add_argument(
+        "--stuff",
+        nargs="+",
+        default=(),
+        metavar="NAME",
+        help="categories that are no objects, e.g. wall floor ceiling; coco tells them apart",
+    )
+    parser.add_argument(
         "--resume", action="store_true", help="go on with an export that was broken off"
     )
 
@@ -59,6 +76,7 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the data sets; 0 if all is well."""
     from sailenv_ros.dataset.formats import Splits, export
+    from sailenv_ros.dataset.formats.annotation_rules import AnnotationRules
 
     def tell(done: int, of: int) -> None:
         if sys.stderr.isatty():
@@ -72,6 +90,11 @@ def run(args: argparse.Namespace) -> int:
         agent=args.agent,
         splits=splits,
         flow=args.flow,
+        rules=AnnotationRules(
+            least_pixels=args.least_pixels,
+            categories=tuple(args.categories),
+            stuff=tuple(args.stuff),
+        ),
         resume=args.resume,
         on_frame=tell,
     )

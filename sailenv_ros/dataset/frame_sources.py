@@ -11,14 +11,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
+from sailenv_ros.dataset.formats.view_files import ENDINGS, decoded
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.shard_plan import ShardPlan
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.frame.pictures.codecs import decode_picture
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import VIEWS
@@ -88,10 +85,10 @@ class _TarSource(FrameSource):
                 told = _told(_read(file, places[f"{name}.json"]), objects=objects)
                 views = {}
                 for view in VIEWS:
-                    for ending, decode in (("png", _from_png), ("npy", _from_npy)):
+                    for ending in ENDINGS:
                         place = places.get(f"{name}.{view}.{ending}")
                         if place is not None:
-                            views[view] = decode(view, _read(file, place))
+                            views[view] = decoded(view, ending, _read(file, place))
             frame = Frame(
                 agent=told["agent"],
                 scene=told["scene"],
@@ -168,20 +165,3 @@ def _told(data: bytes, *, objects: bool) -> dict[str, Any]:
     end = -1 if objects else data.rfind(b', "objects": [')
     told: dict[str, Any] = json.loads(data if end < 0 else data[:end] + b"}")
     return told
-
-
-def _from_png(view: str, data: bytes) -> NDArray[Any]:
-    picture = decode_picture(data)
-    if VIEWS[view].dtype == np.bool_:
-        return np.asarray(picture > 0)
-    return picture
-
-
-def _from_npy(view: str, data: bytes) -> NDArray[Any]:
-    # np.load copies piece by piece, which takes as long as all the rest for a small picture.
-    file = io.BytesIO(data)
-    if np.lib.format.read_magic(file) != (1, 0):
-        raise ValueError(f"the view {view} is not an array of version 1.0")
-    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
-    values = np.frombuffer(data, dtype, offset=file.tell())
-    return values.reshape(shape, order="F" if in_columns else "C")

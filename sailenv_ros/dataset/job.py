@@ -66,6 +66,7 @@ class Job:
     @property
     def head(self) -> dict[str, Any]:
         """Everything that decides on the bytes of the data set, as JSON holds it."""
+        has_zstd = any("zstd" in one.kind for one in self.recipe.compression)
         return {
             "recipe": self.recipe.model_dump(mode="json", exclude_defaults=True),
             "sailenv_ros": __version__,
@@ -75,6 +76,7 @@ class Job:
             "generation": self.generation,
             "numpy": importlib.metadata.version("numpy"),
             "opencv": importlib.metadata.version("opencv-python-headless"),
+            **({"zstandard": importlib.metadata.version("zstandard")} if has_zstd else {}),
         }
 
     @property

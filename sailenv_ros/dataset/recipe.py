@@ -12,8 +12,10 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 from pydantic import Field
 
 from sailenv_ros.authoring.room_rules.rule_files import room_kinds
+from sailenv_ros.dataset.formats.annotation_rules import AnnotationRules
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.formats.splits import SPLITS
+from sailenv_ros.dataset.formats.view_files import COMPRESSIONS, Compression, compression_fault
 from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector, optional
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
@@ -21,7 +23,7 @@ from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.rules import distinct, distinct_values
 from sailenv_ros.types.agents import MAX_RATE_HZ
 from sailenv_ros.types.light_choice import STEADY_LIGHTS, SteadyLight
-from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
+from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS, VIEWS
 
 __all__ = ["ClipRecipe", "DatasetRecipe", "SceneRecipe", "ShardRecipe", "SplitSizes"]
 
@@ -150,6 +152,70 @@ def _clips_above_zero(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | in
         yield ("clips",), "must have at least one clip in one split"
 
 
+def _no_stuff_wanted(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    stuff, wanted = entry.get("stuff"), entry.get("categories")
+    if isinstance(stuff, list | tuple) and isinstance(wanted, list | tuple):
+        for index, name in enumerate(wanted):
+            if name in stuff:
+                yield ("categories", index), f"{name} is stuff; name it in one of both"
+
+
+class AnnotationRecipe(SceneModel):
+    """Objects that are annotated."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (_no_stuff_wanted,)
+
+    least_pixels: Annotated[int, Number(least=1, most=2**31 - 1, whole=True)] = Field(
+        default=1, description="objects of which fewer are visible are left out"
+    )
+    categories: tuple[str, ...] = Field(
+        default=(), description="objects of other categories are left out; all if left out"
+    )
+    stuff: tuple[str, ...] = Field(
+        default=(),
+        description="categories that are no objects, such as wall, floor and ceiling: in none of "
+        "the annotations but coco's panoptic ones, one segment each",
+    )
+
+
+def _compressions_fit(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Return which views cannot be compressed so, are not made or named twice."""
+    listed, formats = entry.get("compression") or (), entry.get("formats", ())
+    views = entry.get("views", FIVE_VIEWS)
+    if not all(isinstance(one, list | tuple) for one in (listed, formats, views)):
+        return
+    known = [name for name in formats if isinstance(name, str) and name in FORMATS]
+    if listed and known and not any(format_class(name).can_compress for name in known):
+        able = ", ".join(name for name in FORMATS if format_class(name).can_compress)
+        yield ("compression",), f"is known to the format {able} alone"
+    seen: set[str] = set()
+    for index, one in enumerate(listed):
+        named = one.get("views") if isinstance(one, Mapping) else None
+        kind = one.get("kind") if isinstance(one, Mapping) else None
+        for place, view in enumerate(named if isinstance(named, list | tuple) else ()):
+            if view not in VIEWS or kind not in COMPRESSIONS:
+                continue
+            problem = compression_fault(view, str(kind))
+            if view not in views:
+                problem = f"{view} is not among the views"
+            elif view in seen:
+                problem = f"{view} is named twice"
+            if problem:
+                yield ("compression", index, "views", place), problem
+            seen.add(view)
+
+
+class CompressionRecipe(SceneModel):
+    """Files of some views, in the format webdataset."""
+
+    views: tuple[Annotated[str, Choice(RENDERED_VIEWS)], ...] = Field(
+        min_length=1, description="which views"
+    )
+    kind: Annotated[Compression, Choice(tuple(COMPRESSIONS))] = Field(
+        description="; ".join(f"{name}: {text}" for name, text in COMPRESSIONS.items())
+    )
+
+
 class DatasetRecipe(SceneModel):
     """A data set, as its author wrote it down."""
 
@@ -158,6 +224,7 @@ class DatasetRecipe(SceneModel):
         distinct_values("views"),
         distinct_values("formats"),
         _formats_fit,
+        _compressions_fit,
         _splits_have_scenes,
         _clips_above_zero,
     )
@@ -198,7 +265,25 @@ class DatasetRecipe(SceneModel):
     formats: tuple[Annotated[str, Choice(tuple(FORMATS))], ...] = Field(
         min_length=1, description="what is written, each into a folder of its own"
     )
+    annotations: AnnotationRecipe = Field(
+        default_factory=AnnotationRecipe, description="which objects are annotated"
+    )
+    compression: tuple[CompressionRecipe, ...] = Field(
+        default=(),
+        max_length=len(RENDERED_VIEWS),
+        description="how webdataset writes some views; others are kept exactly",
+    )
     flow: Annotated[FlowChoice, Choice(get_args(FlowChoice))] = Field(
         default="forward", description="of kitti and sintel: which flow is written"
     )
     shard: ShardRecipe = Field(default_factory=ShardRecipe, description="how the work is cut")
+
+    @property
+    def compression_of_views(self) -> dict[str, Compression]:
+        """How views are compressed, by their names; others are not."""
+        return {view: one.kind for one in self.compression for view in one.views}
+
+    @property
+    def annotation_rules(self) -> AnnotationRules:
+        """Which objects are annotated, as formats take it."""
+        return AnnotationRules(**self.annotations.model_dump())

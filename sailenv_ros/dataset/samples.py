@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -13,7 +13,7 @@ from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.extras import need
 from sailenv_ros.types.views import VIEWS, ViewSpec
 
-__all__ = ["DatasetSamples", "SampleFormat"]
+__all__ = ["DatasetSamples", "SampleFormat", "check_format", "sample_of"]
 
 SampleFormat: TypeAlias = Literal["numpy", "torch"]
 
@@ -48,10 +48,7 @@ class DatasetSamples(Sequence[Sample]):
     """
 
     def __init__(self, dataset: Dataset, format: SampleFormat) -> None:
-        if format not in get_args(SampleFormat):
-            raise UnknownName("format", format, ("frame", *get_args(SampleFormat)))
-        if format == "torch":
-            need("torch", "the format 'torch'")
+        check_format(format)
         self.dataset = dataset
         self.format = format
 
@@ -61,7 +58,8 @@ class DatasetSamples(Sequence[Sample]):
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
-        return self._sample(self.dataset.frame_at(index, objects=False))
+        one = self.dataset.frame_at(index, objects=False)
+        return sample_of(one, self.dataset.recipe.views, self.format, self.dataset.folder)
 
     def __iter__(self) -> Iterator[Sample]:
         return (self[number] for number in range(len(self)))
@@ -76,30 +74,50 @@ class DatasetSamples(Sequence[Sample]):
     def __exit__(self, *exc: object) -> None:
         self.close()
 
-    def _sample(self, one: DatasetFrame) -> Sample:
-        frame, views = one.frame, self.dataset.recipe.views
-        missing = [view for view in views if view not in frame]
-        if missing:
-            raise RecordingError(
-                f"{self.dataset.folder}: frame {one.number} lacks {', '.join(missing)}"
-            )
-        arrays: Mapping[str, NDArray[Any]] = {
-            **{view: frame[view] for view in VIEWS if view in views},
-            "K": frame.camera.intrinsics.K,
-            "world_from_camera": frame.camera.world_from_camera,
-        }
-        own = _OWN[self.format]
-        return {
-            **{name: own(VIEWS.get(name), values) for name, values in arrays.items()},
-            "number": one.number,
-            "clip": one.clip,
-            "time": one.time,
-            "stamp_ns": frame.stamp_ns,
-            "dt_ns": frame.dt_ns,
-            "split": one.split,
-            "camera": one.camera,
-            "scene": frame.scene,
-        }
+
+def check_format(format: str) -> None:
+    """Refuse a format of samples that is unknown, or whose package is not installed."""
+    if format not in get_args(SampleFormat):
+        raise UnknownName("format", format, ("frame", *get_args(SampleFormat)))
+    if format == "torch":
+        need("torch", "the format 'torch'")
+
+
+def sample_of(
+    one: DatasetFrame, views: Collection[str], format: SampleFormat, source: object
+) -> Sample:
+    """Return a frame as a sample; see `DatasetSamples`.
+
+    Parameters
+    ----------
+    one : DatasetFrame
+    views : collection of str
+        Of the recipe.
+    format : {'numpy', 'torch'}
+    source : object
+        Where it is from, for errors.
+    """
+    frame = one.frame
+    missing = [view for view in views if view not in frame]
+    if missing:
+        raise RecordingError(f"{source}: frame {one.number} lacks {', '.join(missing)}")
+    arrays: Mapping[str, NDArray[Any]] = {
+        **{view: frame[view] for view in VIEWS if view in views},
+        "K": frame.camera.intrinsics.K,
+        "world_from_camera": frame.camera.world_from_camera,
+    }
+    own = _OWN[format]
+    return {
+        **{name: own(VIEWS.get(name), values) for name, values in arrays.items()},
+        "number": one.number,
+        "clip": one.clip,
+        "time": one.time,
+        "stamp_ns": frame.stamp_ns,
+        "dt_ns": frame.dt_ns,
+        "split": one.split,
+        "camera": one.camera,
+        "scene": frame.scene,
+    }
 
 
 def _array(spec: ViewSpec | None, values: NDArray[Any]) -> NDArray[Any]:

@@ -21,6 +21,7 @@ from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
 from sailenv_ros.dataset.findings import Findings
+from sailenv_ros.dataset.frame_sink import FrameSink
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
@@ -42,6 +43,8 @@ from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.cpu.texture_store import TextureStore
+from sailenv_ros.render.scene.reflection_store import ReflectionStore
+from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.rule_places import look_lens
@@ -62,7 +65,8 @@ class ShardMaker:
     Parameters
     ----------
     job : Job
-    storage : Storage
+    storage : Storage or None
+        None for who takes frames alone, see `take`.
     on_frame : callable
         Called after each frame.
     scratch : Path or None
@@ -72,7 +76,7 @@ class ShardMaker:
     def __init__(
         self,
         job: Job,
-        storage: Storage,
+        storage: Storage | None,
         on_frame: Callable[[], None] = lambda: None,
         *,
         scratch: Path | None = None,
@@ -80,15 +84,16 @@ class ShardMaker:
         self._job = job
         self._recipe = job.recipe
         self._plan = ShardPlan(job.recipe)
-        self._store = ResumableStore(storage, job.identity)
+        self._store = None if storage is None else ResumableStore(storage, job.identity)
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._camera_data = [one.model_dump(mode="json") for one in self._recipe.cameras]
         self._findings = Findings()
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
-        # What is drawn of furniture serves all scenes that have it. Light does not: what is kept
-        # of it may depend on what was seen before.
+        # What is drawn of furniture serves all scenes that have it, and what a room mirrors all
+        # that are equal to it. Other light does not: it may depend on what was seen before.
         self._stores = MeshStore(), TextureStore()
+        self._reflections: ReflectionStore[Share] = ReflectionStore()
         self._temporary = ExitStack()
         self._folder = self._temporary.enter_context(
             temporary_folder("sailenv-scenes-", place=scratch)
@@ -118,6 +123,7 @@ class ShardMaker:
         SailenvError
             If a scene cannot be built or a file not be written.
         """
+        assert self._store is not None
         with self._store.part(self._folder) as part:
             summary = self.make_into(number, part.folder)
             part.note = summary.path, summary.to_json()
@@ -128,12 +134,9 @@ class ShardMaker:
         began = time.monotonic()
         shard = self._plan.shard(number)
         writer = ShardWriter(folder, self._recipe, shard)
-        skipped: Counter[str] = Counter()
         self._findings = Findings()
-        frames = 0
         try:
-            for group in clip_groups(shard, self._recipe.clip.per_scene):
-                frames += self._take(group, writer, skipped)
+            frames, skipped = self.take(number, writer)
             writer.finish()
         except BaseException:
             writer.close()
@@ -156,9 +159,16 @@ class ShardMaker:
             },
         )
 
+    def take(self, number: int, sink: FrameSink) -> tuple[int, Counter[str]]:
+        """Hand all frames of a shard on; return how many, and the clips that could not be made."""
+        frames, skipped = 0, Counter[str]()
+        for group in clip_groups(self._plan.shard(number), self._recipe.clip.per_scene):
+            frames += self._take(group, sink, skipped)
+        return frames, skipped
+
     # -- one scene ---------------------------------------------------------------------------
 
-    def _take(self, group: tuple[Clip, ...], writer: ShardWriter, skipped: Counter[str]) -> int:
+    def _take(self, group: tuple[Clip, ...], writer: FrameSink, skipped: Counter[str]) -> int:
         """Take all clips of a group from its scene; return how many frames they have."""
         recipe = self._recipe
         frames = 0
@@ -192,7 +202,7 @@ class ShardMaker:
         scene: SceneSource,
         tracks: dict[str, Track | None],
         core: SynchronousSimulation,
-        writer: ShardWriter,
+        writer: FrameSink,
     ) -> int:
         recipe = self._recipe
         for camera in recipe.cameras:
@@ -290,7 +300,7 @@ class ShardMaker:
         core = SynchronousSimulation(
             self._library,
             self._path(first.scene),
-            NativeRenderer(table=PartTable(*self._stores)),
+            NativeRenderer(table=PartTable(*self._stores), reflections=self._reflections),
             mode="lockstep",
             real_time_factor=1.0,
             seed=int(random.integers(2**31)),

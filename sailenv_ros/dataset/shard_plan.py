@@ -52,6 +52,10 @@ class Clip:
     split: str
     scene: SceneSource
 
+    def sequence(self, camera: int, cameras: int) -> int:
+        """Return the number of what one of so many cameras sees of it, in the data set."""
+        return self.number * cameras + camera
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shard:

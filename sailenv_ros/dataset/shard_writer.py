@@ -79,6 +79,7 @@ class ShardWriter:
             if not kind.is_sequence or kind.has_sequences:
                 made = self._own[name] = kind(format_folder(folder, kind, name, shard.split))
                 made.part, made.flow = shard.number, recipe.flow
+                made.compression = recipe.compression_of_views
 
     def begin_clip(self, clip: Clip) -> None:
         """Begin with the frames of a clip."""
@@ -97,7 +98,7 @@ class ShardWriter:
                     formats[entry] = kind(self._folder / entry / clip.split / name)
                     formats[entry].flow = self._recipe.flow
             self._sequences[camera.name] = _Sequence(
-                name, clip.number * cameras + place, formats, {one: [] for one in formats}
+                name, clip.sequence(place, cameras), formats, {one: [] for one in formats}
             )
 
     def add(self, camera: str, frame: Frame) -> None:
@@ -145,6 +146,7 @@ class ShardWriter:
             following=following,
             sequence=sequence.name,
             sequence_number=sequence.number + 1,
+            rules=self._recipe.annotation_rules,
         )
         kept: dict[str, Any] = {}
         for name, made in sequence.formats.items():

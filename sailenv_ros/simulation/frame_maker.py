@@ -57,6 +57,10 @@ class FrameMaker:
         self._relighter = Relighter()
         self.watch_light()
 
+    def work_alone(self) -> None:
+        """Do nothing beside the caller's thread: light for moves is prepared by the first one."""
+        self._relighter.beforehand = False
+
     @property
     def supported_views(self) -> tuple[str, ...]:
         """Views that the renderer can make, in the order of `frame.VIEWS`."""

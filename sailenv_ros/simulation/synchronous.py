@@ -15,6 +15,10 @@ __all__ = ["SynchronousSimulation"]
 class SynchronousSimulation(SimulationCore, WorldOperations):
     """A `SimulationCore` with its operations; nothing runs beside the caller."""
 
+    def __init__(self, *args: Any, **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self.frames.work_alone()
+
     def submit_operation(
         self, operation: Operation[..., Any], arguments: inspect.BoundArguments
     ) -> Future[Any]:

@@ -80,7 +80,8 @@ class Body:
             self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
         self._static_pose = placement.pose
         self._quat = placement.pose.orientation_xyzw
-        self._matrix = placement.pose.matrix()
+        self._matrix = self._matrix_read = placement.pose.matrix()
+        self._read: object = None
         # PyBullet has no per-body gravity; the weight of those it must not pull is given back.
         self.floats = not placement.static and not placement.gravity
 
@@ -95,7 +96,7 @@ class Body:
         return LINK_OF_BASE
 
     def world_from_body(self) -> NDArray[np.float64]:
-        """Return the (4, 4) pose now.
+        """Return the (4, 4) pose now; not to be written to.
 
         Raises
         ------
@@ -104,8 +105,11 @@ class Body:
         """
         if self.placement.static:
             return self._matrix
-        position, quat = self._client.getBasePositionAndOrientation(self._id)
-        return self._matrix_of(position, quat)
+        read = self._client.getBasePositionAndOrientation(self._id)
+        # Most bodies rest, and what is read is the same.
+        if read != self._read:
+            self._matrix_read, self._read = self._matrix_of(*read), read
+        return self._matrix_read
 
     def pose(self) -> Pose:
         """Return the pose of the body frame now; what fell out of the world is at its edge."""

@@ -19,7 +19,7 @@ from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
 from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.labelled_pieces import LabelledPiece
-from sailenv_ros.world.lit_lamps import lit_by
+from sailenv_ros.world.lit_lamps import is_lamp, lit_by
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["ContentsMaker"]
@@ -72,6 +72,7 @@ class ContentsMaker:
         self._described = described
         self._next_revision = next_revision
         self._lit_by: Mapping[int, tuple[str, ...]] = {}
+        self._lamps_of: tuple[object, ...] | None = None
         self.current = self._made()
 
     def renew(self) -> None:
@@ -86,14 +87,21 @@ class ContentsMaker:
 
     def light_lamps(self, poses: NDArray[np.float64]) -> None:
         """Find the lights that are in lamps now, some of which may have been moved."""
-        found = lit_by(self._bodies.pieces, poses, self.lights)
+        pieces = self._bodies.pieces
+        rows = [row for row, piece in enumerate(pieces) if is_lamp(piece)]
+        lamps = [(pieces[row].body_id, pieces[row].body.placement) for row in rows]
+        key = lamps, self.lights, poses[rows].tobytes()
+        if self._lamps_of == key:
+            return
+        self._lamps_of = key
+        found = lit_by(pieces, poses, self.lights)
         if found != self._lit_by:
             self._lit_by = found
             drawn = tuple(self.drawn(piece) for piece in self._bodies.pieces)
             self.current = replace(self.current, instances=drawn)
 
     def _made(self) -> SceneContents:
-        pieces = self._bodies.pieces
+        pieces, self._lamps_of = self._bodies.pieces, None
         self._lit_by = lit_by(pieces, self._bodies.world_from_body(), self.lights)
         return SceneContents(
             scene=self._scene,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.types.lights import Light
 from sailenv_ros.world.labelled_pieces import LabelledPiece
 
-__all__ = ["REACH_M", "lit_by"]
+__all__ = ["REACH_M", "is_lamp", "lit_by"]
 
 LAMP_TYPES = ("point", "spot")
 """Types of lights that belong to lamps; area lights stand for windows."""
@@ -25,6 +25,11 @@ REACH_M = 0.5
 
 Lights of flat ceiling lamps lie a hand below them, so that the ceiling is lit evenly.
 """
+
+
+def is_lamp(piece: LabelledPiece) -> bool:
+    """Return whether a piece is the body of an object with a material that glows."""
+    return piece.part is None and piece.body.placement.asset.model.is_lamp
 
 
 def lit_by(
@@ -48,9 +53,7 @@ def lit_by(
         is in one lamp at most: the nearest, of equally near ones that of the lowest id.
     """
     lamps = [
-        (piece, pose)
-        for piece, pose in zip(pieces, world_from_body, strict=True)
-        if piece.part is None and piece.body.placement.asset.model.is_lamp
+        (piece, pose) for piece, pose in zip(pieces, world_from_body, strict=True) if is_lamp(piece)
     ]
     found: dict[int, tuple[str, ...]] = {}
     if not lamps:

@@ -100,9 +100,10 @@ class ViewScene(ABC):
     def seen(self, pose: Pose, cover: float) -> Mapping[int, int]:
         """Return the pixels of each object that covers at least that share of the picture."""
         view = self.instances(pose)
-        ids, pixels = np.unique(view, return_counts=True)
-        enough = pixels >= max(1.0, cover * view.size)
-        pairs = zip(ids[enough].tolist(), pixels[enough].tolist(), strict=True)
+        # Counting sixteen bits takes a tenth of what sorting them does.
+        pixels = np.bincount(view.reshape(-1))
+        ids = np.flatnonzero(pixels >= max(1.0, cover * view.size))
+        pairs = zip(ids.tolist(), pixels[ids].tolist(), strict=True)
         return {id_: count for id_, count in pairs if id_ in self.object_ids}
 
     def filled(self, pose: Pose) -> float:

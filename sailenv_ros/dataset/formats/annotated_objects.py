@@ -21,6 +21,7 @@ __all__ = [
     "annotated_objects",
     "categories_of",
     "merged_categories",
+    "stuff_of",
 ]
 
 NO_CATEGORY = (BACKGROUND, UNLABELLED_CATEGORY)
@@ -58,20 +59,40 @@ def annotated_objects(sample: Sample, format_name: str) -> AnnotatedObjects:
     masks = None if frame.draw_amodal is None else frame.amodal
     table = frame.objects if masks is None else frame.objects.with_amodal(masks)
     labelled = ~np.isin(table.category_ids, NO_CATEGORY)
-    seen = table.visible
+    seen, rules = table.visible, sample.rules
+    found = labelled & seen
+    stuff = found & np.array([name in rules.stuff for name in table.categories], bool)
+    wanted = found & np.array([rules.has(name) for name in table.categories], bool)
+    large = wanted & (table.visible_pixels >= rules.least_pixels)
     reasons = Counter(
         {
             "no category": int((~labelled & seen).sum()),
             "no pixel is visible": int((~seen).sum()),
+            "stuff": int(stuff.sum()),
+            "other category": int((found & ~stuff & ~wanted).sum()),
+            f"fewer than {rules.least_pixels} pixels": int((wanted & ~large).sum()),
         }
     )
-    return AnnotatedObjects(table=table.select(labelled & seen), masks=masks, left_out=+reasons)
+    return AnnotatedObjects(table=table.select(large), masks=masks, left_out=+reasons)
 
 
 def categories_of(sample: Sample, format_name: str) -> dict[str, str]:
-    """Return the names of all categories of the scene by their ids, as JSON holds them."""
+    """Return the names of the scene's categories whose objects are annotated, by their ids.
+
+    As JSON holds them, with ids as texts.
+    """
     known = sample.scene_info(format_name).categories.values()
-    return {str(one.id): one.name for one in known if one.id not in NO_CATEGORY}
+    return {
+        str(one.id): one.name
+        for one in known
+        if one.id not in NO_CATEGORY and sample.rules.has(one.name)
+    }
+
+
+def stuff_of(sample: Sample, format_name: str) -> dict[str, str]:
+    """Return the names of the scene's categories that are stuff, like `categories_of`."""
+    known = sample.scene_info(format_name).categories.values()
+    return {str(one.id): one.name for one in known if one.name in sample.rules.stuff}
 
 
 def merged_categories(tables: Iterable[Mapping[str, str]]) -> dict[int, str]:

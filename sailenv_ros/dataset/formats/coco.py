@@ -20,18 +20,23 @@ from sailenv_ros.dataset.formats.annotated_objects import (
     annotated_objects,
     categories_of,
     merged_categories,
+    stuff_of,
 )
 from sailenv_ros.dataset.formats.coco_rle import amodal_segmentation, segmentation
 from sailenv_ros.dataset.formats.data_files import write_json, write_png
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
+from sailenv_ros.dataset.formats.panoptic import panoptic_segments
 from sailenv_ros.frame.truth.object_table import ObjectTable
 
 __all__ = ["CocoExport"]
 
 
 class CocoExport(DatasetFormat):
-    """`images/*.png` and `annotations.json`, in each split's folder."""
+    """`images/*.png` and `annotations.json`, in each split's folder.
+
+    Where categories are stuff, `panoptic/*.png` and `panoptic.json`, too.
+    """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
 
@@ -65,12 +70,18 @@ class CocoExport(DatasetFormat):
                     masks, table, row, (height, width)
                 )
             annotations.append(annotation)
+        record: dict[str, Any] = {
+            "image": {**frame_record(number, frame), **image},
+            "categories": categories_of(sample, "COCO"),
+            "annotations": annotations,
+        }
+        if sample.rules.stuff:
+            picture, segments = panoptic_segments(sample, table)
+            write_png(self.folder / sample.split / "panoptic" / name, picture)
+            record["stuff"] = stuff_of(sample, "COCO")
+            record["panoptic"] = {"image_id": number, "file_name": name, "segments_info": segments}
         return WriteResult(
-            record={
-                "image": {**frame_record(number, frame), **image},
-                "categories": categories_of(sample, "COCO"),
-                "annotations": annotations,
-            },
+            record=record,
             written={"images": 1, "annotations": len(annotations)},
             left_out=found.left_out,
         )
@@ -78,24 +89,25 @@ class CocoExport(DatasetFormat):
     def finish(self, records: Sequence[Record]) -> None:
         """Write the annotations of each split; ids of annotations count on over all of them."""
         splits: set[str] = set()
+        stuff: dict[str, str] = {}
 
         def tables() -> Iterator[Mapping[str, str]]:
             for record in records:
                 splits.add(record.split)
+                stuff.update(record.value.get("stuff", {}))
                 yield record.value["categories"]
 
         categories = merged_categories(tables())
         ids = itertools.count(1)
         others = {scheme: names_in(scheme) for scheme in NAMING_SCHEMES}
-        listed = [
-            {
-                "id": id_,
-                "name": name,
-                "supercategory": "",
-                **{scheme: names.get(name, "") for scheme, names in others.items()},
+
+        def listed(id_: int, name: str) -> dict[str, Any]:
+            schemes: dict[str, str] = {
+                scheme: names.get(name, "") for scheme, names in others.items()
             }
-            for id_, name in categories.items()
-        ]
+            return {"id": id_, "name": name, "supercategory": "", **schemes}
+
+        things = [listed(id_, name) for id_, name in categories.items()]
         # All records may be more than fits into memory: each list is read and written as it goes.
         for split in sorted(splits):
             table = {
@@ -106,9 +118,21 @@ class CocoExport(DatasetFormat):
                     for value in _of_split(records, split)
                     for annotation in value["annotations"]
                 ),
-                "categories": listed,
+                "categories": things,
             }
             write_json(self.folder / split / "annotations.json", table)
+            if stuff:
+                every = [{**one, "isthing": 1} for one in things] + [
+                    {**listed(int(id_), name), "isthing": 0}
+                    for id_, name in sorted(stuff.items(), key=lambda pair: int(pair[0]))
+                ]
+                panoptic = {
+                    "info": table["info"],
+                    "images": (value["image"] for value in _of_split(records, split)),
+                    "annotations": (value["panoptic"] for value in _of_split(records, split)),
+                    "categories": every,
+                }
+                write_json(self.folder / split / "panoptic.json", panoptic)
 
 
 def _of_split(records: Iterable[Record], split: str) -> Iterator[Any]:

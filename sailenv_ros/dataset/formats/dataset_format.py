@@ -9,8 +9,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, ClassVar, Literal, TypeAlias
 
+from sailenv_ros.dataset.formats.annotation_rules import ALL_OBJECTS, AnnotationRules
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.scene_info import SceneInfo
@@ -37,6 +39,8 @@ class Sample:
         Name of what it is a part of, where a data set has several sequences; else empty.
     sequence_number : int or None
         Of that, from 1; None for frames of one recording, whose epochs are counted.
+    rules : AnnotationRules
+        Which objects are annotated.
     """
 
     number: int
@@ -46,6 +50,7 @@ class Sample:
     following: Frame | None = None
     sequence: str = ""
     sequence_number: int | None = None
+    rules: AnnotationRules = ALL_OBJECTS
 
     @property
     def stem(self) -> str:
@@ -126,6 +131,11 @@ class DatasetFormat(ABC):
         Of a format that `is_shard`: number of the part that this writes.
     flow : {'forward', 'backward', 'both'}
         Which flow it writes, if it writes one and there is a choice.
+    compression : mapping of str to str
+        How views are written that shall not be written plainly, of a format that has the choice;
+        see `view_files.COMPRESSIONS`.
+    can_compress : bool
+        True if it has.
     """
 
     views: ClassVar[tuple[str, ...]] = ()
@@ -137,8 +147,10 @@ class DatasetFormat(ABC):
     is_shard: ClassVar[bool] = False
     needs_records: ClassVar[bool] = False
     of_one_camera: ClassVar[bool] = False
+    can_compress: ClassVar[bool] = False
     flow: FlowDirection = "forward"
     part: int = 0
+    compression: Mapping[str, Any] = MappingProxyType({})
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

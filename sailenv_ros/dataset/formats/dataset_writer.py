@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_args
 
 from sailenv_ros.dataset.folder_storage import FolderStorage
+from sailenv_ros.dataset.formats.annotation_rules import ALL_OBJECTS, AnnotationRules
 from sailenv_ros.dataset.formats.data_files import write_json
 from sailenv_ros.dataset.formats.dataset_format import (
     DatasetFormat,
@@ -74,6 +75,8 @@ class DatasetWriter:
         None does not split.
     flow : {'forward', 'backward', 'both'}
         Which flow those formats write that have the choice: to the next frame, to the one before.
+    rules : AnnotationRules
+        Which objects are annotated.
     source : str
         What the frames come from, told in the summary.
     resume : bool
@@ -99,6 +102,7 @@ class DatasetWriter:
         *,
         splits: Splits | None = None,
         flow: FlowDirection = "forward",
+        rules: AnnotationRules = ALL_OBJECTS,
         source: str = "",
         resume: bool = False,
     ) -> None:
@@ -119,7 +123,9 @@ class DatasetWriter:
             "seed": 0 if splits is None else splits.seed,
             "flow": flow,
             "source": source,
+            **({} if rules == ALL_OBJECTS else {"rules": asdict(rules)}),
         }
+        self._rules = rules
         if (self.folder / OLD_JOURNAL).is_file():
             raise PlaceTaken(str(self.folder), "holds a data set that an older version began")
         store = ResumableStore(
@@ -179,7 +185,12 @@ class DatasetWriter:
         written = len(self._journal.entries)
         split = "" if self._splits is None else self._splits.of_frame(number)
         sample = Sample(
-            number=number, frame=frame, split=split, previous=self._before, following=following
+            number=number,
+            frame=frame,
+            split=split,
+            previous=self._before,
+            following=following,
+            rules=self._rules,
         )
         if number < written:
             for made in self._formats.values():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from sailenv_ros.dataset.formats.annotation_rules import ALL_OBJECTS, AnnotationRules
 from sailenv_ros.dataset.formats.dataset_format import FlowDirection
 from sailenv_ros.dataset.formats.dataset_writer import DatasetSummary, DatasetWriter
 from sailenv_ros.dataset.formats.formats import FORMATS, check_views
@@ -24,6 +25,7 @@ def export(
     agent: str = "",
     splits: Splits | None = None,
     flow: FlowDirection = "forward",
+    rules: AnnotationRules = ALL_OBJECTS,
     resume: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, of: None,
 ) -> DatasetSummary:
@@ -43,6 +45,8 @@ def export(
         How frames are dealt out to train, val and test; None does not split.
     flow : {'forward', 'backward', 'both'}
         Which flow ``kitti`` and ``sintel`` write: to the next frame, to the one before.
+    rules : AnnotationRules
+        Which objects are annotated.
     resume : bool
         True goes on with what an earlier call of the same arguments had to leave unfinished.
     on_frame : callable
@@ -71,7 +75,7 @@ def export(
             raise RecordingError(f"{path} has no complete frame of agent {frames.agent!r}")
         source = f"{Path(path).resolve().name}, agent {frames.agent}"
         with DatasetWriter(
-            folder, names, splits=splits, flow=flow, source=source, resume=resume
+            folder, names, splits=splits, flow=flow, rules=rules, source=source, resume=resume
         ) as writer:
             for number in range(writer.done, len(frames)):
                 writer.add(frames[number])

@@ -5,9 +5,27 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
+from sailenv_ros.dataset.formats.coco_rle import amodal_segmentation
+from sailenv_ros.dataset.formats.dataset_format import Sample
 from sailenv_ros.frame.truth.object_table import ObjectTable
 
-__all__ = ["object_record"]
+__all__ = ["object_record", "told_objects"]
+
+
+def told_objects(sample: Sample, format_name: str) -> tuple[list[dict[str, Any]], dict[str, int]]:
+    """Return a record of each annotated object of a frame, and how many were left out and why.
+
+    Where the frame has amodal masks, each has its own as ``amodal_segmentation``.
+    """
+    found = annotated_objects(sample, format_name)
+    objects = [object_record(found.table, row) for row in range(len(found.table))]
+    if found.masks is not None:
+        lens = sample.frame.camera.intrinsics
+        size = (lens.height, lens.width)
+        for row, one in enumerate(objects):
+            one["amodal_segmentation"] = amodal_segmentation(found.masks, found.table, row, size)
+    return objects, dict(found.left_out)
 
 
 def object_record(table: ObjectTable, row: int) -> dict[str, Any]:

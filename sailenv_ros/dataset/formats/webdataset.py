@@ -2,31 +2,26 @@
 
 The layout is that of https://github.com/webdataset/webdataset: members of one sample have one name
 and different endings. Values are kept exactly: ``rgb.png``, ``category.png``, ``instance.png`` and
-truth values as pictures, every other view as ``<view>.npy``; ``json`` says where the camera was and
+truth values as pictures, every other view as ``<view>.npy``, unless the recipe asks for another
+file of a view (`view_files`); ``json`` says where the camera was and
 what is known of every visible object, its amodal mask among it (COCO's run lengths) where the
 recipe asks for amodal masks.
 """
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
-from sailenv_ros.dataset.formats.coco_rle import amodal_segmentation
 from sailenv_ros.dataset.formats.data_files import discard_drafts, open_draft
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
-from sailenv_ros.dataset.formats.object_records import object_record
-from sailenv_ros.dataset.formats.tar_files import Content, TarWriter
-from sailenv_ros.frame.pictures.codecs import encode_png
+from sailenv_ros.dataset.formats.object_records import told_objects
+from sailenv_ros.dataset.formats.tar_files import TarWriter
+from sailenv_ros.dataset.formats.view_files import encoded
 
 __all__ = ["WebDatasetExport"]
 
@@ -36,6 +31,7 @@ class WebDatasetExport(DatasetFormat):
 
     is_shard: ClassVar[bool] = True
     resumable: ClassVar[bool] = False
+    can_compress: ClassVar[bool] = True
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
@@ -48,7 +44,7 @@ class WebDatasetExport(DatasetFormat):
         frame = sample.frame
         name = f"{sample.number:08d}"
         for view, values in frame.views.items():
-            ending, contents = encoded(values)
+            ending, contents = encoded(view, values, self.compression.get(view))
             tar.append(f"{name}.{view}.{ending}", contents)
         record: dict[str, Any] = frame_record(sample.number, frame)
         lens, pose = frame.camera.intrinsics, frame.camera.pose
@@ -64,15 +60,7 @@ class WebDatasetExport(DatasetFormat):
         }
         left_out: dict[str, int] = {}
         if frame.info is not None and "instance" in frame.views:
-            found = annotated_objects(sample, "WebDataset")
-            objects = [object_record(found.table, row) for row in range(len(found.table))]
-            if found.masks is not None:
-                size = (lens.height, lens.width)
-                for row, one in enumerate(objects):
-                    masks, table = found.masks, found.table
-                    one["amodal_segmentation"] = amodal_segmentation(masks, table, row, size)
-            record["objects"] = objects
-            left_out = dict(found.left_out)
+            record["objects"], left_out = told_objects(sample, "WebDataset")
         tar.append(f"{name}.json", [json.dumps(record).encode()])
         return WriteResult(written={"samples": 1}, left_out=left_out)
 
@@ -93,13 +81,3 @@ class WebDatasetExport(DatasetFormat):
         """Remove what is not complete."""
         self._tars.clear()
         discard_drafts(self._open)
-
-
-def encoded(values: NDArray[Any]) -> tuple[str, Sequence[Content]]:
-    """Return the ending and the content of the member that keeps a view's values exactly."""
-    if values.dtype in (np.bool_, np.uint8, np.uint16):
-        return "png", [encode_png(values, "fastest")]
-    values = np.ascontiguousarray(values)
-    header = io.BytesIO()
-    np.lib.format.write_array_header_1_0(header, np.lib.format.header_data_from_array_1_0(values))
-    return "npy", [header.getvalue(), values]

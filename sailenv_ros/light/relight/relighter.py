@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.relight.baked_rows import BakedRows, baked_rows, has_shape_of
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
@@ -21,7 +22,7 @@ from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.model import Model
-from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["READY_FRAMES", "Relighter"]
 
@@ -37,9 +38,6 @@ time."""
 READY_FRAMES = 3
 """Number of rendered frames after which a lockstep scene is prepared for moves; a program that
 renders fewer does not pay for it."""
-
-SMALLEST_M = 0.15
-"""Objects that came and are smaller in two directions change no light but their own."""
 
 _Key = tuple[tuple[int, bytes | None, object], ...]
 
@@ -74,9 +72,17 @@ class _Place:
 
 
 class Relighter:
-    """Follows one simulation; used by one thread."""
+    """Follows one simulation; used by one thread.
+
+    Attributes
+    ----------
+    beforehand : bool
+        True prepares a scene for moves on a thread of its own, so that the first one finds
+        everything ready; False when something moves first, if anything does. Light is the same.
+    """
 
     def __init__(self) -> None:
+        self.beforehand = True
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
         self._preparing: Future[BakedScene] | None = None
@@ -84,7 +90,7 @@ class Relighter:
         self._original: SceneContents | None = None
         self._scene: BakedScene | None = None
         self._places: dict[int, _Place] = {}
-        self._of: tuple[SceneContents, list[tuple[int, int, NDArray[np.float64]]]] | None = None
+        self._of: BakedRows | None = None
         self._light: _Relit | None = None
         self._seen: WorldSnapshot | None = None
         self._changes: list[Change] = []
@@ -137,7 +143,7 @@ class Relighter:
         if wanted:
             self._rendered += 1
             soon = not lockstep or self._rendered > READY_FRAMES
-            if soon and self._scene is None and self._preparing is None:
+            if self.beforehand and soon and self._scene is None and self._preparing is None:
                 # Beside the frames, so that the first move finds everything ready.
                 self._preparing = self._background().submit(_scene_of, self._original, 1)
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
@@ -224,22 +230,22 @@ class Relighter:
         original, contents = self._original, snapshot.contents
         assert original is not None
         assert original.baked is not None
-        if self._of is None or self._of[0] is not contents:
-            self._of = contents, self._rows(contents)
+        if self._of is None or self._of.contents is not contents:
+            self._of = baked_rows(original, contents)
             self._painted = self._repainted(contents)
+        of = self._of
         changes: list[Change] = []
         places: dict[int, _Place] = {}
-        present = set()
-        for row, id_, baked_pose in self._of[1]:
-            present.add(id_)
+        # NaN is like nothing: what was not baked is among them.
+        moved = (snapshot.world_from_body[of.rows] != of.poses).any(axis=(1, 2))
+        for place_of in np.flatnonzero(moved).tolist():
+            row, id_ = int(of.rows[place_of]), of.ids[place_of]
             pose = snapshot.world_from_body[row]
             came = None
-            before: NDArray[np.float64] | None = baked_pose
-            if np.isnan(baked_pose[0, 0]):
+            before: NDArray[np.float64] | None = of.poses[place_of]
+            if np.isnan(of.poses[place_of, 0, 0]):
                 drawn = contents.instances[row]
                 came, before = (drawn.model, drawn.scale), None
-            elif np.array_equal(pose, baked_pose):
-                continue
             name, now_ns = pose.tobytes(), snapshot.sim_time_ns
             place = places[id_] = self._places.get(id_) or _Place(name, now_ns)
             place.follow(name, now_ns)
@@ -248,36 +254,13 @@ class Relighter:
             if before is not None or after is not None:
                 changes.append(Change(id=id_, before=before, after=after, came=came))
         self._places = places
+        changes += of.gone
         charts = original.baked.charts
-        for drawn in original.instances:
-            id_ = drawn.instance.id
-            if id_ in charts and id_ not in present and drawn.model.triangle_count:
-                changes.append(Change(id=id_, before=charts[id_].world_from_body, after=None))
         for change in [c for c in changes if c.came is not None and c.id in charts]:
             # Another model or size in the place of what was baked.
             gone = Change(id=change.id, before=charts[change.id].world_from_body, after=None)
             changes.append(gone)
         return changes
-
-    def _rows(self, contents: SceneContents) -> list[tuple[int, int, NDArray[np.float64]]]:
-        """Return row, id and baked pose of what light depends on; NaN where it is not baked."""
-        original = self._original
-        assert original is not None
-        assert original.baked is not None
-        assert contents.baked is not None
-        known = {drawn.instance.id: drawn for drawn in original.instances}
-        rows = []
-        for row, drawn in enumerate(contents.instances):
-            id_ = drawn.instance.id
-            before = known.get(id_)
-            same = before is not None and _has_shape_of(drawn, before)
-            if same and id_ in contents.baked.charts and drawn.model.triangle_count:
-                rows.append((row, id_, original.baked.charts[id_].world_from_body))
-            elif drawn.is_baked and drawn.model.triangle_count and not same:
-                size = np.ptp(drawn.model.bounds(), axis=0) * np.abs(drawn.scale)
-                if np.sort(size)[1] >= SMALLEST_M:
-                    rows.append((row, id_, np.full((4, 4), np.nan)))
-        return rows
 
     def _repainted(self, contents: SceneContents) -> dict[int, Model]:
         """Return the models of what was baked and is of other materials now."""
@@ -290,29 +273,13 @@ class Relighter:
             for drawn in contents.instances
             if drawn.instance.id in charts
             and drawn.model is not known[drawn.instance.id].model
-            and _has_shape_of(drawn, known[drawn.instance.id])
+            and has_shape_of(drawn, known[drawn.instance.id])
         }
 
 
 def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
     assert contents.baked is not None
     return BakedScene(contents.baked, contents, threads)
-
-
-def _has_shape_of(drawn: DrawnInstance, before: DrawnInstance) -> bool:
-    """Return whether something has the very triangles that another has, of whatever material."""
-    if drawn.scale != before.scale or len(drawn.model.parts) != len(before.model.parts):
-        return False
-    return drawn.model is before.model or all(
-        now.mesh is then.mesh
-        or (
-            len(now.mesh.triangles) == len(then.mesh.triangles)
-            and np.array_equal(
-                now.mesh.positions[now.mesh.triangles], then.mesh.positions[then.mesh.triangles]
-            )
-        )
-        for now, then in zip(drawn.model.parts, before.model.parts, strict=True)
-    )
 
 
 def _key_of(changes: list[Change], painted: dict[int, Model]) -> _Key:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -29,7 +29,8 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     light_alone,
     main_light,
 )
-from sailenv_ros.render.scene.room_reflections import RoomReflections
+from sailenv_ros.render.scene.reflection_store import ReflectionStore
+from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
 from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.types.camera import Camera
@@ -118,13 +119,15 @@ def _empty_map() -> NDArray[np.float32]:
 class FrameLight:
     """The light of the scene that is shown."""
 
-    def __init__(self, drawing: Drawing, threads: int) -> None:
+    def __init__(
+        self, drawing: Drawing, threads: int, store: ReflectionStore[Share] | None = None
+    ) -> None:
         self._drawing = drawing
         self._shadow = ShadowMap(drawing)
         self._static_shadow: ShadowMap | None = None
         self._baked = BakedState()
         self._reflections = RoomReflections(
-            partial(blur_directions, threads=threads), partial(sum_texels, threads=threads)
+            partial(blur_directions, threads=threads), partial(sum_texels, threads=threads), store
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
         self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None
@@ -308,6 +311,7 @@ def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16]) -> None:
     light["sky_height"], light["sky_width"] = len(texels), texels.shape[1] - 1
 
 
+@lru_cache(maxsize=2)
 def _sky_texels(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     """Return (H, W + 1, 4) of `seen_sky`: the first column is repeated behind the last."""
     seen = seen_sky(sky, exposure)

@@ -20,6 +20,8 @@ from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.flat_mirrors import Window
+from sailenv_ros.render.scene.reflection_store import ReflectionStore
+from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
@@ -41,6 +43,8 @@ class NativeRenderer(DrawingRenderer):
         How many threads draw; None for `library.thread_count`. Frames do not depend on it.
     table : PartTable or None
         With stores of meshes and textures that outlive this renderer; None for its own.
+    reflections : ReflectionStore or None
+        That outlives this renderer; None keeps what the room that is shown mirrors, alone.
 
     Raises
     ------
@@ -48,11 +52,17 @@ class NativeRenderer(DrawingRenderer):
         If there is no native library.
     """
 
-    def __init__(self, *, threads: int | None = None, table: PartTable | None = None) -> None:
+    def __init__(
+        self,
+        *,
+        threads: int | None = None,
+        table: PartTable | None = None,
+        reflections: ReflectionStore[Share] | None = None,
+    ) -> None:
         super().__init__(threads)
         self._drawing = Drawing(self._threads)
         self._table = PartTable() if table is None else table
-        self._light = FrameLight(self._drawing, self._threads)
+        self._light = FrameLight(self._drawing, self._threads, reflections)
 
     @property
     def description(self) -> str:

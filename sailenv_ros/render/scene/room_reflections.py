@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from sailenv_ros.render.scene import reflection_map as reflections
 from sailenv_ros.render.scene.lightmap_compositing import Term
 from sailenv_ros.render.scene.reflection_points import ReflectionPoints
+from sailenv_ros.render.scene.reflection_store import ReflectionStore, room_key
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["Look", "RoomReflections", "Sum"]
+__all__ = ["Look", "RoomReflections", "Share", "Sum"]
 
 Look: TypeAlias = Callable[[Light | None, list[Camera]], list[NDArray[np.float32]]]
 """``look(light, cameras)`` returns (H, W, 3) for each camera: linear radiance under one light
@@ -35,7 +36,7 @@ Sum: TypeAlias = Callable[
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Share:
+class Share:
     """One light's part of what is mirrored, at power 1.
 
     Attributes
@@ -58,6 +59,9 @@ class RoomReflections:
     blur : Blur
         See `reflection_map.prefilter`.
     add : Sum
+    store : ReflectionStore or None
+        Serves several rooms, one after another, some of which are shown again; None keeps nothing
+        but the room that is shown.
 
     Attributes
     ----------
@@ -69,10 +73,14 @@ class RoomReflections:
         What `reflection_map.light_from_around` says of each point.
     """
 
-    def __init__(self, blur: reflections.Blur, add: Sum) -> None:
+    def __init__(
+        self, blur: reflections.Blur, add: Sum, store: ReflectionStore[Share] | None = None
+    ) -> None:
         self._blur = blur
         self._sum = add
-        self._shares: dict[Hashable, _Share] = {}
+        self._store = store
+        self._room: Hashable = None
+        self._shares: dict[Hashable, Share] = {}
         self._of: tuple[object, bytes] | None = None
         self._alone_of: dict[Light, Light] = {}
         self._environment: Environment | None = None
@@ -104,6 +112,8 @@ class RoomReflections:
         if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
             self._shares, self._of = {}, of
             self.points.choose(snapshot)
+            if self._store is not None:
+                self._room = room_key(snapshot, still, self.points.points)
         if self._environment is not contents.environment:
             self._environment = contents.environment
             self._sky = replace(contents.environment, exposure=0.0)
@@ -121,7 +131,8 @@ class RoomReflections:
                 wanted.append(((alone, light is main), alone, power))
         self._alone_of = alone_of
         shares = {
-            key: self._shares.get(key) or self._share(alone, look) for key, alone, _ in wanted
+            key: self._shares.get(key) or self._share(key, alone, look, snapshot)
+            for key, alone, _ in wanted
         }
         self._shares = shares
         terms = [(shares[key].texels, power) for key, _, power in wanted]
@@ -133,7 +144,19 @@ class RoomReflections:
             np.zeros((len(self.layers), 4)),
         )
 
-    def _share(self, alone: Light | None, look: Look) -> _Share:
+    def _share(
+        self, key: Hashable, alone: Light | None, look: Look, snapshot: WorldSnapshot
+    ) -> Share:
+        """Return the share that the store has, or a new one."""
+        known = None if self._store is None else self._store.get((self._room, key))
+        if known is not None:
+            return known
+        made = self._seen(alone, look)
+        if self._store is not None:
+            self._store.put((self._room, key), made, snapshot)
+        return made
+
+    def _seen(self, alone: Light | None, look: Look) -> Share:
         every = [reflections.cube_cameras(point) for point in self.points.points]
         pictures = iter(look(alone, [camera for cameras in every for camera in cameras]))
         texels, around = [], []
@@ -144,4 +167,4 @@ class RoomReflections:
             first = layers[0, 1:-1, 1:-1].astype(np.float64)
             around.append([reflections.light_from_around(first * colour) for colour in np.eye(3)])
             texels.append(layers.reshape(-1, 1, 3))
-        return _Share(np.ascontiguousarray(np.concatenate(texels)), np.array(around))
+        return Share(np.ascontiguousarray(np.concatenate(texels)), np.array(around))

@@ -77,3 +77,16 @@ def test_splits_need_scenes(tmp_path: Path) -> None:
     path = written_recipe(tmp_path, scenes=[{"scene": "optical", "splits": ["train"]}])
     with pytest.raises(RecipeError, match="there is none for the split val"):
         load_recipe(path)
+
+
+def test_annotations_are_chosen_by_the_recipe(tmp_path: Path) -> None:
+    """What is both wanted and stuff is told; what is chosen reaches the formats."""
+    chosen = {"least_pixels": 30, "categories": ["cube", "wall"], "stuff": ["floor", "wall"]}
+    with pytest.raises(RecipeError, match="wall is stuff") as caught:
+        load_recipe(written_recipe(tmp_path, annotations=chosen))
+    assert [one.field for one in caught.value.diagnostics] == ["annotations.categories[1]"]
+    recipe = load_recipe(written_recipe(tmp_path, annotations={**chosen, "stuff": ["floor"]}))
+    rules = recipe.annotation_rules
+    assert (rules.least_pixels, rules.has("cube"), rules.has("floor"), rules.has("chair")) == (
+        30, True, False, False,
+    )  # fmt: skip

@@ -31,6 +31,7 @@ from sailenv_ros.native.picture_kernels import (
     make_picture,
     resolve_samples,
 )
+from sailenv_ros.native.png_kernel import png_data
 from sailenv_ros.native.ray_kernels import build_tree, cast_rays, light_hits, light_share
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.native.texel_kernels import cover_texels
@@ -49,6 +50,19 @@ from tests.unit.native import hostile_bake
 from tests.unit.native.hostile_numbers import NUMBERS, THREADS
 
 __all__ = ["DRIVERS", "THREADS"]
+
+
+def drive_png_data() -> None:
+    """Rows of one byte, pixels wider than a row, noise that does not compress, one value."""
+    random = np.random.default_rng(3)
+    for height, width in ((1, 1), (1, 7), (5, 3), (64, 4096), (300, 999)):
+        for rows in (
+            random.integers(256, size=(height, width), dtype=np.uint8),
+            np.zeros((height, width), np.uint8),
+        ):
+            for step in (1, 3, 8):
+                for paeth in (False, True):
+                    png_data(rows, step, paeth=paeth)
 
 
 def drive_self_test() -> None:
@@ -287,6 +301,7 @@ def drive_instance_measures() -> None:
 
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
+    drive_png_data,
     drive_annotate,
     drive_motion,
     drive_rays,

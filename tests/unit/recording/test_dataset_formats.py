@@ -20,8 +20,9 @@ from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
 from sailenv_ros.dataset.formats import DatasetWriter, Splits, export
+from sailenv_ros.dataset.formats.annotation_rules import AnnotationRules
 from sailenv_ros.dataset.formats.bop import DEPTH_STEP_MM
-from sailenv_ros.errors import RecordingError
+from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.writer import RecordingWriter
@@ -277,3 +278,73 @@ def test_bop_needs_poses_and_amodal_masks(tmp_path: Path) -> None:
     writer = DatasetWriter(tmp_path, ["bop"])
     with pytest.raises(RecordingError, match="record with --amodal"):
         writer.add(noise_frame(1))
+
+
+def test_small_objects_and_other_categories_are_left_out(
+    made: tuple[Path, list[Frame]], tmp_path: Path
+) -> None:
+    """Of COCO, YOLO and Pascal VOC alike, counted by the reason; categories go with them."""
+    bag, frames = made
+    table = frames[0].objects
+    cubes = [
+        row for row in range(len(table)) if table.categories[row] == "cube" and table.visible[row]
+    ]
+    sizes = sorted(int(table.visible_pixels[row]) for row in cubes)
+    assert len(sizes) > 1
+    rules = AnnotationRules(least_pixels=sizes[-1], categories=("cube",))
+    summary = export(bag, tmp_path, ["coco", "yolo", "voc"], rules=rules)
+    told = json.loads((tmp_path / "coco" / "annotations.json").read_text())
+    assert [one["name"] for one in told["categories"]] == ["cube"]
+    assert [one["area"] for one in told["annotations"]] == [sizes[-1]] * COUNT
+    assert len((tmp_path / "yolo" / "labels" / "train" / "000000.txt").read_text().split("\n")) == 2
+    entry = ElementTree.parse(tmp_path / "voc" / "Annotations" / "000000.xml")
+    assert [one.findtext("name") for one in entry.iter("object")] == ["cube"]
+    others = sum(
+        bool(seen) and name != "cube"
+        for seen, name in zip(table.visible, table.categories, strict=True)
+    )
+    for one in summary.formats.values():
+        assert one.left_out["other category"] == others * COUNT
+        assert one.left_out[f"fewer than {sizes[-1]} pixels"] == (len(sizes) - 1) * COUNT
+
+
+def test_stuff_is_one_segment_and_no_object(made: tuple[Path, list[Frame]], tmp_path: Path) -> None:
+    """COCO's panoptic pictures: each pixel is of a thing, of stuff or of nothing."""
+    bag, frames = made
+    export(bag, tmp_path, ["coco"], rules=AnnotationRules(stuff=("floor", "sphere")))
+    instances = json.loads((tmp_path / "annotations.json").read_text())
+    panoptic = json.loads((tmp_path / "panoptic.json").read_text())
+    kinds = {one["name"]: one["isthing"] for one in panoptic["categories"]}
+    assert kinds["floor"] == kinds["sphere"] == 0
+    assert kinds["cube"] == kinds["cylinder"] == 1
+    names = {one["id"]: one["name"] for one in panoptic["categories"]}
+    assert {"floor", "sphere"}.isdisjoint(one["name"] for one in instances["categories"])
+    for frame, told in zip(frames, panoptic["annotations"], strict=True):
+        picture = cv2.imread(str(tmp_path / "panoptic" / told["file_name"]))
+        assert picture is not None
+        ids = picture[..., ::-1].astype(np.int64) @ (1, 256, 65536)
+        assert {one["id"] for one in told["segments_info"]} == set(np.unique(ids)) - {0}
+        for one in told["segments_info"]:
+            mask = ids == one["id"]
+            assert one["area"] == mask.sum()
+            left, top, width, height = one["bbox"]
+            assert mask[top : top + height, left : left + width].sum() == one["area"]
+            seen = {frame.info.categories[c].name for c in np.unique(frame["category"][mask])}
+            assert seen == {names[one["category_id"]]}
+        things = [one for one in told["segments_info"] if kinds[names[one["category_id"]]]]
+        own = [one for one in instances["annotations"] if one["image_id"] == told["image_id"]]
+        assert sorted(one["id"] for one in things) == sorted(one["instance_id"] for one in own)
+        assert ((ids == 0) == (frame["instance"] == 0)).all()
+
+
+def test_without_stuff_there_is_nothing_panoptic(
+    made: tuple[Path, list[Frame]], tmp_path: Path
+) -> None:
+    export(made[0], tmp_path, ["coco"])
+    assert not (tmp_path / "panoptic.json").exists()
+
+
+def test_rules_that_make_no_sense_are_refused() -> None:
+    for settings in ({"least_pixels": 0}, {"categories": ("cube",), "stuff": ("cube",)}):
+        with pytest.raises(InvalidRequest):
+            AnnotationRules(**settings)

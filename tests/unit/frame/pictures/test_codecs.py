@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import io
 from typing import get_args
 
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.pictures.codecs import PngEffort, decode_picture, encode_jpeg, encode_png
+from sailenv_ros.native.library import native_library, using_instruction_set
 
 RANDOM = np.random.default_rng(1)
 PICTURES: list[np.ndarray] = [
@@ -34,6 +39,53 @@ def test_pictures_are_kept_exactly(picture: np.ndarray, effort: PngEffort) -> No
     again = decode_picture(data)
     assert again.dtype == wanted.dtype
     assert np.array_equal(again, wanted)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    shape=st.tuples(st.integers(1, 70), st.integers(1, 300)),
+    colours=st.booleans(),
+    wide=st.booleans(),
+    kinds=st.integers(1, 65536),
+    repeat=st.integers(1, 300),
+    seed=st.integers(0, 1000),
+)
+def test_our_own_encoder_is_read_by_others(
+    shape: tuple[int, int], colours: bool, wide: bool, kinds: int, repeat: int, seed: int
+) -> None:
+    """By two decoders that check sums; runs of any length, few and many values, any size."""
+    random = np.random.default_rng(seed)
+    height, width = shape
+    count = height * width * (3 if colours else 1)
+    values = np.repeat(random.integers(kinds, size=count // repeat + 1), repeat)[:count]
+    picture = values.astype(np.uint16 if wide else np.uint8)
+    picture = picture.reshape((height, width, 3) if colours else shape)
+    data = encode_png(picture, "fastest")
+    assert np.array_equal(decode_picture(data), picture)
+    if not (colours and wide):  # which Pillow does not hold
+        with Image.open(io.BytesIO(data)) as found:
+            found.load()
+            assert np.array_equal(np.asarray(found), picture)
+
+
+def test_our_own_encoder_keeps_skewed_counts_within_the_longest_code() -> None:
+    """Counts like Fibonacci's numbers make codes of more than 15 bits, which are not allowed."""
+    counts = [1, 1]
+    while len(counts) < 24:
+        counts.append(counts[-1] + counts[-2])
+    values = np.repeat(np.arange(24, dtype=np.uint8) * 7, counts)
+    picture = np.random.default_rng(4).permutation(values)[: 300 * 400].reshape(300, 400)
+    data = encode_png(np.cumsum(picture, axis=0, dtype=np.uint8), "fastest")
+    assert np.array_equal(decode_picture(data), np.cumsum(picture, axis=0, dtype=np.uint8))
+
+
+def test_our_own_encoder_writes_the_same_bytes_on_every_instruction_set() -> None:
+    picture = PICTURES[0]
+    made = set()
+    for name in native_library().instruction_sets:
+        with using_instruction_set(name):
+            made.add(encode_png(picture, "fastest"))
+    assert len(made) == 1
 
 
 def test_labels_are_small() -> None:

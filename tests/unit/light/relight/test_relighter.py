@@ -172,3 +172,22 @@ def test_the_first_move_finds_all_ready(baked: WorldSnapshot, lockstep: bool, fr
         assert np.array_equal(one.direct, two.direct)
         assert np.array_equal(one.bounced, two.bounced)
     relighter.close()
+
+
+def test_alone_nothing_is_prepared_beside_the_frames(baked: WorldSnapshot) -> None:
+    """A room of which only the camera moves costs nothing; the light of a move is the same."""
+    relighter, other = Relighter(), Relighter()
+    relighter.beforehand = False
+    for _ in range(READY_FRAMES + 2):
+        for one in (relighter, other):
+            one.lit(baked, wanted=True, lockstep=True)
+    assert relighter._preparing is None
+    assert relighter._pool is None
+    pairs = [
+        light_of(one.lit(at(baked, -0.5), wanted=True, lockstep=True)).layers
+        for one in (relighter, other)
+    ]
+    for one, two in zip(*pairs, strict=True):
+        assert np.array_equal(one.direct, two.direct)
+        assert np.array_equal(one.bounced, two.bounced)
+    other.close()

@@ -1,0 +1,35 @@
+"""Content of PNG files, by the kernel of png_data.cpp."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.library import Kernel, checked
+
+__all__ = ["png_data"]
+
+_PNG_DATA = Kernel("png_data", "aiiiiaia")
+
+LARGER, MORE_BYTES = 2, 4096
+"""Capacity beyond which no stream goes: twice what it is made of, and its heads."""
+
+
+def png_data(rows: NDArray[np.uint8], step: int, *, paeth: bool) -> memoryview:
+    """Return filtered and compressed rows, the content of a file's IDAT chunk.
+
+    Parameters
+    ----------
+    rows : (H, B) uint8
+        The bytes of each row as the file has them.
+    step : int
+        Bytes of a pixel, 1 to 8.
+    paeth : bool
+        True filters by Paeth's predictor, for colours; False by the row above, for labels.
+    """
+    checked("rows", rows, np.uint8, (None, None))
+    height, width = rows.shape
+    data = np.empty(LARGER * height * (width + 1) + MORE_BYTES, np.uint8)
+    written = np.zeros(1, np.int64)
+    _PNG_DATA(rows, height, width, step, int(paeth), data, data.nbytes, written)
+    return data[: int(written[0])].data
