@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
+from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.recipe_choices import choices_of
 from sailenv_ros.dataset.recipe_scenes import RecipeScenes
@@ -21,10 +21,7 @@ from sailenv_ros.scene.randomise.random_rules import drawn_names
 from sailenv_ros.scene.randomise.selectors import is_meant, selectors_in
 from sailenv_ros.scene.scene_diagnostics import Diagnostic, name_diagnostics
 
-__all__ = ["PACKAGES", "recipe_errors"]
-
-PACKAGES: Mapping[str, str] = MappingProxyType({"parquet": "pyarrow", "lerobot": "pyarrow"})
-"""Optional package that a format needs, by its name."""
+__all__ = ["recipe_errors"]
 
 
 def recipe_errors(
@@ -67,9 +64,10 @@ def _packages(data: Mapping[str, Any]) -> Iterator[Diagnostic]:
     """Yield which packages are not installed that formats need."""
     listed = data.get("formats")
     for index, name in enumerate(listed if isinstance(listed, list | tuple) else ()):
-        if isinstance(name, str) and name in PACKAGES:
+        if isinstance(name, str) and name in FORMATS:
             try:
-                need(PACKAGES[name], f"the format {name}")
+                for package in format_class(name).packages:
+                    need(package, f"the format {name}")
             except MissingPackage as problem:
                 yield Diagnostic(("formats", index), str(problem))
 

@@ -136,6 +136,8 @@ class DatasetFormat(ABC):
         see `view_files.COMPRESSIONS`.
     can_compress : bool
         True if it has.
+    packages : tuple of str
+        Optional packages that it cannot do without.
     """
 
     views: ClassVar[tuple[str, ...]] = ()
@@ -148,6 +150,7 @@ class DatasetFormat(ABC):
     needs_records: ClassVar[bool] = False
     of_one_camera: ClassVar[bool] = False
     can_compress: ClassVar[bool] = False
+    packages: ClassVar[tuple[str, ...]] = ()
     flow: FlowDirection = "forward"
     part: int = 0
     compression: Mapping[str, Any] = MappingProxyType({})

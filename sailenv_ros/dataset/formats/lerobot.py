@@ -50,6 +50,7 @@ class LeRobotExport(DatasetFormat):
     of_one_camera: ClassVar[bool] = True
     needs_neighbours: ClassVar[bool] = True
     resumable: ClassVar[bool] = False
+    packages: ClassVar[tuple[str, ...]] = ("pyarrow",)
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)

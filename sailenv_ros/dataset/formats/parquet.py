@@ -33,6 +33,7 @@ class ParquetExport(DatasetFormat):
 
     is_shard: ClassVar[bool] = True
     resumable: ClassVar[bool] = False
+    packages: ClassVar[tuple[str, ...]] = ("pyarrow",)
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)

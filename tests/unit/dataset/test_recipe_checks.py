@@ -13,7 +13,6 @@ import yaml
 from sailenv_ros.cli.main import main
 from sailenv_ros.dataset import RecipeError, load_job
 from sailenv_ros.dataset.formats import formats
-from sailenv_ros.dataset.recipe_checks import PACKAGES
 from tests.unit.dataset.test_recipe_choices import BALLS, CUBES
 
 BAD = """\
@@ -135,17 +134,16 @@ def test_check_does_nothing_else(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_every_format_with_an_optional_package_is_known() -> None:
-    """`PACKAGES` names what the formats' own code imports by `need` as it begins."""
-    needed = {}
+def test_every_format_names_the_optional_packages_that_it_imports() -> None:
+    """What the formats' own code imports by `need` as it begins."""
     for name in formats.FORMATS:
-        tree = ast.parse(inspect.getsource(sys.modules[formats.format_class(name).__module__]))
-        calls = [one for one in ast.walk(tree) if isinstance(one, ast.Call)]
-        names = [
+        made = formats.format_class(name)
+        tree = ast.parse(inspect.getsource(sys.modules[made.__module__]))
+        needed = {
             ast.literal_eval(call.args[0]).partition(".")[0]
-            for call in calls
-            if isinstance(call.func, ast.Name) and call.func.id == "need"
-        ]
-        if names:
-            needed[name] = names[0]
-    assert needed == dict(PACKAGES)
+            for call in ast.walk(tree)
+            if isinstance(call, ast.Call)
+            and isinstance(call.func, ast.Name)
+            and call.func.id == "need"
+        }
+        assert needed == set(made.packages), name
