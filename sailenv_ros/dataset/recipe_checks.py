@@ -44,6 +44,7 @@ def recipe_errors(
     yield from name_diagnostics(DatasetRecipe, data, known)
     yield from _pictures(data, scenes)
     yield from _packages(data)
+    yield from _annotated(data, scenes)
     yield from _drawn_cameras(data)
     yield from _agents(data, scenes)
     yield from _choices(data, scenes)
@@ -70,6 +71,21 @@ def _packages(data: Mapping[str, Any]) -> Iterator[Diagnostic]:
                     need(package, f"the format {name}")
             except MissingPackage as problem:
                 yield Diagnostic(("formats", index), str(problem))
+
+
+def _annotated(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnostic]:
+    """Yield which categories of annotations neither this project nor a scene has."""
+    chosen = data.get("annotations")
+    own = {one.name for file in scenes.files.values() for one in file.spec.categories}
+    known = sorted({*scenes.library.knowledge.categories, *own})
+    for key in ("categories", "stuff"):
+        listed = chosen.get(key) if isinstance(chosen, Mapping) else None
+        for index, name in enumerate(listed if isinstance(listed, list | tuple) else ()):
+            if isinstance(name, str) and name not in known:
+                near = suggestion(name, known, listing="there are")
+                yield Diagnostic(
+                    ("annotations", key, index), f"there is no category {shown(name)}; {near}"
+                )
 
 
 def _drawn_cameras(data: Mapping[str, Any]) -> Iterator[Diagnostic]:

@@ -37,6 +37,7 @@ cameras:
   - {type: rule, name: ruled, rule: object_view, settings: {categories: [couch]}}
 views: [rgb, depth, instance, categori]
 formats: [coco, parquet]
+annotations: {categories: [chair, couhc], stuff: [wal]}
 """
 
 
@@ -71,6 +72,8 @@ def test_everything_is_told_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         (19, "cameras[2].settings.categories"),
         (20, "views[3]"),
         (21, "formats[1]"),
+        (22, "annotations.categories[1]"),
+        (22, "annotations.stuff[0]"),
     }
     assert all(one.column > 0 for one in caught.value.diagnostics)
     assert "any of the scenes cubes.yaml, balls.yaml" in found[8, "randomise[1].of"]
