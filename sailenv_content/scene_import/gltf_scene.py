@@ -8,9 +8,7 @@ extension KHR_lights_punctual, in candela and lux; 683 of these are one watt.
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
-import struct
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -24,6 +22,7 @@ from sailenv_content.scene_import.categories_by_name import category_of_name
 from sailenv_content.scene_import.default_light import add_daylight
 from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_content.scene_import.scene_parts import asset_of_parts
+from sailenv_ros.assets.gltf_description import description_of
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.errors import AssetError
@@ -36,7 +35,6 @@ Tree = Mapping[str, Any]
 
 LUMENS_PER_WATT = 683.0
 MOST_NODES = 20_000
-MOST_JSON_BYTES = 64 * 2**20
 MOST_LIGHTS = 60
 
 _WORLD_FROM_FILE = np.array(
@@ -54,7 +52,7 @@ def import_gltf(path: Path, names: Names, ours: Mapping[str, PackEntry]) -> Impo
     AssetError
         If it is malformed, too large, or names files that are not beside it.
     """
-    tree = _json(path)
+    tree, _ = description_of(path)
     _check_files(path, tree)
     title = next((str(s.get("name")) for s in _list(tree, "scenes") if s.get("name")), path.stem)
     scene = ImportedScene(title=title, description=f"Imported from the glTF file {path.name}.")
@@ -70,26 +68,6 @@ def import_gltf(path: Path, names: Names, ours: Mapping[str, PackEntry]) -> Impo
 
 
 # -- the file ------------------------------------------------------------------------------
-
-
-def _json(path: Path) -> dict[str, Any]:
-    data = path.read_bytes()
-    if data[:4] == b"glTF":
-        if len(data) < 20:
-            raise AssetError(path.name, "it ends within its head")
-        length, kind = struct.unpack("<I4s", data[12:20])
-        if kind != b"JSON" or length > len(data) - 20:
-            raise AssetError(path.name, "its first part is no JSON")
-        data = data[20 : 20 + length]
-    if len(data) > MOST_JSON_BYTES:
-        raise AssetError(path.name, f"its JSON is larger than {MOST_JSON_BYTES // 2**20} MB")
-    try:
-        tree = json.loads(data)
-    except (ValueError, RecursionError) as problem:
-        raise AssetError(path.name, f"its JSON cannot be read ({problem})") from None
-    if not isinstance(tree, dict):
-        raise AssetError(path.name, "its JSON is no object")
-    return tree
 
 
 def _check_files(path: Path, tree: Tree) -> None:

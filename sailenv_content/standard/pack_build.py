@@ -54,6 +54,7 @@ Progress = Callable[[str, int, int], None]
 
 _TOOLS = (
     "glb",
+    "gltf_description",
     "gltf_emission",
     "hulls",
     "meshes",

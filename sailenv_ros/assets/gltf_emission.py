@@ -8,22 +8,21 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import struct
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.assets.gltf_description import description_of, glb_with
 from sailenv_ros.assets.meshes import RawMesh
+from sailenv_ros.errors import AssetError
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["by_glow", "description_with_strength", "lit_by_picture", "write_strength"]
 
 EXTENSION = "KHR_materials_emissive_strength"
-
-_MAGIC, _JSON = 0x46546C67, 0x4E4F534A
 
 DARK = 0.004
 """Linear value up to which a picture of emission is dark."""
@@ -40,26 +39,18 @@ def description_with_strength(path: Path) -> bytes | None:
 
     What is no glTF file at all is left to whoever reads it.
     """
-    data = path.read_bytes()
-    if EXTENSION.encode() not in data:
+    if EXTENSION.encode() not in path.read_bytes():
         return None
-    binary = path.suffix.lower() == ".glb"
     try:
-        if not binary:
-            return json.dumps(_multiplied(json.loads(data))).encode()
-        magic, version, _, length, kind = struct.unpack_from("<5I", data)
-        if (magic, version, kind) != (_MAGIC, 2, _JSON):
-            return None
-        text = json.dumps(_multiplied(json.loads(data[20 : 20 + length]))).encode()
-    except (ValueError, TypeError, AttributeError, struct.error, RecursionError):
+        tree, rest = description_of(path)
+        _multiply(tree)
+    except (AssetError, ValueError, TypeError, AttributeError):
         return None
-    text += b" " * (-len(text) % 4)
-    rest = data[20 + length :]
-    head = struct.pack("<5I", _MAGIC, 2, 20 + len(text) + len(rest), len(text), _JSON)
-    return head + text + rest
+    is_binary = path.suffix.lower() == ".glb"
+    return glb_with(tree, rest) if is_binary else json.dumps(tree).encode()
 
 
-def _multiplied(tree: Any) -> Any:
+def _multiply(tree: Any) -> None:
     for material in tree.get("materials", ()):
         told = material.get("extensions", {}).get(EXTENSION, {})
         strength = float(told.get("emissiveStrength", 1.0))
@@ -67,7 +58,6 @@ def _multiplied(tree: Any) -> Any:
             raise ValueError(f"emissive strength {strength}")
         factor = [float(value) * strength for value in material.get("emissiveFactor", (0, 0, 0))]
         material["emissiveFactor"] = factor
-    return tree
 
 
 def write_strength(tree: Any) -> None:

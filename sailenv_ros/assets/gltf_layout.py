@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import base64
 import json
-import struct
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from sailenv_ros.assets.gltf_description import description_of
 from sailenv_ros.errors import AssetError
 
 __all__ = ["check_layout"]
+
+CHUNK_HEAD_BYTES = 8
 
 _ITEM_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 """Size of a number by its ``componentType`` [B]."""
@@ -52,7 +54,8 @@ def check_layout(path: Path) -> None:
     AssetError
         With the place in the description.
     """
-    tree, binary = _described(path)
+    tree, rest = description_of(path)
+    binary = max(0, len(rest) - CHUNK_HEAD_BYTES)
     for pattern, target in _POINTERS.items():
         for place, value in _places(path, tree, pattern):
             count = len(_entries(path, tree, target))
@@ -88,26 +91,6 @@ def _check_accessor(path: Path, tree: Any, accessor: Any, place: str) -> None:
         raise AssetError(path.name, f"{place} ends at byte {end}, and {above} has {room}")
 
 
-def _described(path: Path) -> tuple[Any, int]:
-    """Return a file's description, and how many bytes of buffers follow it."""
-    data, binary = path.read_bytes(), 0
-    if path.suffix.lower() == ".glb":
-        if len(data) < 20:
-            raise AssetError(path.name, f"it has {len(data)} bytes, and no header")
-        version, _, length = struct.unpack_from("<3I", data, 4)
-        if (data[:4], version, data[16:20]) != (b"glTF", 2, b"JSON"):
-            raise AssetError(path.name, "it does not begin as a binary glTF 2 file does")
-        binary = max(0, len(data) - 28 - length)
-        data = data[20 : 20 + length]
-    try:
-        tree = json.loads(data)
-    except (ValueError, RecursionError) as problem:
-        raise AssetError(path.name, f"its description is no JSON ({problem})") from None
-    if not isinstance(tree, dict):
-        raise AssetError(path.name, "its description is no table")
-    return tree, binary
-
-
 def _buffer_bytes(path: Path, buffer: Any, place: str, binary: int) -> int:
     """Return how many bytes a buffer has: as it says, or fewer if there are fewer."""
     told = _number(path, buffer, "byteLength", place)
@@ -138,7 +121,7 @@ def _places(path: Path, tree: Any, pattern: str) -> Iterator[tuple[str, Any]]:
                 pairs = value.items() if isinstance(value, dict) else enumerate(value)
                 inner += [(f"{place}/{name}", one) for name, one in pairs]
             elif not isinstance(value, dict):
-                raise AssetError(path.name, f"{place} is {_short(value)}, and no table")
+                raise AssetError(path.name, f"{place} is {_short(value)}, and no JSON object")
             elif key in value:
                 inner.append((f"{place}/{key}".lstrip("/"), value[key]))
         found = inner
@@ -154,7 +137,7 @@ def _entries(path: Path, tree: Mapping[str, Any], name: str) -> list[Any]:
 
 def _number(path: Path, table: Any, key: str, place: str, default: int | None = None) -> int:
     if not isinstance(table, dict):
-        raise AssetError(path.name, f"{place} is {_short(table)}, and no table")
+        raise AssetError(path.name, f"{place} is {_short(table)}, and no JSON object")
     value = table.get(key, default)
     if type(value) is not int or value < 0:
         why = f"{place}/{key} is {_short(value)}, and an integer from 0 on is accepted"

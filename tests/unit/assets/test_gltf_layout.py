@@ -74,7 +74,7 @@ def _read(path: Path) -> Asset:
         ("buffers/0/uri", 3, "buffers/0/uri is 3, and a text is accepted"),
         ("meshes/0/primitives/0/attributes/NORMAL", 9, "attributes/NORMAL is 9, of 4 accessors"),
         ("meshes/0/primitives", "none", 'meshes/0/primitives is "none", and no list'),
-        ("meshes/0", 3, "meshes/0 is 3, and no table"),
+        ("meshes/0", 3, "meshes/0 is 3, and no JSON object"),
         ("materials", None, "meshes/0/primitives/0/material is 0, of 0 materials"),
         ("nodes/0/mesh", 5, "nodes/0/mesh is 5, of 1 meshes"),
         ("nodes/0/children", [0, 8], "nodes/0/children/1 is 8, of 1 nodes"),
@@ -97,7 +97,7 @@ def test_what_points_beyond_the_file_is_named(
     [
         (b"glTF", "it has 4 bytes, and no header"),
         (b"x" * 100, "it does not begin as a binary glTF 2 file does"),
-        (_glb([1], b""), "its description is no table"),
+        (_glb([1], b""), "its description is no JSON object"),
         (_glb({}, b"")[:-8], "it holds no triangles"),
         (_glb({}, b"").replace(b"{}", b"{{"), "its description is no JSON"),
     ],
