@@ -92,9 +92,13 @@ def test_a_kind_is_added_by_a_file_alone(tmp_path: Path) -> None:
 def test_names_of_generated_scenes() -> None:
     rules = rules_of()
     assert parsed_name("generated:kitchen:17", rules) == ("kitchen", 17)
-    for wrong in ("generated:", "generated:kitchen", "generated:kitchen:-1", "generated:a:b:c"):
+    for wrong in (
+        *("", ":", "kitchen", "kitchen:-1", "a:b:c", "kitchen:1.5", "kitchen:1e3", "kitchen:0x1"),
+        *("kitchen: 1", "kitchen:1\n", "kitchen:١٧", "KITCHEN:1", "🛋:1", "../kitchen:1", ":1"),
+        *(f"kitchen:{'9' * 40}", f"{'k' * 1000}:1", "kitchen:1/../../x", "kitchen\0:1"),
+    ):
         with pytest.raises(ValueError, match="generated:KIND:SEED"):
-            parsed_name(wrong, rules)
+            parsed_name(f"generated:{wrong}", rules)
     with pytest.raises(UnknownName, match="did you mean 'kitchen'"):
         parsed_name("generated:kitchn:1", rules)
 
