@@ -9,5 +9,5 @@ from sailenv_ros.dataset.streaming import DatasetStream
 __all__ = ["TorchStream"]
 
 
-class TorchStream(DatasetStream, IterableDataset):  # type: ignore[misc]  # PyTorch's is Any here
+class TorchStream(DatasetStream, IterableDataset):  # type: ignore[misc, unused-ignore]  # Any here
     """A `DatasetStream` that a `DataLoader` iterates over, each of its workers a part."""

@@ -17,6 +17,7 @@ from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.simulation.agent_table import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.system.memory import give_back_freed_memory
 from sailenv_ros.types.camera import MIN_SIZE_PX, Camera, CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.scene_info import SceneInfo
@@ -143,10 +144,13 @@ class FrameMaker:
         Its first picture needs meshes, textures and mirrored surroundings, which take a second or
         more: in the request that changes the scene, not in the deadline of a first frame.
         """
-        specs = self._scene.agents.specs  # without agents there is nobody to be drawn for
-        if specs and self._scene.world.scene != known:
+        if self._scene.world.scene == known:
+            return
+        specs = self._scene.agents.specs
+        if specs:  # else there is nobody to be drawn for
             views = ("rgb",) if any("rgb" in spec.views for spec in specs) else ("depth",)
             self.look(Camera(intrinsics=_SMALL), *views)
+        give_back_freed_memory()  # what the scene of before had
 
     def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.

@@ -62,14 +62,19 @@ def _made(parent: Path, prefix: str, again: Path | None) -> tuple[Path, int]:
             folder = None  # somebody else's: it may hold anything
         if folder is None:
             folder = Path(tempfile.mkdtemp(prefix=prefix, suffix=_HELD, dir=parent))
-        # Another one may take it for abandoned until it is locked.
-        with contextlib.suppress(FileNotFoundError):
+        try:
             lock = _opened(folder)
-            with contextlib.suppress(OSError):  # a file system without locks: nobody removes it
-                fcntl.flock(lock, fcntl.LOCK_EX)
-            if _is_there(folder, lock):
-                return folder, lock
-            os.close(lock)
+        except FileNotFoundError:
+            continue  # another one has taken it for abandoned, for it was not locked yet
+        except OSError:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+            raise
+        with contextlib.suppress(OSError):  # a file system without locks: nobody removes it
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        if _is_there(folder, lock):
+            return folder, lock
+        os.close(lock)
 
 
 def _remove_abandoned(parent: Path, prefix: str) -> None:

@@ -410,6 +410,7 @@ def test_lights_are_hung_up_and_taken_down(opened: OpenPage, simulation: Simulat
     page.get_by_text("Add a light").click()
     page.click(".add-light")
     until(lambda: names() == [*own, "point 1"], "a light of a name that is made")
+    expect(page.locator("[data-light='point 1'] .kind")).to_have_text("point")
     page.click(".add-light")
     until(lambda: names() == [*own, "point 1", "point 2"], "another one")
     page.select_option("#light-type", "spot")

@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -140,9 +141,11 @@ def test_errors_of_workers_reach_the_caller(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A scene that cannot be built, by a thread and by processes."""
-    wrong = {"type": "agent", "name": "eye", "agent": "nobody", "width": 48, "height": 48}
-    path = written_recipe(tmp_path, cameras=[wrong], formats=["webdataset"])
-    job = load_job(path)
+    eye = {"type": "agent", "name": "eye", "width": 48, "height": 48}
+    job = load_job(written_recipe(tmp_path, cameras=[eye], formats=["webdataset"]))
+    # The check of the file would tell of it.
+    wrong = job.recipe.cameras[0].model_copy(update={"agent": "nobody"})
+    job = replace(job, recipe=job.recipe.model_copy(update={"cameras": (wrong,)}))
     for workers in (1, 2):
         with pytest.raises(UnknownName, match="nobody"):
             list(dataset.stream(job, workers=workers))

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sailenv_ros.dataset.formats.tar_files import WRITE_BACK_BYTES, TarWriter
-from sailenv_ros.dataset.formats.webdataset import encoded
+from sailenv_ros.dataset.formats.view_files import encoded
 from sailenv_ros.errors import RecordingError
 
 NAMES = st.text("abcdefghij0123456789._-", min_size=1, max_size=90)
@@ -45,7 +45,7 @@ def test_real_numbers_are_the_npy_files_that_numpy_saves(dtype: type) -> None:
     values = np.arange(24).reshape(2, 3, 4).astype(dtype)[:, ::-1]
     saved = io.BytesIO()
     np.save(saved, np.ascontiguousarray(values), allow_pickle=False)
-    ending, contents = encoded(values)
+    ending, contents = encoded("depth", values)
     found = b"".join(one if isinstance(one, bytes) else one.tobytes() for one in contents)
     assert (ending, found) == ("npy", saved.getvalue())
 

@@ -64,3 +64,29 @@ def test_what_is_told_of_a_memory_error_names_the_limit() -> None:
     told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout
     sentence = "there is not enough memory for this"
     assert told.splitlines() == [sentence, f"{sentence}: 1024 MiB are allowed (ulimit -v)"]
+
+
+_FREED = """
+import numpy as np
+from pathlib import Path
+from sailenv_ros.system.memory import give_back_freed_memory, keep_freed_memory
+
+def resident_mib():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4 // 1024
+
+keep_freed_memory()
+blocks = [np.ones(12_000) for _ in range(3000)]
+pinned = blocks[::100]  # so that the heap cannot simply end sooner
+del blocks
+kept = resident_mib()
+give_back_freed_memory()
+print(kept - resident_mib())
+"""
+
+
+def test_freed_memory_is_given_back() -> None:
+    """Of 275 MiB that were freed among blocks in use, nearly all."""
+    done = subprocess.run(
+        [sys.executable, "-c", _FREED], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert int(done.stdout) > 200

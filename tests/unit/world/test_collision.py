@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import gc
 import math
+import os
 import tracemalloc
 from pathlib import Path
 from typing import Any
@@ -177,9 +179,13 @@ def test_a_folder_that_another_has_made_is_not_used(monkeypatch: pytest.MonkeyPa
     client = BulletClient()
     (first,) = _files(client, monkeypatch)
     first.parent.mkdir()
+    lock = os.open(first.parent, os.O_RDONLY)
+    fcntl.flock(lock, fcntl.LOCK_EX)  # as its maker does; one that nobody holds is abandoned
     try:
         (second,) = _files(client, monkeypatch)
         assert second.parent != first.parent
+        assert first.parent.is_dir()
     finally:
+        os.close(lock)
         first.parent.rmdir()
         client.close()
