@@ -72,6 +72,7 @@ BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
 # What some formats of data sets and remote places for them need, and the engine of many machines.
 DATASET = ["fsspec>=2024.2", "pyarrow>=15"]
+NOTEBOOK = ["ipykernel>=6.29", "jupyterlab>=4.2"]
 RAY = ["fsspec>=2024.2", "pyarrow>=15", "ray>=2.40"]
 DEV = [
     # The notebook among the examples is executed by a test.
@@ -215,6 +216,7 @@ setup(
         "dataset": DATASET,
         "ray": RAY,
         "eval": EVAL,
+        "notebook": NOTEBOOK,
         # Everything but ROS, which may be there already, and the tools for developers.
         "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL, *IMPORT}),
         "dev": DEV,

@@ -65,7 +65,7 @@ def test_every_requirement_is_pinned(python: str) -> None:
         if requirement.marker is None
         or any(
             requirement.marker.evaluate(environment | {"extra": extra})
-            for extra in ("", "ros", "assets", "bake", "bench", "eval", "all", "dev")
+            for extra in ("", "ros", "assets", "bake", "bench", "eval", "notebook", "all", "dev")
         )
     }
     assert len(wanted) > 20
