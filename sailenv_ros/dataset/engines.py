@@ -22,7 +22,7 @@ from sailenv_ros.dataset.shard_maker import ShardMaker
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
-from sailenv_ros.system.parent import end_with_parent
+from sailenv_ros.system.parent import end_at_once, end_with_parent
 from sailenv_ros.system.temporary_folders import temporary_folder
 
 __all__ = ["ProcessEngine", "SerialEngine", "engine_of"]
@@ -159,9 +159,4 @@ def _end(pool: ProcessPoolExecutor) -> None:
     """End workers that still run at once; what they have not finished is not there."""
     processes = list((getattr(pool, "_processes", None) or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
-    for process in processes:
-        process.terminate()
-    for process in processes:
-        process.join(5.0)
-        if process.exitcode is None:
-            process.kill()
+    end_at_once(processes)

@@ -19,7 +19,7 @@ from sailenv_ros.dataset.shard_plan import ShardPlan
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
-from sailenv_ros.system.parent import end_with_parent
+from sailenv_ros.system.parent import end_at_once, end_with_parent
 
 __all__ = ["DatasetStream"]
 
@@ -131,13 +131,8 @@ class DatasetStream:
         finally:
             for line in lines:
                 line.close()
+            end_at_once(processes)
             for process in processes:
-                process.terminate()
-            for process in processes:
-                process.join(5.0)
-                if process.exitcode is None:
-                    process.kill()
-                    process.join()
                 process.close()
 
 

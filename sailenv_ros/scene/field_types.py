@@ -21,6 +21,7 @@ __all__ = [
     "FIELD_ERROR",
     "Choice",
     "Colour",
+    "FieldType",
     "Number",
     "Vector",
     "Switch",
@@ -43,7 +44,7 @@ def field_error(sentence: str) -> PydanticCustomError:
     return PydanticCustomError(FIELD_ERROR, "{sentence}", {"sentence": sentence})
 
 
-class _FieldType:
+class FieldType:
     """Lets pydantic use `check` instead of its own validation."""
 
     __slots__ = ()
@@ -75,7 +76,7 @@ class _FieldType:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Number(Bounds, _FieldType):
+class Number(Bounds, FieldType):
     """A finite number within bounds; for ``Annotated[float, Number(...)]``.
 
     Attributes
@@ -160,7 +161,7 @@ class Vector:
 
 
 @dataclass(frozen=True, slots=True)
-class Colour(_FieldType):
+class Colour(FieldType):
     """A colour: ``#rrggbb`` in sRGB, or three linear numbers up to `most`; kept linear."""
 
     most: float = 1.0
@@ -202,7 +203,7 @@ class Colour(_FieldType):
 
 
 @dataclass(frozen=True, slots=True)
-class Switch(_FieldType):
+class Switch(FieldType):
     """True or false, and nothing that only resembles them."""
 
     def check(self, value: object) -> bool:
@@ -217,7 +218,7 @@ class Switch(_FieldType):
 
 
 @dataclass(frozen=True, slots=True)
-class Text(_FieldType):
+class Text(FieldType):
     """A text that matches a pattern.
 
     Attributes
@@ -243,7 +244,7 @@ class Text(_FieldType):
 
 
 @dataclass(frozen=True, slots=True)
-class Choice(_FieldType):
+class Choice(FieldType):
     """One of some words."""
 
     options: tuple[str, ...]

@@ -11,10 +11,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import core_schema
-
-from sailenv_ros.scene.field_types import Text, field_error
+from sailenv_ros.scene.field_types import FieldType, Text, field_error
 from sailenv_ros.scene.messages import shown
 
 __all__ = ["OfCategory", "Selector", "Which", "WhichObjects", "is_meant", "selectors_in"]
@@ -54,7 +51,7 @@ def selectors_in(value: object) -> list[Selector]:
     return found
 
 
-class _Selectors:
+class _Selectors(FieldType):
     """One selector or several; kept as a tuple."""
 
     _text = Text(r"[^\x00-\x1f]{1,100}", "a name, or a pattern with * and ?")
@@ -89,17 +86,8 @@ class _Selectors:
         ]
         return plain[0] if len(plain) == 1 else plain
 
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        writing = core_schema.plain_serializer_function_ser_schema(
-            self.written, when_used="json-unless-none"
-        )
-        return core_schema.no_info_plain_validator_function(self.check, serialization=writing)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
+    def json_schema(self) -> dict[str, Any]:
+        """Describe them to JSON Schema."""
         text = self._text.json_schema()
         one: dict[str, Any] = text
         if self._by_category:
