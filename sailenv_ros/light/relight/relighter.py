@@ -142,7 +142,8 @@ class Relighter:
             return snapshot
         if wanted:
             self._rendered += 1
-            soon = not lockstep or self._rendered > READY_FRAMES
+            # Never beside the first frame, which somebody waits for.
+            soon = self._rendered > (READY_FRAMES if lockstep else 1)
             if self.beforehand and soon and self._scene is None and self._preparing is None:
                 # Beside the frames, so that the first move finds everything ready.
                 self._preparing = self._background().submit(_scene_of, self._original, 1)

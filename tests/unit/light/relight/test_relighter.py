@@ -156,7 +156,7 @@ def test_what_goes_leaves_no_shadow(baked: WorldSnapshot) -> None:
     assert relighter.lit(unbaked, wanted=True, lockstep=True) is unbaked
 
 
-@pytest.mark.parametrize(("lockstep", "frames"), [(False, 1), (True, READY_FRAMES + 1)])
+@pytest.mark.parametrize(("lockstep", "frames"), [(False, 2), (True, READY_FRAMES + 1)])
 def test_the_first_move_finds_all_ready(baked: WorldSnapshot, lockstep: bool, frames: int) -> None:
     """What relighting needs is made beside frames that move nothing, and is what a frame makes."""
     relighter, other = Relighter(), Relighter()
