@@ -38,7 +38,6 @@ from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.recording.lockstep import due_steps
 from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -51,7 +50,7 @@ from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.system.temporary_folders import temporary_folder
-from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo

@@ -6,7 +6,6 @@ The same scene, seed and options give the same bytes, if the simulation was made
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -25,16 +24,14 @@ from sailenv_ros.recording.channels import (
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
-from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.listed_views import Views
-from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views
 
 __all__ = [
     "FRAME_TIMEOUT_S",
     "FrameRecorder",
-    "due_steps",
     "record_lockstep",
     "rendered",
     "rendered_ahead",
@@ -98,12 +95,6 @@ class FrameRecorder:
 class _Shot:
     step: int
     spec: AgentSpec
-
-
-def due_steps(rate_hz: float, count: int) -> list[int]:
-    """Return the physics steps at which an agent's frames fall due, from 0 on."""
-    # A step late rather than early, as the streams of a simulation do it.
-    return [math.ceil(number * STEPS_PER_SECOND / rate_hz - 1e-9) for number in range(count)]
 
 
 def rendered_ahead(asked: Iterable[Future[Frame]]) -> Iterator[Frame]:

@@ -6,6 +6,7 @@ an agent is. Both travel between `simulation.py` and every client of it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from sailenv_ros.errors import InvalidRequest
@@ -22,7 +23,15 @@ from sailenv_ros.types.validation import (
 )
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS, checked_views
 
-__all__ = ["MAX_AGENTS", "MAX_RATE_HZ", "RATE", "WAITED_RATE", "AgentPose", "AgentSpec"]
+__all__ = [
+    "MAX_AGENTS",
+    "MAX_RATE_HZ",
+    "RATE",
+    "WAITED_RATE",
+    "AgentPose",
+    "AgentSpec",
+    "due_steps",
+]
 
 MAX_AGENTS = 16
 MAX_RATE_HZ = float(STEPS_PER_SECOND)
@@ -111,3 +120,9 @@ class AgentPose:
     following: bool
     mover: str
     sim_time_ns: int
+
+
+def due_steps(rate_hz: float, count: int) -> list[int]:
+    """Return the physics steps at which an agent's frames fall due, from 0 on."""
+    # A step late rather than early, as the streams of a simulation do it.
+    return [math.ceil(number * STEPS_PER_SECOND / rate_hz - 1e-9) for number in range(count)]

@@ -24,7 +24,6 @@ from sailenv_ros.frame.motion import FORWARD_VIEWS
 from sailenv_ros.recording.lockstep import (
     FRAME_TIMEOUT_S,
     FrameRecorder,
-    due_steps,
     rendered,
     rendered_ahead,
 )
@@ -32,6 +31,7 @@ from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
+from sailenv_ros.types.agents import due_steps
 from sailenv_ros.types.light_choice import STEADY_LIGHTS, SteadyLight, checked_light
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views

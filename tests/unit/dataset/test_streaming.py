@@ -216,3 +216,16 @@ def test_ctrl_c_ends_all(recipe: Path, tmp_path: Path) -> None:
         while is_there(child.pid):
             assert time.monotonic() < deadline, "a process of the group is left"
             time.sleep(0.05)
+
+
+def test_frames_are_made_without_ros(recipe: Path) -> None:
+    """Where rclpy cannot be imported, as beside PyTorch in an environment of its own."""
+    program = (
+        "import sys; sys.modules['rclpy'] = None\n"
+        "from sailenv_ros import dataset\n"
+        f"print(next(iter(dataset.stream({str(recipe)!r}))).number)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=100, check=False
+    )
+    assert done.stdout == "0\n", done.stderr

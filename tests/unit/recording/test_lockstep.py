@@ -11,11 +11,11 @@ from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.recording.channels import AGENT_TOPICS, IMAGE, SCENE_INFO, message_of
-from sailenv_ros.recording.lockstep import due_steps, record_lockstep
+from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.progress import progress_line, size_in_bytes
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.camera import CameraIntrinsics
 
 pytestmark = pytest.mark.ros
