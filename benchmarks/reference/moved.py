@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from sailenv_ros.assets.folders import cache_folder
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight.baked_scene import BakedScene
@@ -33,6 +32,7 @@ from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.system.user_folders import cache_folder
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.assets.folders import cache_folder
+from sailenv_ros.system.user_folders import cache_folder
 
 __all__ = ["HOME", "ToolMissing", "Traced", "missing_views", "run_tool", "traced_views"]
 

@@ -1,19 +1,13 @@
-"""Paths of the packs, and of what they are made from, on this machine; nothing is read here."""
+"""Paths of the packs on this machine; nothing is read here."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 
+from sailenv_ros.system.user_folders import cache_folder, data_folder
+
 __all__ = ["cache_folder", "own_pack_folder", "pack_folders", "standard_pack_folder"]
-
-
-def cache_folder() -> Path:
-    """Return the folder for what can be made again: ``$SAILENV_CACHE``, else the user's cache."""
-    given = os.environ.get("SAILENV_CACHE")
-    if given:
-        return Path(given).expanduser()
-    return _base("XDG_CACHE_HOME", ".cache") / "sailenv_ros"
 
 
 def standard_pack_folder() -> Path:
@@ -40,10 +34,4 @@ def pack_folders() -> tuple[Path, ...]:
 
 
 def _user_packs() -> Path:
-    return _base("XDG_DATA_HOME", ".local/share") / "sailenv_ros" / "packs"
-
-
-def _base(variable: str, otherwise: str) -> Path:
-    given = os.environ.get(variable, "")
-    # The XDG specification wants relative paths ignored.
-    return Path(given) if given.startswith("/") else Path.home() / otherwise
+    return data_folder() / "packs"

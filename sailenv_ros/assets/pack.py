@@ -18,7 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from sailenv_ros.assets.checksums import file_checksum
 from sailenv_ros.assets.folders import own_pack_folder, standard_pack_folder
-from sailenv_ros.assets.glb import read_glb
+from sailenv_ros.assets.model_cache import read_once
 from sailenv_ros.errors import AssetError
 from sailenv_ros.scene.spec import CategorySpec
 from sailenv_ros.system.yaml_text import from_yaml
@@ -203,7 +203,7 @@ class AssetPack:
         problem = self._problem(entry.file, entry.sha256)
         if problem:
             raise AssetError(name, f"its file {path} {problem}; {self._remedy(name)}")
-        parts, hulls = read_glb(path)
+        parts, hulls = read_once(path, entry.sha256)
         parts = _glowing(entry, parts)
         if entry.collision == "hulls" and not hulls:
             raise AssetError(name, f"{path} holds no collision pieces")

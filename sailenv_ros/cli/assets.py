@@ -23,6 +23,7 @@ from sailenv_ros.light.bake.light_files import damaged_light
 from sailenv_ros.simulation.models.import_process import import_file_apart
 from sailenv_ros.simulation.models.thumbnails import is_whole_png, thumbnail_folder
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.system.array_cache import damaged_arrays
 from sailenv_ros.types.validation import checked_integer
 
 __all__ = ["add_parser", "run"]
@@ -42,9 +43,7 @@ def add_parser(subparsers: Any) -> None:
     build = actions.add_parser("build", help="fetch and make the standard pack of furniture")
     build.add_argument("--force", action="store_true", help="make it anew though it is there")
     build.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
-    actions.add_parser(
-        "verify", help="check every file of packs, sources, baked light and thumbnails"
-    )
+    actions.add_parser("verify", help="check every file of packs, sources, baked light and caches")
     listed = actions.add_parser(
         "list", help="list every object, with its category, size and licence"
     )
@@ -113,11 +112,12 @@ def _list(args: argparse.Namespace) -> int:
 
 def _verify(_: argparse.Namespace) -> int:
     """Print every damaged file and what makes it anew; 1 if there is one."""
-    problems = [*_pack_problems(), *_source_problems(), *_light_problems(), *_picture_problems()]
+    kinds = (_pack_problems, _source_problems, _light_problems, _array_problems, _picture_problems)
+    problems = [problem for kind in kinds for problem in kind()]
     for file, problem, remedy in problems:
         print(f"{file}: {problem}; {remedy}")
     if not problems:
-        print("packs, sources, baked light and thumbnails: all files are whole")
+        print("packs, sources, baked light and caches: all files are whole")
     return 1 if problems else 0
 
 
@@ -149,6 +149,11 @@ def _source_problems() -> Problems:
 def _light_problems() -> Problems:
     for path, what in damaged_light().items():
         yield path, what, "sailenv scene bake SCENE bakes it anew"
+
+
+def _array_problems() -> Problems:
+    for path, what in damaged_arrays().items():
+        yield path, what, "it is made anew when it is asked for"
 
 
 def _picture_problems() -> Problems:

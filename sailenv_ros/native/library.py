@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import hashlib
 import os
 import threading
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,12 @@ class NativeLibrary:
         if asked and asked not in self.instruction_sets:
             raise UnknownName("instruction set of this machine", asked, self.instruction_sets)
         self.instruction_set: str = asked or self.instruction_sets[-1]
+
+    @cached_property
+    def digest(self) -> str:
+        """Tells apart libraries, and instruction sets of them, that may round differently."""
+        code = hashlib.sha256(self.path.read_bytes()).hexdigest()
+        return f"{self.instruction_set} {code}"
 
     def symbol(self, name: str) -> Any:
         """Return an exported function of the instruction set, its types not declared yet."""

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 from sailenv_content import generation
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.folders import cache_folder, standard_pack_folder
+from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.pack import PACK_FILE
 from sailenv_ros.authoring.room_rules import names
 from sailenv_ros.system.files import make_folder, storage_errors, write_file
 from sailenv_ros.system.resources import resource_path
+from sailenv_ros.system.user_folders import cache_folder, remove_oldest
 
 if TYPE_CHECKING:
     from sailenv_content.generation.generator import Generator
@@ -60,7 +61,7 @@ class GeneratedScenes:
             with storage_errors("generated scenes", folder):
                 make_folder(folder)
                 write_file(path, made.text.encode(), overwrite=True)
-                _forget_oldest(folder, path)
+                remove_oldest(folder.glob("*.yaml"), most_files=MAX_FILES)
         return path
 
     @cached_property
@@ -69,14 +70,6 @@ class GeneratedScenes:
         from sailenv_content.generation.generator import Generator
 
         return Generator(assets=self._assets)
-
-
-def _forget_oldest(folder: Path, kept: Path) -> None:
-    """Delete the oldest files, so that requests cannot fill the disk; they can be made again."""
-    files = sorted(folder.glob("*.yaml"), key=lambda file: file.stat().st_mtime_ns)
-    for file in files[:-MAX_FILES]:
-        if file != kept:
-            file.unlink(missing_ok=True)
 
 
 def generation_state() -> str:

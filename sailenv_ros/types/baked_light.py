@@ -162,6 +162,8 @@ class BakedLight:
     probes : ProbeGrid
     environment : Environment or None
         The surroundings as the scene has them of itself; None until a world takes the bake.
+    checksum : str
+        Of the file that it was read from; empty for light that was never in one, or was changed.
     """
 
     fingerprint: str
@@ -169,3 +171,4 @@ class BakedLight:
     layers: tuple[LightLayer, ...]
     probes: ProbeGrid
     environment: Environment | None = None
+    checksum: str = ""

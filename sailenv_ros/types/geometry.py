@@ -48,6 +48,9 @@ SAME_PLACE_M = 1e-9
 SAME_DIRECTION = 1e-9
 """Sine of the angle to the vertical below which a direction has no heading."""
 
+_ORTHOGONAL = 1e-13
+"""Rows of a rotation whose products differ less from those of unit vectors need no mending."""
+
 BODY_FROM_OPTICAL: Matrix = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
 )
@@ -97,12 +100,9 @@ class Pose:
     @classmethod
     def from_matrix(cls, world_from_body: ArrayLike) -> Pose:
         """Make a pose from a (4, 4) rigid transform."""
-        from scipy.spatial.transform import Rotation  # takes long to import, and few need it
-
         matrix = np.asarray(world_from_body, dtype=np.float64)
         x, y, z = (float(v) for v in matrix[:3, 3])
-        qx, qy, qz, qw = (float(v) for v in Rotation.from_matrix(matrix[:3, :3]).as_quat())
-        return cls((x, y, z), (qx, qy, qz, qw))
+        return cls((x, y, z), _quat_xyzw_from_turn(matrix[:3, :3]))
 
     def turned(self, quat_xyzw: tuple[float, float, float, float]) -> Pose:
         """Return the pose in the same place whose axes are turned by a quaternion in its frame."""
@@ -224,6 +224,38 @@ def interpolate(start: Pose, end: Pose, fraction: float) -> Pose:
     delta = (turn.inv() * Rotation.from_quat(end.orientation_xyzw)).as_rotvec()
     x, y, z, w = (float(v) for v in (turn * Rotation.from_rotvec(delta * fraction)).as_quat())
     return Pose((float(position[0]), float(position[1]), float(position[2])), (x, y, z, w))
+
+
+def _quat_xyzw_from_turn(turn: Matrix) -> tuple[float, float, float, float]:
+    """Return the quaternion of a (3, 3) rotation, bit for bit that of SciPy's `Rotation`.
+
+    Every start needs some, and importing SciPy's takes 0.2 s. It is asked where the matrix is not
+    orthogonal, and so has to be mended.
+    """
+    skewed = np.abs(turn @ turn.T - np.eye(3)).max() > _ORTHOGONAL
+    if skewed or np.linalg.det(turn) < 0.0:
+        from scipy.spatial.transform import Rotation
+
+        x, y, z, w = (float(v) for v in Rotation.from_matrix(turn).as_quat())
+        return x, y, z, w
+    # F. L. Markley, "Unit Quaternion from Rotation Matrix", Journal of Guidance, Control, and
+    # Dynamics 31 (2008): by the largest of the four components.
+    m = turn.tolist()
+    trace = m[0][0] + m[1][1] + m[2][2]
+    sizes = (m[0][0], m[1][1], m[2][2], trace)
+    largest = sizes.index(max(sizes))
+    if largest == 3:
+        quat = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1], 1.0 + trace]
+    else:
+        i, j, k = largest, (largest + 1) % 3, (largest + 2) % 3
+        quat = [0.0, 0.0, 0.0, m[k][j] - m[j][k]]
+        quat[i] = 1.0 - trace + 2.0 * m[i][i]
+        quat[j] = m[j][i] + m[i][j]
+        quat[k] = m[k][i] + m[i][k]
+    # In this order: other sums round otherwise.
+    x, y, z, w = quat
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    return x / length, y / length, z / length, w / length
 
 
 def _unit_quat_xyzw(values: ArrayLike) -> tuple[float, float, float, float]:

@@ -83,7 +83,7 @@ class ContentsMaker:
         """Take the baked light off instances whose surfaces are others now."""
         if self.baked is not None:
             charts = {id_: c for id_, c in self.baked.charts.items() if id_ not in ids}
-            self.baked = replace(self.baked, charts=charts)
+            self.baked = replace(self.baked, charts=charts, checksum="")
 
     def light_lamps(self, poses: NDArray[np.float64]) -> None:
         """Find the lights that are in lamps now, some of which may have been moved."""

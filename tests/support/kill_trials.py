@@ -21,9 +21,9 @@ from typing import Any
 import yaml
 from mcap.reader import make_reader
 
-from sailenv_ros.assets.folders import cache_folder
 from sailenv_ros.light.bake.light_files import DIGEST_BYTES, MAGIC
 from sailenv_ros.system.files import UNFINISHED
+from sailenv_ros.system.user_folders import cache_folder
 from tests.support.waiting import until
 
 __all__ = [

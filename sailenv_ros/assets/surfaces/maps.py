@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sailenv_ros.system.array_cache import Arrays
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.model import Material, Texture
 
-__all__ = ["Floats", "Surface", "SurfaceMaps", "surface_of"]
+__all__ = ["Floats", "Surface", "SurfaceMaps", "surface_arrays", "surface_of"]
 
 Floats = NDArray[np.float32]
 
@@ -84,24 +85,34 @@ class Surface:
         return uvs
 
 
-def surface_of(name: str, maps: SurfaceMaps) -> Surface:
-    """Encode the maps as the textures of a material."""
+def surface_arrays(maps: SurfaceMaps) -> Arrays:
+    """Encode the maps as textures, and what else `surface_of` needs."""
     finish = np.zeros((*maps.roughness.shape, 4), dtype=np.uint8)
     finish[..., 1] = _bytes(maps.roughness)
     finish[..., 3] = 255
-    textures = (_srgb(maps.albedo), finish, _normals(maps.height_m, maps.tile_m))
-    for texture in textures:
-        texture.flags.writeable = False
+    return {
+        "colour": _srgb(maps.albedo),
+        "finish": finish,
+        "normals": _normals(maps.height_m, maps.tile_m),
+        "laid": np.array([*maps.tile_m, maps.turn_deg], dtype=np.float64),
+    }
+
+
+def surface_of(name: str, arrays: Arrays) -> Surface:
+    """Return the surface whose `surface_arrays` these are."""
+    for array in arrays.values():
+        array.flags.writeable = False
+    width_m, height_m, turn_deg = arrays["laid"].tolist()
     material = Material(
         name=name,
         base_colour=(1.0, 1.0, 1.0, 1.0),
         metallic=0.0,
         roughness=1.0,
-        base_colour_texture=textures[0],
-        metallic_roughness_texture=textures[1],
-        normal_texture=textures[2],
+        base_colour_texture=arrays["colour"],
+        metallic_roughness_texture=arrays["finish"],
+        normal_texture=arrays["normals"],
     )
-    return Surface(material=material, tile_m=maps.tile_m, turn_deg=maps.turn_deg)
+    return Surface(material=material, tile_m=(width_m, height_m), turn_deg=turn_deg)
 
 
 def _bytes(values: Floats) -> NDArray[np.uint8]:

@@ -11,12 +11,19 @@ from typing import TypeAlias
 
 import numpy as np
 
-from sailenv_ros.assets.surfaces.maps import Floats, Surface, SurfaceMaps, surface_of
+from sailenv_ros.assets.surfaces.maps import (
+    Floats,
+    Surface,
+    SurfaceMaps,
+    surface_arrays,
+    surface_of,
+)
 from sailenv_ros.assets.surfaces.mineral import concrete, plaster, roughcast
 from sailenv_ros.assets.surfaces.textile import carpet, wallpaper_damask, wallpaper_stripes
 from sailenv_ros.assets.surfaces.tiles import glazed_squares, metro, stone
 from sailenv_ros.assets.surfaces.wood import herringbone, planks
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 
 __all__ = ["surface", "surface_names"]
 
@@ -82,6 +89,10 @@ def surface(name: str, *, colour: Vector3 | None = None, seed: int = 0) -> Surfa
 
 @lru_cache(maxsize=_KEPT)
 def _made(name: str, colour: Vector3, seed: int) -> Surface:
-    rng = np.random.default_rng([zlib.crc32(name.encode()), seed])
-    maps = _ENTRIES[name].recipe(rng, np.asarray(colour, dtype=np.float32))
-    return surface_of(name, maps)
+    def arrays() -> Arrays:
+        rng = np.random.default_rng([zlib.crc32(name.encode()), seed])
+        maps = _ENTRIES[name].recipe(rng, np.asarray(colour, dtype=np.float32))
+        return surface_arrays(maps)
+
+    code = code_digest("assets/surfaces", "types", libraries=("scipy",))
+    return surface_of(name, cached_arrays("surface", [name, colour, seed], arrays, code=code))

@@ -11,9 +11,9 @@ import io
 import json
 import logging
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.assets.folders import cache_folder
 from sailenv_ros.system.files import (
     file_lock,
     make_folder,
@@ -30,6 +29,7 @@ from sailenv_ros.system.files import (
     write_file,
     written_file,
 )
+from sailenv_ros.system.user_folders import cache_folder, remove_oldest
 from sailenv_ros.types.baked_light import (
     BakedLight,
     LightChart,
@@ -133,8 +133,9 @@ def _loaded(path: Path, fingerprint: str) -> BakedLight | None:
     if not path.is_file():
         return None
     try:
-        with np.load(io.BytesIO(_payload(path)), allow_pickle=False) as arrays:
-            baked = _baked_of(arrays)
+        payload, checksum = _payload(path)
+        with np.load(io.BytesIO(payload), allow_pickle=False) as arrays:
+            baked = replace(_baked_of(arrays), checksum=checksum.hex())
         if baked.fingerprint != fingerprint:
             raise ValueError("it was made for another scene")
     except Exception as problem:  # whatever a damaged file leads to: the light is baked anew
@@ -180,15 +181,16 @@ def is_baked(stamp: str) -> bool:
     return True
 
 
-def _payload(path: Path) -> memoryview:
-    """Read a file's arrays; ValueError if it is not what was written."""
+def _payload(path: Path) -> tuple[memoryview, bytes]:
+    """Read a file's arrays and their checksum; ValueError if they are not what was written."""
     data = memoryview(path.read_bytes())
     if data[: len(MAGIC)] != MAGIC:
         raise ValueError("it is no file of baked light")
     payload = data[len(MAGIC) + DIGEST_BYTES :]
-    if data[len(MAGIC) : len(MAGIC) + DIGEST_BYTES] != _digest(payload):
+    checksum = _digest(payload)
+    if data[len(MAGIC) : len(MAGIC) + DIGEST_BYTES] != checksum:
         raise ValueError("its checksum is wrong")
-    return payload
+    return payload, checksum
 
 
 def _digest(payload: memoryview) -> bytes:
@@ -208,24 +210,9 @@ def forget_oldest(folder: Path, most_bytes: int = MOST_BYTES) -> None:
 
     What was used last remains, however large it is.
     """
-    for kind in (f"*{SUFFIX}", f"*{DRAFT_SUFFIX}"):
-        total = 0
-        for number, (path, size) in enumerate(_latest_first(folder.glob(kind))):
-            total += size
-            if number and total > most_bytes:
-                path.unlink(missing_ok=True)
-    for path, _ in _latest_first(folder.glob("*.known"))[MOST_NOTES:]:
-        path.unlink(missing_ok=True)
-
-
-def _latest_first(paths: Iterable[Path]) -> list[tuple[Path, int]]:
-    """Return files and their sizes [bytes], those first that were used last."""
-    found = []
-    for path in paths:
-        with suppress(OSError):
-            status = path.stat()
-            found.append((-status.st_mtime_ns, path, status.st_size))
-    return [(path, size) for _, path, size in sorted(found)]
+    for kind in (SUFFIX, DRAFT_SUFFIX):
+        remove_oldest(folder.glob(f"*{kind}"), most_bytes=most_bytes)
+    remove_oldest(folder.glob("*.known"), most_files=MOST_NOTES)
 
 
 def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:

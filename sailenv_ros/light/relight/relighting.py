@@ -123,7 +123,7 @@ class _Relighting:
         else:
             layers = updates.spread(found_far, change, area, deltas)
         layers = updates.with_probes(layers, far, near)
-        return replace(self._scene.baked, layers=tuple(layers), charts=self._charts())
+        return replace(self._scene.baked, layers=tuple(layers), charts=self._charts(), checksum="")
 
     def _send_out(self, irradiance: Floats, direct: Floats) -> None:
         self._after[:] = self._scene.radiance(

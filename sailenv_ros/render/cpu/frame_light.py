@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.drawing import ROW_PADDING, Drawing
 from sailenv_ros.native.lamp import LAMP
+from sailenv_ros.native.library import native_library
 from sailenv_ros.native.light_maps import LayeredMap, blur_directions, sum_texels
 from sailenv_ros.native.render_types import LIGHT, REFLECTION_POINT, address, record
 from sailenv_ros.render.cpu.part_table import PartTable
@@ -127,7 +128,10 @@ class FrameLight:
         self._static_shadow: ShadowMap | None = None
         self._baked = BakedState()
         self._reflections = RoomReflections(
-            partial(blur_directions, threads=threads), partial(sum_texels, threads=threads), store
+            partial(blur_directions, threads=threads),
+            partial(sum_texels, threads=threads),
+            store,
+            native_library().digest,
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
         self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None

@@ -6,7 +6,7 @@ import hashlib
 from collections import OrderedDict
 from collections.abc import Hashable
 from functools import lru_cache
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["ReflectionStore"]
+__all__ = ["ReflectionStore", "array_digest", "room_key"]
 
 MOST_SHARES = 64
 """Of some rooms, each with a share for each of its lights; a share is about a megabyte."""
@@ -50,6 +50,7 @@ def room_key(
     """Return what decides on what is mirrored of a room, but for its lights.
 
     That is its baked light, what stands where it stood for it, and the points that it is seen from.
+    Light that was changed since it was read is told by identity, all else by its content.
     """
     contents = snapshot.contents
     assert contents.baked is not None
@@ -59,27 +60,32 @@ def room_key(
         told = drawn.instance.id, drawn.scale, tuple(drawn.lit_by)
         digest.update(repr(told).encode() + _looks(drawn.model))
     baked = contents.baked
-    return id(baked.layers), id(baked.charts), digest.digest(), points.tobytes()
+    light = baked.checksum or (id(baked.layers), id(baked.charts))
+    return light, digest.digest(), points.tobytes()
 
 
 @lru_cache(maxsize=512)
 def _looks(model: Model) -> bytes:
     """Return a hash of a model's meshes and materials; models never change."""
-    digest = hashlib.blake2b(digest_size=16)
+    digest = hashlib.sha256()
     for part in model.parts:
         mesh, material = part.mesh, part.material
-        for array in (mesh.positions, mesh.normals, mesh.uvs, mesh.triangles):
-            digest.update(repr((array.shape, array.dtype)).encode())
-            digest.update(np.ascontiguousarray(array).data)
-        textures = (
-            material.base_colour_texture,
-            material.metallic_roughness_texture,
-            material.normal_texture,
-        )
         told = (
             material.base_colour, material.metallic, material.roughness, material.emission,
             material.glow, material.alpha, material.alpha_cutoff, material.double_sided,
-            *map(id, textures),
         )  # fmt: skip
         digest.update(repr(told).encode())
+        for array in (
+            *(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles),
+            *(material.base_colour_texture, material.metallic_roughness_texture),
+            material.normal_texture,
+        ):
+            digest.update(b"-" if array is None else array_digest(array))
+    return digest.digest()
+
+
+def array_digest(array: NDArray[Any]) -> bytes:
+    """Return a hash of an array's type, shape and values."""
+    digest = hashlib.sha256(repr((array.shape, array.dtype.str)).encode())
+    digest.update(np.ascontiguousarray(array).data)
     return digest.digest()

@@ -9,7 +9,7 @@ go out. Every back end draws with it. Knows no graphics library.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from sailenv_ros.render.scene import reflection_map as reflections
 from sailenv_ros.render.scene.lightmap_compositing import Term
 from sailenv_ros.render.scene.reflection_points import ReflectionPoints
-from sailenv_ros.render.scene.reflection_store import ReflectionStore, room_key
+from sailenv_ros.render.scene.reflection_store import ReflectionStore, array_digest, room_key
+from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -62,6 +63,9 @@ class RoomReflections:
     store : ReflectionStore or None
         Serves several rooms, one after another, some of which are shown again; None keeps nothing
         but the room that is shown.
+    drawn_by : str
+        Tells apart what draws: shares of rooms in light as it was baked are kept on disk for it.
+        Empty keeps none.
 
     Attributes
     ----------
@@ -74,11 +78,16 @@ class RoomReflections:
     """
 
     def __init__(
-        self, blur: reflections.Blur, add: Sum, store: ReflectionStore[Share] | None = None
+        self,
+        blur: reflections.Blur,
+        add: Sum,
+        store: ReflectionStore[Share] | None = None,
+        drawn_by: str = "",
     ) -> None:
         self._blur = blur
         self._sum = add
         self._store = store
+        self._drawn_by = drawn_by
         self._room: Hashable = None
         self._shares: dict[Hashable, Share] = {}
         self._of: tuple[object, bytes] | None = None
@@ -112,7 +121,7 @@ class RoomReflections:
         if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
             self._shares, self._of = {}, of
             self.points.choose(snapshot)
-            if self._store is not None:
+            if self._store is not None or self._drawn_by:
                 self._room = room_key(snapshot, still, self.points.points)
         if self._environment is not contents.environment:
             self._environment = contents.environment
@@ -151,10 +160,29 @@ class RoomReflections:
         known = None if self._store is None else self._store.get((self._room, key))
         if known is not None:
             return known
-        made = self._seen(alone, look)
+        made = self._kept(key, alone, look, snapshot)
         if self._store is not None:
             self._store.put((self._room, key), made, snapshot)
         return made
+
+    def _kept(
+        self, key: Hashable, alone: Light | None, look: Look, snapshot: WorldSnapshot
+    ) -> Share:
+        """Return the share that is on disk, if it can be."""
+        contents = snapshot.contents
+        assert contents.baked is not None
+        if not self._drawn_by or not contents.baked.checksum:
+            return self._seen(alone, look)
+        sky = contents.environment.sky
+        told = replace(contents.environment, sky=None, exposure=0.0)
+        lit = (None if sky is None else array_digest(sky.radiance), told) if alone is None else key
+        arrays = cached_arrays(
+            "reflection",
+            [self._drawn_by, self._room, lit],
+            lambda: asdict(self._seen(alone, look)),
+            code=code_digest("render/cpu", "render/scene", "native", "types"),
+        )
+        return Share(**arrays)
 
     def _seen(self, alone: Light | None, look: Look) -> Share:
         every = [reflections.cube_cameras(point) for point in self.points.points]

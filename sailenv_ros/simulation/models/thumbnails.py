@@ -14,11 +14,11 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Protocol
 
-from sailenv_ros.assets.folders import cache_folder
 from sailenv_ros.render.contract import BackendName
 from sailenv_ros.simulation.models.preview_process import PreviewProcess
 from sailenv_ros.simulation.models.work_queue import WorkQueue
 from sailenv_ros.system.files import make_folder, write_file
+from sailenv_ros.system.user_folders import cache_folder
 from sailenv_ros.types.model import Asset
 
 __all__ = ["Thumbnails", "is_whole_png", "thumbnail_folder"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,37 @@ def test_a_room_that_is_shown_again_is_not_looked_at_again() -> None:
     brighter = replace(lamp, intensity=3.0)
     assert shown(room(box(), lights=(brighter,)), store).layers.max() > lit.layers.max()
     assert len(looked) == 3
+
+
+@pytest.mark.parametrize("checksum", ["", "of the light's file"])
+def test_shares_of_light_as_it_was_baked_are_kept_on_disk(
+    checksum: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By another process, too; not those of light that was changed, nor for another renderer."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    looked: list[Light | None] = []
+    rng = np.random.default_rng(5)
+
+    def look(light: Light | None, cameras: list[Camera]) -> list[NDArray[np.float32]]:
+        looked.append(light)
+        return [
+            rng.random((one.intrinsics.height, one.intrinsics.width, 3), np.float32)
+            for one in cameras
+        ]
+
+    def shown(drawn_by: str) -> RoomReflections:
+        made = RoomReflections(partial(blur_directions, threads=1), sum_texels, drawn_by=drawn_by)
+        lamp = Light(name="lamp", type="point", position_m=(0.0, 0.0, 1.0))
+        light = replace(baked({}, []), checksum=checksum)
+        made.update(room(box(), light, (lamp,)), STILL, None, look)
+        return made
+
+    first, again, other = shown("kernels"), shown("kernels"), shown("other kernels")
+    assert len(looked) == (4 if checksum else 6)
+    assert np.array_equal(first.layers, again.layers) == bool(checksum)
+    assert np.array_equal(first.around, again.around) == bool(checksum)
+    assert not np.array_equal(first.layers, other.layers)
+    assert shown("").layers.tobytes() != first.layers.tobytes()
 
 
 def test_a_store_is_bounded() -> None:

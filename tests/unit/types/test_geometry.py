@@ -142,3 +142,19 @@ def test_angles_become_the_quaternion_that_scipy_makes(angles: tuple[float, floa
     """Bit for bit."""
     scipys = Rotation.from_euler("xyz", angles, degrees=True).as_quat()
     assert np.array_equal(quat_xyzw_from_rpy_deg(angles), scipys)
+
+
+@given(
+    st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=4).filter(lambda q: np.hypot(*q[:2]) > 0.1),
+    st.floats(-180.0, 180.0),
+    st.sampled_from([0.0, 1e-14, 1e-9, 1e-3]),
+)
+def test_the_orientation_of_a_matrix_is_scipys(quat: list[float], yaw: float, skew: float) -> None:
+    """Bit for bit, and whether the matrix is orthogonal or not."""
+    turn = Rotation.from_quat(quat) * Rotation.from_euler("z", yaw, degrees=True)
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn.as_matrix() @ Rotation.from_euler("x", yaw, degrees=True).as_matrix()
+    matrix[0, 1] += skew
+    x, y, z, w = Rotation.from_matrix(matrix[:3, :3]).as_quat().tolist()
+    expected = Pose((0.0, 0.0, 0.0), (x, y, z, w))
+    assert Pose.from_matrix(matrix).orientation_xyzw == expected.orientation_xyzw

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.surfaces import Surface, surface, surface_names
-from sailenv_ros.assets.surfaces.maps import SurfaceMaps, surface_of
+from sailenv_ros.assets.surfaces.maps import SurfaceMaps, surface_arrays, surface_of
 from sailenv_ros.assets.surfaces.surface_catalogue import _made
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
@@ -104,7 +104,10 @@ def test_normals_lean_away_from_what_rises() -> None:
             roughness=flat,
             tile_m=(2.0, 2.0),
         )
-        normals = _textures(surface_of("wave", maps))[2][..., channel].astype(float) - 128.0
+        normals = (
+            _textures(surface_of("wave", surface_arrays(maps)))[2][..., channel].astype(float)
+            - 128.0
+        )
         # Rows run downwards: y grows from the last row to the first.
         sense = 1.0 if axis == 1 else -1.0
         slope = sense * 0.01 * np.pi * np.cos(turn)

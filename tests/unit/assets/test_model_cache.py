@@ -1,0 +1,103 @@
+"""Models and surfaces from the cache equal those that are made, byte for byte."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_content.standard.pack_build import build_standard_pack
+from sailenv_ros.assets import model_cache
+from sailenv_ros.assets.glb import read_glb
+from sailenv_ros.assets.model_cache import read_once
+from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.surfaces import surface_catalogue
+from sailenv_ros.errors import AssetError
+from sailenv_ros.system.array_cache import array_folder
+from sailenv_ros.types.model import ConvexShape, Material, ModelPart
+
+
+@pytest.fixture(scope="module")
+def pack() -> AssetPack:
+    return AssetPack(build_standard_pack())
+
+
+@pytest.fixture(autouse=True)
+def own_cache(pack: AssetPack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+
+
+def same(one: object, other: object) -> bool:
+    """Compare what models are made of, arrays by type, shape and bytes."""
+    if isinstance(one, np.ndarray):
+        assert isinstance(other, np.ndarray)
+        alike = (one.dtype, one.shape) == (other.dtype, other.shape)
+        return alike and one.tobytes() == other.tobytes()
+    if isinstance(one, tuple):
+        assert isinstance(other, tuple)
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, (ModelPart, Material, ConvexShape)) or hasattr(one, "positions"):
+        names = [field.name for field in fields(one)]  # type: ignore[arg-type]
+        return all(same(getattr(one, name), getattr(other, name)) for name in names)
+    return type(one) is type(other) and one == other
+
+
+# Cut-outs, glass, glow, textures of normals, parts of their own, no collision pieces, many meshes.
+@pytest.mark.parametrize(
+    "name", ["plant_03", "lamp_02", "bookcase_02", "armchair_01", "fork_01", "bathtub_02"]
+)
+def test_a_model_from_the_cache_is_that_of_its_file(pack: AssetPack, name: str) -> None:
+    entry = pack.entries[name]
+    path = pack.folder / entry.file
+    expected = read_glb(path)
+    for _ in range(2):
+        assert same(expected, read_once(path, entry.sha256))
+
+
+def test_materials_that_were_one_are_one(pack: AssetPack) -> None:
+    """Caches of renderers tell materials and textures apart by identity."""
+    entry = pack.entries["bookcase_02"]
+    path = pack.folder / entry.file
+    made = read_glb(path)[0]
+    for _ in range(2):
+        parts = read_once(path, entry.sha256)[0]
+        for attribute in ("material", "material.base_colour_texture"):
+            ids = [[id(_get(part, attribute)) for part in model] for model in (made, parts)]
+            groups = [[model.index(number) for number in model] for model in ids]
+            assert groups[0] == groups[1]
+
+
+def _get(part: ModelPart, attribute: str) -> object:
+    found: object = part
+    for name in attribute.split("."):
+        found = getattr(found, name)
+    return found
+
+
+def test_a_file_is_read_once(pack: AssetPack, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unless nobody knows its checksum; a broken one is refused each time."""
+    entry = pack.entries["fork_01"]
+    path = pack.folder / entry.file
+    read_once(path, entry.sha256)
+    count = len(list(array_folder().iterdir()))
+
+    def refuse(path: Path) -> None:
+        raise AssetError(path.name, "it was read again")
+
+    monkeypatch.setattr(model_cache, "read_glb", refuse)
+    read_once(path, entry.sha256)
+    for checksum in ("", "0" * 64):
+        with pytest.raises(AssetError):
+            read_once(path, checksum)
+    assert len(list(array_folder().iterdir())) == count
+
+
+@pytest.mark.parametrize("name", ["oak_planks", "metro_tiles"])
+def test_a_surface_from_the_cache_is_the_one_that_was_made(name: str) -> None:
+    arguments = name, (0.3, 0.2, 0.1), 7
+    made, again = (surface_catalogue._made.__wrapped__(*arguments) for _ in range(2))
+    assert same(made.material, again.material)
+    assert (made.tile_m, made.turn_deg) == (again.tile_m, again.turn_deg)
+    assert not again.material.base_colour_texture.flags.writeable
