@@ -44,7 +44,7 @@ def without(*names: str) -> dict[str, str]:
 
 def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
     """Every module, shader, scene and configuration file, and an executable for ros2 run."""
-    sources = copy_sources(tmp_path / "sources")
+    sources = copy_sources(tmp_path / "sources", compiled=True)
     pip = (sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation")
     run(*pip, "--wheel-dir", tmp_path, sources, folder=tmp_path, environment=without(*OURS))
     (path,) = tmp_path.glob("*.whl")
@@ -82,7 +82,7 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
 
 def test_without_a_compiler_the_build_says_what_is_missing(tmp_path: Path) -> None:
     """The native library is required: there is no wheel without it."""
-    sources = copy_sources(tmp_path / "sources")
+    sources = copy_sources(tmp_path / "sources", compiled=True)
     pip = (sys.executable, "-m", "pip", "wheel", "-v", "--no-deps", "--no-build-isolation")
     done = subprocess.run(
         [*pip, "--wheel-dir", tmp_path, sources],
