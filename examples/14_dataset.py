@@ -6,7 +6,7 @@ Without PyTorch its frames are read one after another.
 import tempfile
 from pathlib import Path
 
-from sailenv_ros.dataset import engine_of, load_job, make_dataset, open_dataset
+from sailenv_ros import dataset
 
 try:
     from torch.utils.data import DataLoader
@@ -30,10 +30,10 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         recipe = Path(folder) / "cubes.yaml"
         recipe.write_text(RECIPE)
-        made = make_dataset(load_job(recipe), Path(folder) / "cubes", engine_of(1, None))
+        made = dataset.make(recipe, Path(folder) / "cubes")
         print(f"{made.frames} frames, SHA-256 {made.sha256[:12]}")
         form = "numpy" if DataLoader is None else "torch"
-        with open_dataset(Path(folder) / "cubes", "train", format=form) as train:
+        with dataset.open(Path(folder) / "cubes", "train", format=form) as train:
             if DataLoader is None:
                 print("PyTorch is not installed; frame by frame, in this process:")
                 batches = (

@@ -1,4 +1,4 @@
-"""Picture the notebook among the examples: its first cells with what they return.
+"""Picture the first notebook of the tutorial: its first cells with what they return.
 
     PYTHONPATH=. python scripts/picture_notebook.py FILE
 
@@ -17,9 +17,9 @@ from nbclient import NotebookClient
 
 from tests.support.browser import chromium
 
-NOTEBOOK = Path(__file__).resolve().parents[1] / "examples" / "notebook.ipynb"
+NOTEBOOK = Path(__file__).resolve().parents[1] / "examples" / "tutorial" / "1_first_frame.ipynb"
 
-CELLS = slice(5, 8)
+CELLS = slice(3, 6)
 """A frame, and its arrays."""
 
 STYLE = """

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sailenv_ros.dataset.engines import engine_of
     from sailenv_ros.dataset.job import Job, RecipeError, load_job, load_recipe
     from sailenv_ros.dataset.making import MadeDataset, Progress, make_dataset
-    from sailenv_ros.dataset.opening import open_dataset, stream_dataset
+    from sailenv_ros.dataset.opening import make, open_dataset, stream_dataset
     from sailenv_ros.dataset.opening import open_dataset as open
     from sailenv_ros.dataset.opening import stream_dataset as stream
     from sailenv_ros.dataset.reader import Dataset, DatasetFrame
@@ -33,6 +33,7 @@ __all__ = [
     "engine_of",
     "load_job",
     "load_recipe",
+    "make",
     "make_dataset",
     "open",
     "open_dataset",
@@ -45,7 +46,7 @@ _HOMES = {
     "engines": ("engine_of",),
     "job": ("Job", "RecipeError", "load_job", "load_recipe"),
     "making": ("MadeDataset", "Progress", "make_dataset"),
-    "opening": ("open_dataset", "stream_dataset"),
+    "opening": ("make", "open_dataset", "stream_dataset"),
     "reader": ("Dataset", "DatasetFrame"),
     "samples": ("DatasetSamples",),
     "streaming": ("DatasetStream",),

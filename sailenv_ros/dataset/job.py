@@ -152,6 +152,11 @@ def load_recipe(path: Path) -> DatasetRecipe:
     return load_job(path).recipe
 
 
+def job_of(recipe: str | Path | Job) -> Job:
+    """Return the job of a recipe's file; errors as of `load_job`."""
+    return recipe if isinstance(recipe, Job) else load_job(Path(recipe))
+
+
 def load_job(path: Path) -> Job:
     """Read and check a recipe and what it names; makes nothing but generated scenes.
 

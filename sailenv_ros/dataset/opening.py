@@ -1,7 +1,8 @@
-"""The doors to a data set: its files read, or its frames made, as such or as samples."""
+"""The doors to a data set: made, its files read, or its frames made without files."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
@@ -10,9 +11,10 @@ from sailenv_ros.dataset.samples import DatasetSamples, SampleFormat, check_form
 
 if TYPE_CHECKING:
     from sailenv_ros.dataset.job import Job
+    from sailenv_ros.dataset.making import MadeDataset, Progress
     from sailenv_ros.dataset.streaming import DatasetStream
 
-__all__ = ["open_dataset", "stream_dataset"]
+__all__ = ["make", "open_dataset", "stream_dataset"]
 
 
 @overload
@@ -68,10 +70,10 @@ def stream_dataset(
         If the recipe's file has errors.
     """
     # Reading files needs no simulation.
-    from sailenv_ros.dataset.job import Job, load_job
+    from sailenv_ros.dataset.job import job_of
     from sailenv_ros.dataset.streaming import DatasetStream
 
-    job = recipe if isinstance(recipe, Job) else load_job(Path(recipe))
+    job = job_of(recipe)
     kind = DatasetStream
     if format == "torch":
         check_format(format)
@@ -80,3 +82,45 @@ def stream_dataset(
 
         kind = TorchStream
     return kind(job, split, format=format, workers=workers, ahead=ahead)
+
+
+def make(
+    recipe: str | Path | Job,
+    where: str | Path,
+    *,
+    workers: int = 1,
+    limit: int = 0,
+    on_progress: Callable[[Progress], None] | None = None,
+) -> MadeDataset:
+    """Make the data set of a recipe, or go on with one; as ``sailenv dataset make`` does.
+
+    Parameters
+    ----------
+    recipe : str, Path or Job
+        A file.
+    where : str or Path
+        A folder, or a URL that `fsspec` knows.
+    workers : int
+        Processes that make it, each with a simulation.
+    limit : int
+        Frames after which no other shard is begun; 0 makes all.
+    on_progress : callable or None
+        Called with a `Progress` now and then.
+
+    Returns
+    -------
+    made : MadeDataset
+
+    Raises
+    ------
+    RecipeError
+        If the recipe's file has errors.
+    SailenvError
+        As of `make_dataset`.
+    """
+    from sailenv_ros.dataset.engines import engine_of
+    from sailenv_ros.dataset.job import job_of
+    from sailenv_ros.dataset.making import make_dataset
+
+    told = {} if on_progress is None else {"on_progress": on_progress}
+    return make_dataset(job_of(recipe), where, engine_of(workers, None), limit=limit, **told)

@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -178,31 +179,52 @@ def test_the_example_of_tracks_runs(here: Path, capsys: pytest.CaptureFixture[st
     assert (here / "trails.png").stat().st_size > 20_000
 
 
-@pytest.mark.gl
-@pytest.mark.slow
-def test_the_notebook_runs_and_shows_frames(tmp_path: Path) -> None:
-    """In a kernel of its own: no cell fails; the simulation and each frame display as HTML."""
+TUTORIAL = sorted((ROOT / "examples" / "tutorial").glob("*.ipynb"))
+
+
+def shown_by(notebook: Path, folder: Path) -> list[str]:
+    """Run a notebook in a kernel of its own; return what its cells display as HTML."""
     code = f"""
 import nbformat
 from nbclient import NotebookClient
-notebook = nbformat.read({str(ROOT / "examples" / "notebook.ipynb")!r}, as_version=4)
+notebook = nbformat.read({str(notebook)!r}, as_version=4)
 NotebookClient(notebook, timeout=100, kernel_name="python3").execute()
 nbformat.write(notebook, "executed.ipynb")
 """
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     command = [sys.executable, "-c", code]
     done = subprocess.run(
-        command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=115
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=115
     )
     assert done.returncode == 0, done.stderr
-    cells = json.loads((tmp_path / "executed.ipynb").read_text())["cells"]
-    shown = [
+    cells = json.loads((folder / "executed.ipynb").read_text())["cells"]
+    return [
         "".join(output["data"]["text/html"])
         for cell in cells
         for output in cell.get("outputs", ())
         if "text/html" in output.get("data", {})
     ]
-    table, frame, *others = shown
-    assert "optical" in table
-    assert re.findall(r"<figcaption>(\w+)", frame) == list(FIVE_VIEWS)
-    assert [re.findall(r"<figcaption>(\w+)", other) for other in others] == [["rgb", "depth"]] * 2
+
+
+@pytest.mark.gl
+@pytest.mark.slow
+@pytest.mark.parametrize("notebook", TUTORIAL, ids=lambda path: path.stem)
+def test_a_step_of_the_tutorial_runs(notebook: Path, tmp_path: Path) -> None:
+    """No cell fails; a simulation displays as a table, each frame as its pictures."""
+    shown = shown_by(notebook, tmp_path)
+    tables = [html for html in shown if "<figcaption" not in html]
+    frames = [html for html in shown if "<figcaption" in html]
+    if notebook.stem.startswith("1_"):
+        assert ["optical" in table for table in tables] == [True]
+        views = [re.findall(r"<figcaption>(\w+)", frame) for frame in frames]
+        assert views == [list(FIVE_VIEWS), ["rgb", "depth"], ["rgb", "depth"]]
+    assert frames or notebook.stem.startswith("5_")
+
+
+def test_the_tutorial_leads_from_step_to_step() -> None:
+    """Each notebook ends with a link to the next one, and holds no outputs."""
+    assert [int(path.stem.partition("_")[0]) for path in TUTORIAL] == [1, 2, 3, 4, 5, 6]
+    for path, following in pairwise(TUTORIAL):
+        cells = json.loads(path.read_text())["cells"]
+        assert f"]({following.name})" in "".join(cells[-1]["source"])
+        assert not any(cell.get("outputs") for cell in cells)
