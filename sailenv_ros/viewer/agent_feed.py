@@ -212,8 +212,10 @@ class _AgentFeed:
                 if not takers:
                     continue  # slow, or nothing moves
                 frame = self._simulation.capture(wanted, agent=self._agent)
-            for watcher, state in states.items():
-                watcher.seen = state
+            # Where time stands, a frame that waited in the stream may be of an earlier instant.
+            if frame.stamp_ns >= self._simulation.sim_time_ns or not self._stands():
+                for watcher, state in states.items():
+                    watcher.seen = state
             self._deliver(frame, takers)
 
     def _awaited_views(self, stream: FrameStream) -> tuple[str, ...]:
@@ -255,10 +257,13 @@ class _AgentFeed:
 
         Of the web viewer's own agent alone: a capture counts among an agent's frames.
         """
-        info = self._simulation.info
-        if self._agent != NAME or not (info.paused or info.mode == "lockstep"):
+        if self._agent != NAME or not self._stands():
             return []
         return [watcher for watcher, state in states.items() if state != watcher.seen]
+
+    def _stands(self) -> bool:
+        info = self._simulation.info
+        return info.paused or info.mode == "lockstep"
 
     def _state_of(self, watcher: ViewSubscription) -> object:
         """Return what is another value after each change of what one sees."""

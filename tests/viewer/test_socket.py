@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import AddressInUse, InvalidRequest
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import light_named
@@ -130,6 +132,35 @@ async def test_a_paused_scene_is_drawn_again_when_it_changes(server: ViewerServe
             await client.ask("despawn_object", obj=made["id"])
             while made["id"] in dict((await client.frame())["visible"]):
                 pass
+        finally:
+            await client.ask("resume")
+
+
+@in_a_loop
+async def test_the_instant_of_a_pause_is_drawn_though_an_older_frame_came_late(
+    server: ViewerServer, simulation: Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A busy machine hands on a frame of before the pause when time stands already."""
+    wait_for_frame = FrameStream.get
+    before: list[Frame] = []
+    late: list[Frame] = []
+
+    def get(stream: FrameStream, timeout_s: float) -> Frame:
+        if simulation.info.paused and not late:
+            late.append(before[0])
+            return late[0]
+        before.append(wait_for_frame(stream, timeout_s))
+        return before[-1]
+
+    monkeypatch.setattr(FrameStream, "get", get)
+    async with connected(server) as client:
+        await client.ask("watch", agent="debug_agent", views=["rgb"])
+        await client.frame()
+        await client.ask("pause")
+        try:
+            while (await client.frame())["time_s"] < simulation.sim_time_ns * 1e-9 - 1e-9:
+                pass
+            assert late
         finally:
             await client.ask("resume")
 
