@@ -156,7 +156,7 @@ ONE_LINERS = {
     place: code
     for place, code in ONE_LINERS.items()
     # Parameters of the node are called so, too, in their own table.
-    if not re.fullmatch(r"docs/interfaces\.md:\d+: agent\.\w+", place)
+    if not re.fullmatch(r"docs/parameters\.md:\d+: agent\.\w+", place)
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -141,7 +142,38 @@ def test_the_text_is_json_in_the_order_of_the_models() -> None:
     assert list(schema["properties"])[:3] == ["version", "name", "title"]
 
 
-def test_the_reference_page_is_not_stale() -> None:
+def test_the_reference_tables_are_not_stale() -> None:
     """Documentation of every key is written by the command that writes the schema."""
-    page = Path(__file__).parents[3] / "docs" / "scene_format.md"
-    assert not reference.is_stale(page, scene_schema(BEHAVIOURS))
+    docs = Path(__file__).parents[3] / "docs"
+    assert not reference.is_stale(docs, scene_schema(BEHAVIOURS))
+
+
+def test_the_reference_tables_have_every_key_of_every_kind() -> None:
+    """Kinds, and the keys of each with those of the table that it shares; no others."""
+    docs = Path(__file__).parents[3] / "docs"
+    schema = scene_schema(BEHAVIOURS)
+    tables = {
+        title: set(re.findall(r"^\|`(\w+)`\|", text, re.MULTILINE))
+        for page in reference.PAGES
+        for title, text in re.findall(
+            r"^### (.+?)$(.*?)(?=^### |\Z)",
+            (docs / page).read_text().partition(reference.MARKER)[2],
+            re.MULTILINE | re.DOTALL,
+        )
+    }
+    kinds = {name: title for page in reference.PAGES.values() for name, title in page.items()}
+    described = {name for name, kind in schema["$defs"].items() if kind.get("properties")} - {
+        "ObjectWaypoint"
+    }  # of behaviours, whose keys `sailenv behaviours` lists
+    assert described | {"", "_light", "_random"} == kinds.keys()
+    shared = {"Light": tables["Every light"], "Random": tables["Every entry"]}
+    for name in described:
+        keys = {
+            key
+            for key, entry in schema["$defs"][name]["properties"].items()
+            if "const" not in entry and entry.get("enum") != ["epoch"]
+        }
+        also = next((more for word, more in shared.items() if word in name), set())
+        also |= tables["A surface"] if name == "MaterialSpec" else set()
+        assert tables[kinds[name]] | also == keys, name
+    assert tables["The scene"] == set(schema["properties"])
