@@ -55,11 +55,12 @@ def topics_of_the_page() -> dict[str, str]:
 def services_of_the_page() -> dict[str, str]:
     """Return the services with their types, which follow from the names but for one."""
     found = {}
-    for name, effect in table("Services"):
-        assert effect, name
+    names = [name for _, names, _ in table("Services") for name in names.split(", ")]
+    for name in names:
         word = name.strip("`").rpartition("/")[2].title().replace("_", "")
         word = "GetDisplayNames" if word == "SpawnableDisplayNames" else word
         found[full_name(name)] = f"sailenv_msgs/srv/{word}"
+    assert len(found) == len(names)
     return found
 
 

@@ -77,7 +77,7 @@ class Randomisation(SceneModel):
     """The key of `Values` that it fills."""
 
     name: Name = Field(
-        description="unique among them; its values depend on it and the seed, not on other entries"
+        description="unique; the values depend on it and the seed, not on other entries"
     )
     every: Annotated[Literal["epoch", "frame"], Choice(EVERY)] = Field(
         default="epoch",
