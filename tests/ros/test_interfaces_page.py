@@ -42,13 +42,13 @@ def full_name(name: str) -> str:
 
 def topics_of_the_page() -> dict[str, str]:
     """Return the topics with their types, as ROS spells them."""
-    found = {}
-    for name, type_, about in table("Topics"):
+    found: dict[str, str] = {}
+    for names, type_, about in table("Topics"):
         needed = re.search(r"where `(\w+)` is installed", about)
         if needed and find_spec(needed[1]) is None:
             continue
         package, _, word = type_.strip("`").partition("/")
-        found[full_name(name)] = f"{package}/msg/{word}"
+        found |= {full_name(name): f"{package}/msg/{word}" for name in names.split(", ")}
     return found
 
 

@@ -81,7 +81,7 @@ class Randomisation(SceneModel):
     )
     every: Annotated[Literal["epoch", "frame"], Choice(EVERY)] = Field(
         default="epoch",
-        description="`epoch`: drawn when the scene begins; `frame`: for each instant that is drawn",
+        description="`epoch`: when the scene begins; `frame`: at each instant",
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
