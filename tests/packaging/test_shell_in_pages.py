@@ -1,0 +1,119 @@
+"""Every line for a shell that a page shows can be typed: its program, files and options exist.
+
+What is cheap is parsed by the program itself; nothing is installed, built or started.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from sailenv_ros.cli.main import command_parser
+from sailenv_ros.ros.nodes.parameter_table import PARAMETERS
+from tests.packaging.pages import LANGUAGES, blocks, sailenv_words, shell_lines
+from tests.packaging.project import ROOT
+
+LINES = shell_lines()
+
+SETUP = (ROOT / "setup.py").read_text()
+OTHERS = {"docker", "export", "jupyter", "ray", "rviz2", "source", "ssh"}
+"""Programs of others; of their arguments only paths in this repository are looked at."""
+
+
+def script(words: list[str]) -> None:
+    """A script of the repository, which can be executed."""
+    name = words[0].removeprefix("src/sailenv_ros/")
+    assert os.access(ROOT / name, os.X_OK)
+
+
+def sailenv(words: list[str]) -> None:
+    """Its parser takes the line."""
+    words = sailenv_words(words[1:])
+    assert command_parser(words).parse_args(words).command == words[0]
+
+
+def ros2(words: list[str]) -> None:
+    """Nodes are installed, launch files exist, parameters are declared."""
+    verb = words[1]
+    if verb == "run":
+        assert words[2] == "sailenv_ros"
+        assert f'"{words[3]} = ' in SETUP
+        given = re.findall(r"([\w.]+):=", " ".join(words[4:]))
+        declared = set(PARAMETERS) | {"__ns", "input"}
+        assert set(given) <= declared
+    elif verb == "launch":
+        assert (ROOT / "launch" / words[3]).is_file()
+    else:
+        assert verb in {"topic", "service", "security", "bag", "param"}
+
+
+def python(words: list[str]) -> None:
+    """The file or module exists, and knows the options."""
+    if words[1] == "-m":
+        if words[2] in {"venv", "colcon"}:
+            return
+        found = find_spec(words[2])
+        assert found is not None
+        path = Path(str(found.origin))
+    else:
+        path = ROOT / words[1]
+        if words[1] == "my_program.py":
+            return
+    source = path.read_text()
+    for option in words[2:]:
+        if option == "--":
+            break
+        if option.startswith("--"):
+            assert f'"{option}"' in source, option
+
+
+def pip(words: list[str]) -> None:
+    """Extras of this package are declared."""
+    assert words[1] == "install"
+    named = re.findall(r"(?:sailenv_ros|\.)\[([\w,]+)\]", " ".join(words))
+    for extra in ",".join(named).split(","):
+        assert not extra or f'"{extra}"' in SETUP, extra
+
+
+def other(words: list[str]) -> None:
+    """What it names in this repository exists."""
+    for word in words[1:]:
+        if re.match(r"(config|examples|scripts|scenes|docs)/", word):
+            assert (ROOT / word).exists(), word
+
+
+PROGRAMS: dict[str, Callable[[list[str]], None]] = {
+    "sailenv": sailenv,
+    "ros2": ros2,
+    "python": python,
+    "python3": python,
+    "pip": pip,
+    **dict.fromkeys(OTHERS, other),
+}
+
+
+@pytest.mark.parametrize("words", LINES.values(), ids=LINES)
+def test_a_line_for_a_shell_can_be_typed(words: list[str]) -> None:
+    name = words[0].rpartition("/")[2]
+    if re.match(r"(src/sailenv_ros/)?scripts/", words[0]):
+        script(words)
+    else:
+        PROGRAMS[name](words)
+
+
+def test_there_are_lines_of_each_kind() -> None:
+    """The test above has something to look at."""
+    names = {words[0].rpartition("/")[2] for words in LINES.values()}
+    assert len(LINES) > 80
+    assert names >= {"sailenv", "ros2", "python", "pip", "run", "setup"}
+
+
+def test_every_block_says_its_language() -> None:
+    """And it is one that the tests know what to do with."""
+    told = {place: block.partition("\n")[0][3:] for place, block in blocks()}
+    assert {place: word for place, word in told.items() if word not in LANGUAGES} == {}
