@@ -138,23 +138,24 @@ def _with_shared(kinds: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _lead(name: str, kinds: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a line on where further keys stand, and on keys with a single value."""
-    single = [
-        f"`{key}: {value}`"
-        for key, entry in kinds[name]["properties"].items()
-        if (value := _only_value(entry)) is not None
+    """Yield a line on keys of few values, and on where further keys stand."""
+    few = [
+        f"`{key}: {values[0]}`" + "".join(f" or `{value}`" for value in values[1:])
+        for key, entry in sorted(kinds[name]["properties"].items(), reverse=True)
+        if (values := _few_values(key, entry))
     ]
     family = _SHARED.get(name)
     if family is not None:
-        kind = " and ".join(single)
+        kind = ", ".join(few)
         also = f"the keys of [{_TITLES[family][1].lower()}]({_anchor(family, _TITLES[name][0])})"
         yield f"{kind}, and {also}." if kind else f"All {also}."
         yield ""
 
 
-def _only_value(entry: Mapping[str, Any]) -> str | None:
-    values = [entry["const"]] if "const" in entry else entry.get("enum", ())
-    return str(values[0]) if len(values) == 1 else None
+def _few_values(key: str, entry: Mapping[str, Any]) -> list[str]:
+    """Return the values of a key that a line tells instead of the table."""
+    values = [entry["const"]] if "const" in entry else entry.get("enum", [])
+    return values if len(values) == 1 or key == "every" else []
 
 
 def _table(model: Mapping[str, Any], page: str) -> Iterator[str]:
@@ -162,7 +163,7 @@ def _table(model: Mapping[str, Any], page: str) -> Iterator[str]:
     yield "|---|---|---|---|"
     required = model.get("required", ())
     for key, entry in model["properties"].items():
-        if _only_value(entry) is None:
+        if not _few_values(key, entry):
             default = "**needed**" if key in required else _default(entry)
             meaning = entry.get("description", "").replace("|", "\\|")
             yield f"|`{key}`|{_takes(entry, page)}|{default}|{meaning}|"

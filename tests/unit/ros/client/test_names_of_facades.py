@@ -36,7 +36,7 @@ def cells(text: str) -> dict[str, list[str]]:
     rows = [
         [cell.strip() for cell in line.strip("|").split("|")]
         for line in text.splitlines()
-        if line.startswith("| `")
+        if line.startswith("|`")
     ]
     assert [name for name, count in Counter(row[0] for row in rows).items() if count > 1] == []
     return {row[0].strip("`"): row[1:] for row in rows}
@@ -52,7 +52,7 @@ def grouped_names() -> dict[str, str]:
 def old_names() -> tuple[str, dict[str, list[str]]]:
     """Return the text before the table of names for scripts of the client, and the table."""
     section = PORTING.read_text().split("\n## Names for its scripts\n")[1]
-    before, _, table = section.partition("| name |")
+    before, _, table = section.partition("|name|")
     return before, cells(table)
 
 
