@@ -31,6 +31,16 @@ _RANDOM = {
     "RandomDistractors": "Random distractors",
 }
 
+_BEHAVIOURS = {
+    "linear_waypoints": "linear_waypoints, catmull_waypoints",
+    "open_and_close": "open_and_close",
+    "poltergeist": "poltergeist",
+    "rotate_rigidbody": "rotate_rigidbody",
+    "uniform_movement_random_bounce": "uniform_movement_random_bounce",
+    "wander_plane": "wander_plane",
+    "wrench": "wrench",
+}
+
 PAGES: Mapping[str, Mapping[str, str]] = {
     "scene_format.md": {"": "The scene"},
     "scene_rooms.md": {
@@ -70,6 +80,11 @@ PAGES: Mapping[str, Mapping[str, str]] = {
         "BodySpec": "A body",
         "LookAtSpec": "What is faced",
     },
+    "behaviours.md": {
+        "_behaviour": "Every behaviour",
+        **_BEHAVIOURS,
+        "ObjectWaypoint": "A waypoint of an object",
+    },
     "randomisation.md": {"_random": "Every entry", **_RANDOM},
 }
 """Names of the pages, with the kinds of entries that each describes and their headings."""
@@ -77,6 +92,7 @@ PAGES: Mapping[str, Mapping[str, str]] = {
 _SHARED = {
     **dict.fromkeys(_LIGHTS, "_light"),
     **dict.fromkeys(_RANDOM, "_random"),
+    **dict.fromkeys(_BEHAVIOURS, "_behaviour"),
     "MaterialSpec": "SurfaceSpec",
 }
 """Kinds whose table leaves out what another table has."""
@@ -94,7 +110,9 @@ def reference(schema: Mapping[str, Any], page: str) -> str:
     page : str
         Name of the page, one of `PAGES`.
     """
-    kinds = _with_shared({"": schema, **schema["$defs"]})
+    behaviours = [case["then"] for case in schema["$defs"]["BehaviourSpec"]["allOf"]]
+    named = {case["properties"]["type"]["const"]: case for case in behaviours}
+    kinds = _with_shared({"": schema, **schema["$defs"], **named})
     lines = [MARKER, "", "## Reference"]
     for name, title in PAGES[page].items():
         lines += ["", f"### {title}", "", *_lead(name, kinds), *_table(kinds[name], page)]
@@ -121,7 +139,7 @@ def is_stale(folder: Path, schema: Mapping[str, Any]) -> bool:
 def _with_shared(kinds: Mapping[str, Any]) -> dict[str, Any]:
     """Add the tables of shared keys; take these keys out of the kinds that share them."""
     found = dict(kinds)
-    for shared in ("_light", "_random"):
+    for shared in ("_light", "_random", "_behaviour"):
         members = [kinds[name] for name, family in _SHARED.items() if family == shared]
         first, *others = members
         same = {
@@ -129,7 +147,7 @@ def _with_shared(kinds: Mapping[str, Any]) -> dict[str, Any]:
             for key, entry in first["properties"].items()
             if all(other["properties"].get(key) == entry for other in others)
         }
-        found[shared] = {"properties": same, "required": first["required"]}
+        found[shared] = {"properties": same, "required": first.get("required", ())}
     for name, family in _SHARED.items():
         known = found[family]["properties"]
         keys = {k: e for k, e in kinds[name]["properties"].items() if known.get(k) != e}
@@ -145,7 +163,7 @@ def _lead(name: str, kinds: Mapping[str, Any]) -> Iterator[str]:
         if (values := _few_values(key, entry))
     ]
     family = _SHARED.get(name)
-    if family is not None:
+    if family is not None and name not in _BEHAVIOURS:  # their titles are their types
         kind = ", ".join(few)
         also = f"the keys of [{_TITLES[family][1].lower()}]({_anchor(family, _TITLES[name][0])})"
         yield f"{kind}, and {also}." if kind else f"All {also}."
@@ -224,10 +242,11 @@ def _number(entry: Mapping[str, Any]) -> str:
     noun = "integer" if entry.get("type") == "integer" else "number"
     if low is not None and low == high:
         return f"`{low:g}`"
-    if low is None or high is None or high >= 1e4:
+    if low is None or high is None or high == 1e6 or high >= 2**31 - 1:
         sign = "≥" if above is None else ">"
         return noun if low is None or low < 0 else f"{noun} {sign}{low:g}"
-    return f"{noun} {low:g}…{high:g}" if above is None else f"{noun} >{low:g}, ≤{high:g}"
+    high = int(high) if high == int(high) else high
+    return f"{noun} {low:.10g}…{high}" if above is None else f"{noun} >{low:g}, ≤{high}"
 
 
 def _anchor(name: str, page: str) -> str:

@@ -162,18 +162,26 @@ def test_the_reference_tables_have_every_key_of_every_kind() -> None:
         )
     }
     kinds = {name: title for page in reference.PAGES.values() for name, title in page.items()}
-    described = {name for name, kind in schema["$defs"].items() if kind.get("properties")} - {
-        "ObjectWaypoint"
-    }  # of behaviours, whose keys `sailenv behaviours` lists
-    assert described | {"", "_light", "_random"} == kinds.keys()
-    shared = {"Light": tables["Every light"], "Random": tables["Every entry"]}
-    for name in described:
+    behaviours = {
+        case["then"]["properties"]["type"]["const"]: case["then"]
+        for case in schema["$defs"]["BehaviourSpec"]["allOf"]
+    }
+    assert behaviours.keys() == BEHAVIOURS.keys()
+    titles = set(kinds.values())
+    for name in behaviours:
+        (kinds[name],) = (title for title in titles if name in title.split(", "))
+    described = {name: kind for name, kind in schema["$defs"].items() if kind.get("properties")}
+    described |= behaviours
+    assert described.keys() | {"", "_light", "_random", "_behaviour"} == kinds.keys()
+    shared = {"Light": "Every light", "Random": "Every entry", "MaterialSpec": "A surface"}
+    for name, kind in described.items():
         keys = {
             key
-            for key, entry in schema["$defs"][name]["properties"].items()
+            for key, entry in kind["properties"].items()
             if "const" not in entry and key != "every"  # told in a line above the table
         }
-        also = next((more for word, more in shared.items() if word in name), set())
-        also |= tables["A surface"] if name == "MaterialSpec" else set()
+        family = next((title for word, title in shared.items() if word in name), None)
+        family = "Every behaviour" if name in behaviours else family
+        also = tables[family] if family else set()
         assert tables[kinds[name]] | also == keys, name
     assert tables["The scene"] == set(schema["properties"])
