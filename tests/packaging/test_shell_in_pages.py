@@ -15,7 +15,7 @@ import pytest
 
 from sailenv_ros.cli.main import command_parser
 from sailenv_ros.ros.nodes.parameter_table import PARAMETERS
-from tests.packaging.pages import LANGUAGES, blocks, sailenv_words, shell_lines
+from tests.packaging.pages import LANGUAGES, PAGES, blocks, sailenv_words, shell_lines
 from tests.packaging.project import ROOT
 
 LINES = shell_lines()
@@ -104,6 +104,36 @@ def test_a_line_for_a_shell_can_be_typed(words: list[str]) -> None:
         script(words)
     else:
         PROGRAMS[name](words)
+
+
+OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
+ELSEWHERE = {"--no-deps", "--require-hashes", "--ros-args", "--shm-size"}
+"""Options of programs of others."""
+
+
+def options_in_sentences(page: Path) -> set[str]:
+    """Return the options that a page names between backticks, outside of its blocks."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return {option for code in re.findall(r"`([^`]*)`", text) for option in OPTION.findall(code)}
+
+
+def test_options_in_sentences_are_known_to_some_program() -> None:
+    """To a command, a benchmark or a script of the repository, or to a program of others."""
+    folders = ("sailenv_ros/cli", "sailenv_bench", "benchmarks", "scripts", "tests/support")
+    files = [file for folder in folders for file in (ROOT / folder).rglob("*") if file.is_file()]
+    texts = [file.read_text() for file in files if file.suffix in (".py", "")]
+    known = {option for text in texts for option in OPTION.findall(text)} | ELSEWHERE
+    named = {page.name: options_in_sentences(page) - known for page in PAGES}
+    assert {page: options for page, options in named.items() if options} == {}
+
+
+@pytest.mark.parametrize("command", ["record", "export", "play"])
+def test_the_page_on_recording_has_every_option(command: str) -> None:
+    """Of the three commands; `-o` stands for its long name."""
+    shown = options_in_sentences(ROOT / "docs" / "recording.md") | {"--help", "--output"}
+    help_of = command_parser([command])
+    action = help_of._subparsers._group_actions[0]  # type: ignore[union-attr]  # argparse keeps them private
+    assert set(OPTION.findall(action.choices[command].format_usage())) - shown == set()  # type: ignore[index]
 
 
 def test_there_are_lines_of_each_kind() -> None:
