@@ -76,16 +76,20 @@ def test_keys_of_recipes_and_of_their_parts() -> None:
         if name.endswith("Camera") and "type" in getattr(kind, "model_fields", {})
     }
     assert told.keys() == DatasetRecipe.model_fields.keys() | cameras.keys()
-    parts = {"scenes": SceneRecipe, "clip": ClipRecipe, "annotations": AnnotationRecipe}
+    parts: dict[str, type[BaseModel]] = {
+        "scenes": SceneRecipe,
+        "clip": ClipRecipe,
+        "annotations": AnnotationRecipe,
+    }
     for name, part in parts.items():
         words = set(re.findall(r"\w+", told[name]))
         assert part.model_fields.keys() - words == set(), name
     page = (ROOT / "docs" / "datasets.md").read_text()
     common = re.search(r"Cameras have (.*) and a `type`", page)
     assert common is not None
-    for name, kind in cameras.items():
+    for name, camera in cameras.items():
         words = set(re.findall(r"\w+", told[name] + common[1])) | {"type"}
-        assert kind.model_fields.keys() - words == set(), name
+        assert camera.model_fields.keys() - words == set(), name
 
 
 def test_formats_of_data_sets() -> None:
