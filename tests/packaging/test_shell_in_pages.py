@@ -1,6 +1,6 @@
 """Every line for a shell that a page shows can be typed: its program, files and options exist.
 
-What is cheap is parsed by the program itself; nothing is installed, built or started.
+Lines of `sailenv` are parsed by its parser, and what is cheap is run; nothing is installed.
 """
 
 from __future__ import annotations
@@ -13,8 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.cli.main import command_parser
+from sailenv_ros.cli.main import command_parser, main
+from sailenv_ros.errors import SceneError
 from sailenv_ros.ros.nodes.parameter_table import PARAMETERS
+from sailenv_ros.scene.loader import load_scene
+from sailenv_ros.simulation.scenes import SceneLibrary
 from tests.packaging.pages import LANGUAGES, PAGES, blocks, sailenv_words, shell_lines
 from tests.packaging.project import ROOT
 
@@ -147,3 +150,37 @@ def test_every_block_says_its_language() -> None:
     """And it is one that the tests know what to do with."""
     told = {place: block.partition("\n")[0][3:] for place, block in blocks()}
     assert {place: word for place, word in told.items() if word not in LANGUAGES} == {}
+
+
+CHEAP = ("scene new", "scene render", "scene check", "scene generate", "scene list", "assets list")
+"""Commands of which a page's lines are run as they stand."""
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("page", ["docs/scene_format.md", "docs/rooms.md"])
+def test_cheap_lines_run_one_after_another(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In one folder, with the page's whole scene beside them as the file that it names."""
+    monkeypatch.chdir(tmp_path)
+    for place, text in blocks("yaml"):
+        if place.startswith(page) and "A ball and a box" in text:
+            (tmp_path / "my_scene.yaml").write_text(text)
+    commands = [words for place, words in LINES.items() if place.startswith(page)]
+    cheap = [words[1:] for words in commands if " ".join(words[1:3]) in CHEAP]
+    assert len(cheap) >= 3
+    assert [words for words in cheap if main(words) != 0] == []
+    assert list(tmp_path.glob("*.png"))
+
+
+def test_the_error_that_a_page_shows_is_the_one(tmp_path: Path) -> None:
+    """Of `sailenv scene check`, for the page's scene with a name misspelt."""
+    ((_, scene),) = (
+        (place, text) for place, text in blocks("yaml") if "title: A ball and a box" in text
+    )
+    ((_, shown),) = ((place, text) for place, text in blocks("text") if "scene_format" in place)
+    path = tmp_path / "my_scene.yaml"
+    path.write_text(scene.replace("asset: plane", "asset: plain"))
+    with pytest.raises(SceneError) as caught:
+        load_scene(path, knowledge=SceneLibrary().knowledge)
+    assert str(caught.value).replace(f"{tmp_path}/", "") == shown.strip()
