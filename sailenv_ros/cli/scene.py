@@ -194,8 +194,8 @@ def _schema(output: Path | None, *, check: bool) -> int:
         print(f"{path}: cannot be written: {problem.strerror}")
         return 1
     print(path)
-    page = path.parents[1] / "docs" / "scene_format.md"
-    if output is None and page.is_file():  # a checkout; an installed package has no docs
-        write_reference(page, scene_schema(behaviours))
-        print(page)
+    docs = path.parents[1] / "docs"
+    if output is None and docs.is_dir():  # a checkout; an installed package has no docs
+        write_reference(docs, scene_schema(behaviours))
+        print(docs)
     return 0

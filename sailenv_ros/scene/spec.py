@@ -83,10 +83,7 @@ class CategorySpec(SceneModel):
         Text(r"[a-z0-9][a-z0-9 _-]{0,62}", "lower-case letters, digits and spaces, at most 63"),
     ] = Field(description="not the name of another category")
     id: Annotated[int, Number(least=FIRST_SCENE_CATEGORY_ID, most=MAX_CATEGORY_ID, whole=True)] = (
-        Field(
-            description="value of its pixels; not 255; lower ones belong to the fixed table. With "
-            "one above 255 the category view has 16 bits"
-        )
+        Field(description="value of its pixels, not 255; above 255 the category view has 16 bits")
     )
     colour: (
         Annotated[str, Text("#[0-9a-fA-F]{6}", "a colour such as '#ff8800' (quoted)")] | None
@@ -136,18 +133,18 @@ class SceneSpec(SceneModel):
     )
     settled: Annotated[bool, Switch()] = Field(
         default=True,
-        description="true: what stands, or nearly stands, begins where it comes to rest; false: "
-        "everything begins exactly where it is said to, as in a saved scene",
+        description="true: objects that nearly stand begin at rest; false: all begin exactly "
+        "where the file says",
     )
     environment: EnvironmentSpec = Field(
         default_factory=EnvironmentSpec, description="ambient light, sky, exposure"
     )
     lights: tuple[LightSpec, ...] = Field(
-        default=(), max_length=64, description="what shines, besides the environment"
+        default=(), max_length=64, description="lights, besides the environment"
     )
     room: RoomSpec | None = optional("walls, floor and ceiling around the origin, with openings")
     objects: tuple[ObjectSpec, ...] = Field(
-        default=(), max_length=10000, description="what the scene holds"
+        default=(), max_length=10000, description="objects of the scene"
     )
     mover: MoverSpec | None = optional("the track that agents follow")
     movers: tuple[MoverSpec, ...] = Field(

@@ -39,15 +39,14 @@ class BodySpec(SceneModel):
     )
     friction: Annotated[float, _within_limits("friction")] = Field(
         default=_DEFAULTS.friction,
-        description="coefficient of sliding friction; without any, nothing that it touches turns "
-        "it",
+        description="coefficient of sliding friction; 0: contacts do not turn it",
     )
     restitution: Annotated[float, _within_limits("restitution")] = Field(
         default=_DEFAULTS.restitution,
-        description="bounce, from 0 (none) to 1 (all the speed is kept), whatever it strikes",
+        description="bounce: 0 none, 1 full speed, whatever it strikes",
     )
     gravity: Annotated[bool, Switch()] = Field(
-        default=_DEFAULTS.gravity, description="false for what floats"
+        default=_DEFAULTS.gravity, description="false: it floats"
     )
     velocity: MetresPerSecond = Field(
         default=(0.0, 0.0, 0.0), description="at the start, in the world's axes [m/s]"

@@ -73,12 +73,12 @@ class MoverSpec(Aimed):
     )
     controller: Annotated[Controller, Choice(get_args(Controller))] = Field(
         default="waypoint",
-        description="what moves it at the start: its waypoints, or commands and set poses",
+        description="at the start: moved by waypoints, or by commands and set poses",
     )
     keep_looking_at: LookAtSpec | None = optional(
-        "what it faces all the time, instead of where its track turns it"
+        "look-at constraint, replaces the track's rotation"
     )
-    body: BodySpec | None = optional("makes it a rigid body, moved by forces instead of waypoints")
+    body: BodySpec | None = optional("makes it a rigid body, moved by forces")
 
     @property
     def waypoint_poses(self) -> tuple[Pose, ...]:
@@ -146,9 +146,7 @@ class AgentSpecModel(Turned):
     )
     mover: Name | None = optional("the mover it follows; the scene's first if left out")
     position: Position | None = optional("where it starts when it does not follow [m]")
-    keep_looking_at: LookAtSpec | None = optional(
-        "what it faces all the time, also where a mover carries it"
-    )
+    keep_looking_at: LookAtSpec | None = optional("look-at constraint")
 
     def to_agent_spec(self) -> AgentSpec:
         """Return the data type that the simulation takes."""

@@ -71,24 +71,22 @@ class JointSpec(SceneModel):
         "fixed: goes with its parent"
     )
     parent: Name | None = optional(
-        "name of the object that carries it, which is static or has a joint itself; "
-        "position and rotation then count from that object's. Left out: the world"
+        "name of the object that carries it, static or on a joint; position and "
+        "rotation are relative to it. Default: the world"
     )
     axis: Direction = Field(
         default=(0.0, 0.0, 1.0), description="direction of the axis in the object's own frame"
     )
     origin: Position = Field(
         default=(0.0, 0.0, 0.0),
-        description="a point of a hinge's axis in the object's own frame, which its scale does "
-        "not change [m]",
+        description="a point of a hinge's axis in the object's unscaled frame [m]",
     )
     limits: JointLimits | None = optional(
-        "least and greatest position of the joint: [rad] of a hinge, [m] of a slide; "
-        "left out: it turns or moves without end"
+        "least and greatest position: [rad] of a hinge, [m] of a slide; default: unlimited"
     )
     position: JointCoordinate | None = optional(
-        "at the start [rad] or [m]; 0, where the object's position and rotation put "
-        "it, or the nearest limit, if left out"
+        "at the start [rad] or [m]; default: 0 (the object's position and "
+        "rotation), or the nearest limit"
     )
     velocity: JointCoordinate = Field(default=0.0, description="at the start [rad/s] or [m/s]")
     damping: Annotated[float, Number(least=0.0, most=1e6)] = Field(
@@ -96,8 +94,7 @@ class JointSpec(SceneModel):
     )
     friction: Annotated[float, Number(least=0.0, most=1e6)] = Field(
         default=1.0,
-        description="torque [N m] or force [N] that must be overcome before it moves: with it a "
-        "door stays where it was left",
+        description="torque [N m] or force [N] below which it does not move",
     )
     effort: Annotated[float, Number(above=0.0, most=1e6)] = Field(
         default=100.0,

@@ -27,10 +27,10 @@ class LessonSpec(SceneModel):
     objects: tuple[Name, ...] = Field(
         min_length=1,
         max_length=1000,
-        description="names of the objects that come; they are nowhere outside of their lessons",
+        description="names of its objects, absent outside of their lessons",
     )
     duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
-        "how long it takes [s]; left out: until its objects have come to the end of what moves them"
+        "length [s]; default: until its objects have stopped moving"
     )
     pause: _Pause | None = optional(
         "after it, without its objects [s]; that of the lessons if left out"
@@ -46,13 +46,12 @@ class LessonsSpec(SceneModel):
         min_length=1, max_length=1000, description="the lessons of a lap"
     )
     laps: Annotated[int, Number(least=1, most=1_000_000, whole=True)] | None = optional(
-        "how often the lessons are run through; left out: without end"
+        "number of laps; default: unlimited"
     )
     after: Annotated[After, Choice(get_args(After))] = Field(
         default="end",
-        description="after the last lap. end: their objects stay away, and time that runs by "
-        "itself is paused; loop: the laps begin again, drawn as the first time; go_on: the last "
-        "lesson does not end",
+        description="after the last lap. end: the objects stay away, and realtime is paused; "
+        "loop: the same laps begin again; go_on: the last lesson does not end",
     )
     pause: _Pause = Field(default=0.0, description="after each lesson, without its objects [s]")
     shuffled: Annotated[bool, Switch()] = Field(

@@ -24,10 +24,10 @@ class LookAtSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (_looks_at_something,)
 
-    object: Name | None = optional("an object of the scene; once it is gone, where it was last")
+    object: Name | None = optional("an object of the scene, or its last place")
     point: Position | None = optional(
-        "the point that is faced: of the world [m], or beside object in its own frame, "
-        "its scale applied; the object's origin if left out"
+        "the point that is faced [m]: in the world or, with object, in its scaled "
+        "frame; default: the object's origin"
     )
 
     def to_look_at(self) -> LookAt:

@@ -40,18 +40,17 @@ class LookSpec(SceneModel):
         "a material of rooms such as oak_planks, or that of a model, as asset/material"
     )
     picture: PictureName | None = optional(
-        "PNG or JPEG file that it shows, beside the scene file or in `pictures` there; "
-        "at most 8 MB and 16 million pixels"
+        "PNG or JPEG file beside the scene file or in `pictures` there; at most 8 "
+        "MB and 16 million pixels"
     )
     colour: LinearColour | None = optional(
-        "of the paint, wood or tiles, instead of the material's own; a picture is multiplied by it"
+        "replaces the material's colour; a picture is multiplied by it"
     )
     tint: LinearColour | None = optional("the colour and its pattern are multiplied by it")
-    roughness: Fraction | None = optional("0 for a mirror, 1 for chalk")
-    metallic: Fraction | None = optional("0 for paint, plastic, wood; 1 for bare metal")
+    roughness: Fraction | None = optional("0: a mirror; 1: chalk")
+    metallic: Fraction | None = optional("0: paint, plastic, wood; 1: bare metal")
     emission: Radiance | None = optional(
-        "light that it emits of itself: radiance [W/(m2 sr)], in the pattern of its "
-        "colour; 0 for a screen that is off"
+        "light that it emits: radiance [W/(m2 sr)], in the pattern of its colour; 0: none"
     )
     tile: (
         Annotated[
@@ -60,8 +59,8 @@ class LookSpec(SceneModel):
         ]
         | None
     ) = optional(
-        "width and height of one picture or pattern on the surface [m]; the material's "
-        "own if left out, 1 m for a picture"
+        "width and height of one picture or pattern [m]; default: the material's "
+        "own, 1 m for a picture"
     )
     turn: Annotated[float, Number(least=-360.0, most=360.0, unit="deg")] = Field(
         default=0.0, description="by which it is laid counter-clockwise, e.g. 90 for boards along y"
@@ -74,11 +73,11 @@ class MaterialSpec(LookSpec):
 
     part: Annotated[str, Text(r"[^\x00-\x1f]{1,200}", "the name of one of its materials")] = Field(
         default=ALL_PARTS,
-        description="name of one of the object's materials, as the window and `info.instances` "
-        "list them; `all` for every one",
+        description="name of one of the object's materials, as in `info.instances`; `all`: "
+        "every one",
     )
     mapping: Annotated[str, Choice(MAPPINGS)] = Field(
         default="box",
-        description="how a material or picture lies on it: `box` at its real size from the six "
-        "sides, `own` as the model's own pictures lie",
+        description="`box`: projected at real size from six sides; `own`: by the model's "
+        "texture coordinates",
     )

@@ -74,23 +74,21 @@ class ObjectSpec(Turned):
 
     name: Name = Field(description="unique among the objects of the scene")
     asset: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of an asset")] = Field(
-        description="what it is: a name of the catalogue, e.g. cube or Chair 01"
+        description="name in the catalogue, e.g. cube or Chair 01"
     )
     position: Position = Field(default=(0.0, 0.0, 0.0), description="of the asset's origin [m]")
     on: Name | None = optional(
-        "name of the object that carries it: position and turn then count from that "
-        "object's, and z from its upper side"
+        "name of the object below: position and rotation are relative to it, z to its upper side"
     )
     wall: Annotated[WallName, Choice(WALLS)] | None = optional(
-        "wall of the room that it has at its back, instead of position: "
-        "north (+y), east (+x), south (-y) or west (-x)"
+        "wall at its back, instead of position: north (+y), east (+x), south (-y) or west (-x)"
     )
     at: Annotated[float, Number(least=-50.0, most=50.0, unit="m")] = Field(
         default=0.0,
         description="its place along that wall, from the wall's middle, towards +x or +y [m]",
     )
     height: Annotated[float, Number(least=0.0, most=100.0, unit="m")] = Field(
-        default=0.0, description="of its origin above the floor, for what hangs on a wall [m]"
+        default=0.0, description="of its origin above the floor, for hanging objects [m]"
     )
     gap: Annotated[float, Number(least=0.0, most=50.0, unit="m")] = Field(
         default=0.0, description="between its back and the wall [m]"
@@ -99,7 +97,7 @@ class ObjectSpec(Turned):
         default=(1.0, 1.0, 1.0), description="one factor, or three along the asset's x, y, z"
     )
     static: Annotated[bool, Switch()] = Field(
-        default=False, description="true for what never moves: floors, walls, heavy furniture"
+        default=False, description="true: never moves (floors, walls, heavy furniture)"
     )
     mass: (
         Annotated[
@@ -108,30 +106,27 @@ class ObjectSpec(Turned):
         ]
         | None
     ) = optional("[kg]; the asset's own if left out")
-    gravity: Annotated[bool, Switch()] = Field(default=True, description="false for what floats")
+    gravity: Annotated[bool, Switch()] = Field(default=True, description="false: it floats")
     friction: Annotated[float, Number(least=0.0, most=10.0)] = Field(
         default=0.5, description="coefficient of sliding friction"
     )
-    restitution: Fraction = Field(
-        default=0.0, description="bounce, from 0 (none) to 1 (all the speed is kept)"
-    )
-    joint: JointSpec | None = optional("hinge or slide on which it moves, or to what it is fixed")
+    restitution: Fraction = Field(default=0.0, description="bounce: 0 none, 1 full speed")
+    joint: JointSpec | None = optional("hinge, slide or fixed connection")
     category: Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of a category")] | None = (
         optional("instead of the asset's category")
     )
     part_of: Name | None = optional(
-        "name of the object that it is a part of: the truth about objects tells the "
-        "parent of each; nothing holds them together"
+        "name of its parent object, for ground truth alone; nothing holds them together"
     )
     colour: LinearColour | None = optional(
         "paints the whole object, instead of the asset's colours"
     )
-    metallic: Fraction | None = optional("0 for paint, plastic, wood; 1 for bare metal")
-    roughness: Fraction | None = optional("0 for a mirror, 1 for chalk")
+    metallic: Fraction | None = optional("0: paint, plastic, wood; 1: bare metal")
+    roughness: Fraction | None = optional("0: a mirror; 1: chalk")
     materials: tuple[MaterialSpec, ...] = Field(
         default=(),
         max_length=64,
-        description="what it, or each of its materials, is made of instead, one after another",
+        description="replacements of its materials, applied in order",
     )
     velocity: MetresPerSecond = Field(
         default=(0.0, 0.0, 0.0), description="at the start, in the world's axes [m/s]"
@@ -140,15 +135,14 @@ class ObjectSpec(Turned):
         default=(0.0, 0.0, 0.0), description="at the start, about the world's axes [deg/s]"
     )
     behaviours: tuple[BehaviourSpec, ...] = Field(
-        default=(), max_length=16, description="how it moves of itself"
+        default=(), max_length=16, description="its motion by itself"
     )
     appear: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
         default=0.0,
-        description="time at which it comes, nowhere before: since the scene's beginning, or since "
-        "that of its lesson [s]",
+        description="time at which it appears, since the beginning of the scene or its lesson [s]",
     )
     leave: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
-        "time at which it goes, nowhere afterwards; counted as appear [s]"
+        "time at which it disappears; counted as appear [s]"
     )
 
     @property

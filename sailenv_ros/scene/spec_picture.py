@@ -32,7 +32,7 @@ class PictureSpec(SceneModel):
     )
     occlusion_strength: Annotated[float, _number("occlusion_strength")] = Field(
         default=_STANDARD.occlusion_strength,
-        description="how much corners and contacts darken the light from around; 0: off",
+        description="strength of ambient occlusion; 0: off",
     )
     occlusion_radius: Annotated[float, _number("occlusion_radius_m")] = Field(
         default=_STANDARD.occlusion_radius_m,
@@ -43,15 +43,15 @@ class PictureSpec(SceneModel):
     )
     supersampling: Annotated[int, _number("supersampling")] = Field(
         default=_STANDARD.supersampling,
-        description="samples on a side of a pixel, whose light is averaged; 1: its centre alone",
+        description="samples per side of a pixel; 1: its centre alone",
     )
     bloom: Annotated[float, _number("bloom")] = Field(
         default=_STANDARD.bloom, description="share of the light that is spread around; 0: off"
     )
     full_well: Annotated[float, _number("full_well")] = Field(
         default=_STANDARD.full_well,
-        description="electrons of a pixel of radiance 1, after exposure: the fewer, the more "
-        "noise; 0: none",
+        description="electrons of a pixel of radiance 1, after exposure; fewer give more noise;"
+        " 0: no noise",
     )
     read_noise: Annotated[float, _number("read_noise")] = Field(
         default=_STANDARD.read_noise,

@@ -152,7 +152,7 @@ class CurtainSpec(SceneModel):
     colour: LinearColour = Field(default=(0.55, 0.50, 0.42), description="of the cloth")
     drawn: Annotated[float, Number(least=0.0, most=0.95)] = Field(
         default=0.0,
-        description="how far they are drawn: 0 beside the window, near 1 in front of it",
+        description="how far they are closed: 0 open, near 1 closed",
     )
 
 
@@ -198,7 +198,7 @@ class DoorSpec(_OpeningBase):
     )
     hinged: Annotated[bool, Switch()] = Field(
         default=False,
-        description="true: the leaf is an object of its own, 'door 1 leaf', that opens and closes",
+        description="true: the leaf is an object 'door 1 leaf' that opens and closes",
     )
     colour: LinearColour = Field(default=(0.78, 0.77, 0.74), description="of leaf and frame")
 
@@ -219,8 +219,7 @@ class DoorwaySpec(SceneModel):
     height: _Opening = Field(default=DOOR_SIZE_M[1], description="of the opening [m]")
     door: Annotated[bool, Switch()] = Field(
         default=False,
-        description="true: a leaf that opens towards -x or -y, an object of its own: "
-        "'<wall> door 1 leaf'",
+        description="true: with a leaf '<wall> door 1 leaf' that opens towards -x or -y",
     )
     open: Annotated[float, Number(least=0.0, most=170.0, unit="deg")] = Field(
         default=0.0, description="by which its leaf is turned [deg]"

@@ -50,7 +50,7 @@ class EnvironmentSpec(SceneModel):
         description="light that arrives from everywhere, besides the sky's (radiance)",
     )
     background: Annotated[Literal["sky", "colour"], Choice(("sky", "colour"))] = Field(
-        default=_STANDARD.background, description="what is seen where there is no object"
+        default=_STANDARD.background, description="shown where there is no object"
     )
     background_colour: Radiance = Field(
         default=_STANDARD.background_colour, description="the colour for `background: colour`"
@@ -72,13 +72,12 @@ class EnvironmentSpec(SceneModel):
     )
     sky_rotation: Annotated[float, _of_environment("sky_rotation")] = Field(
         default=_STANDARD.sky_rotation,
-        description="turns the photographed sky about the vertical, counter-clockwise as seen from "
-        "above [deg], so that its sun stands where the light does",
+        description="turns the photographed sky counter-clockwise as seen from above [deg]",
     )
     sky_blend: Annotated[bool, Switch()] = Field(
         default=_STANDARD.sky_blend,
-        description="shows the photographed sky as bright as a photographer would blend it with "
-        "the room; false shows its radiance as it is, mostly white behind windows",
+        description="true: the photographed sky is darkened to suit a room; false: its true "
+        "radiance, mostly white behind windows",
     )
     exposure: Annotated[float, _of_environment("exposure")] = Field(
         default=_STANDARD.exposure,
@@ -97,8 +96,8 @@ class _LightBase(SceneModel):
     colour: Radiance = Field(default=(1.0, 1.0, 1.0), description="colour of the light")
     intensity: Annotated[float, _of_light("intensity")] = Field(
         default=1.0,
-        description="irradiance at normal incidence [W/m2] of a directional light, radiant "
-        "intensity [W/sr] of a point or spot light, radiance [W/(m2 sr)] of an area light",
+        description="directional: irradiance at normal incidence [W/m2]; point, spot: radiant "
+        "intensity [W/sr]; area: radiance [W/(m2 sr)]",
     )
     indirect_multiplier: Annotated[float, _of_light("indirect_multiplier")] = Field(
         default=1.0, description="scales only the light that bounces"
@@ -151,8 +150,8 @@ class SpotLightSpec(PointLightSpec):
     )
     exponent: Annotated[float, _of_light("exponent")] = Field(
         default=0.0,
-        description="the intensity falls with the cosine of the angle to the direction to this "
-        "power; 0 for a cone that is evenly bright",
+        description="the intensity falls with the cosine of the angle to this power; 0: an "
+        "evenly bright cone",
     )
 
 

@@ -1,8 +1,8 @@
 """Commands that the documentation shows are ones that the programs take.
 
-Lines for a shell and one-liners in tables are not run: a service call is type-checked against its
-service and bound to its operation, a `sailenv` line is parsed by its parser, a call of an agent or
-a simulation is bound to its signature and checked as the operation checks it.
+Nothing is run: a service call is type-checked against its service and bound to its operation, a
+`sailenv` command in a sentence is parsed by its parser, a call of an agent or a simulation in a
+table is bound to its signature and checked as the operation checks it.
 """
 
 from __future__ import annotations
@@ -27,9 +27,8 @@ from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.simulation.operations.operation import Caller
 from sailenv_ros.types.picture_settings import PictureSettings
+from tests.packaging.pages import PAGES, sailenv_words
 from tests.packaging.project import ROOT
-
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
 CALLER = cast(Caller, SimpleNamespace(own_agent=None))
 CLASSES = {"agent": Agent, "simulation": Simulation}
@@ -105,22 +104,13 @@ def check_changes(operation: Operation[..., Any], bound: inspect.BoundArguments)
 
 # -- the command line --------------------------------------------------------------------------
 
-SHELL = found(r"^(?:    )?(?:\$ )?((?:\w+=\S+ )?sailenv [a-z].*)")
 INLINE = found(r"`(sailenv [a-z][^`]*)`")
 
 
 def options_of(line: str) -> list[str]:
-    """Return the words after ``sailenv``; what stands for another word becomes such a one."""
+    """Return the words after ``sailenv``."""
     words = shlex.split(line, comments=True)
-    words = words[words.index("sailenv") + 1 :]
-    stands_for = {"N": "1", "F…": "png"}
-    return [stands_for.get(word, word) for word in words if word != "…"]
-
-
-@pytest.mark.parametrize("line", SHELL.values(), ids=SHELL)
-def test_a_line_for_a_shell_is_parsed(line: str) -> None:
-    words = options_of(line)
-    assert command_parser(words).parse_args(words).command == words[0]
+    return sailenv_words(words[words.index("sailenv") + 1 :])
 
 
 @pytest.mark.parametrize("line", INLINE.values(), ids=INLINE)
@@ -156,7 +146,7 @@ ONE_LINERS = {
     place: code
     for place, code in ONE_LINERS.items()
     # Parameters of the node are called so, too, in their own table.
-    if not re.fullmatch(r"docs/interfaces\.md:\d+: agent\.\w+", place)
+    if not re.fullmatch(r"docs/parameters\.md:\d+: agent\.\w+", place)
 }
 
 
@@ -190,6 +180,5 @@ def test_a_one_liner_of_a_table_fits_its_signature(code: str) -> None:
 def test_there_are_commands() -> None:
     """The tests above have something to look at."""
     assert len(CALLS) >= 6
-    assert len(SHELL) > 40
     assert len(INLINE) > 60
     assert len(ONE_LINERS) >= 6

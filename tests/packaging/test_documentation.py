@@ -98,11 +98,6 @@ def test_the_citation_and_the_changelog_have_the_version() -> None:
     assert heading in (ROOT / "CHANGELOG.md").read_text()
 
 
-def programs(page: str) -> list[str]:
-    """Return the Python programs of a page."""
-    return re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.MULTILINE | re.DOTALL)
-
-
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder in which programs run, without arguments."""
@@ -119,24 +114,6 @@ def run(code: str, capsys: pytest.CaptureFixture[str]) -> str:
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize("number", range(len(programs("docs/simulation.md"))))
-def test_a_program_of_the_page_on_simulation_runs(
-    number: int, here: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """As it stands there."""
-    out = run(programs("docs/simulation.md")[number], capsys)
-    assert out or (here / "frame.png").stat().st_size > 2_000
-
-
-@pytest.mark.gl
-@pytest.mark.usefixtures("here")
-def test_the_readme_s_program_without_ros_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    """A frame of the default size with its simulated time."""
-    (program,) = (code for code in programs("README.md") if "Simulation\n" in code)
-    assert run(program, capsys) == "(480, 640, 2) 33333333\n"
-
-
-@pytest.mark.gl
 def test_the_example_of_simulation_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The ball falls faster and faster, and the picture is written."""
     out = run((ROOT / "examples" / "11_simulation.py").read_text(), capsys)
@@ -145,18 +122,6 @@ def test_the_example_of_simulation_runs(here: Path, capsys: pytest.CaptureFixtur
     assert speeds == sorted(speeds)
     assert speeds[0] < speeds[-1]
     assert (here / "simulation.png").stat().st_size > 2_000
-
-
-@pytest.mark.gl
-@pytest.mark.usefixtures("here")
-@pytest.mark.parametrize("number", range(len(programs("docs/motion.md"))))
-def test_a_program_of_the_page_on_motion_runs(
-    number: int, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """As it stands there; a track through its own coordinates is the same track."""
-    out = run(programs("docs/motion.md")[number], capsys)
-    assert out.startswith(("(480, 640, 2) (480, 640, 3) 0.267 s", "(3, 20, 2)"))
-    assert "False" not in out
 
 
 def test_the_example_of_random_scenes_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

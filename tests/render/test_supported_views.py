@@ -66,7 +66,7 @@ def test_every_renderer_makes_every_view(backends: dict[str, RenderBackend]) -> 
 def test_the_page_has_every_view(backends: dict[str, RenderBackend]) -> None:
     """Array, encoding and renderers are those of the entry and of what is declared."""
     section = PAGE.read_text(encoding="utf-8").split("\n## Views\n")[1].split("\n## ")[0]
-    lines = [line for line in section.splitlines() if line.startswith("| `")]
+    lines = [line for line in section.splitlines() if line.startswith("|`")]
     shown = [[cell.strip() for cell in line[1:-1].split("|")] for line in lines]
     expected = []
     for spec in VIEWS.values():

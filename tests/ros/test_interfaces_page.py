@@ -1,4 +1,4 @@
-"""`docs/interfaces.md` beside a running node: every topic, service and parameter, and no other."""
+"""Pages beside a running node: every topic, service and parameter, and no other."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
-PAGE = Path(__file__).parents[2] / "docs" / "interfaces.md"
+ROOT = Path(__file__).parents[2]
+PAGES = {"Topics": "interfaces.md", "Services": "services.md", "Parameters": "parameters.md"}
 NAMESPACE = "/page"
 
 OF_ROS = re.compile(r".*/sim_node/|/parameter_events$|/rosout$")
@@ -27,22 +28,39 @@ OF_ROS = re.compile(r".*/sim_node/|/parameter_events$|/rosout$")
 
 def table(heading: str) -> list[list[str]]:
     """Return the cells of the first table below a heading of the page, without its head."""
-    section = PAGE.read_text().split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    text = (ROOT / "docs" / PAGES[heading]).read_text()
+    section = text.split(f"\n## {heading}\n")[1].split("\n## ")[0]
     rows = [line for line in section.splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in row[1:-1].split("|")] for row in rows[2:]]
 
 
-def names_and_types(heading: str) -> dict[str, str]:
-    """Return the names of a table with their types, as ROS spells them."""
-    kind = "srv" if heading == "Services" else "msg"
-    found = {}
-    for name, type_, about in table(heading):
+def full_name(name: str) -> str:
+    """Return a name of a table as the node has it."""
+    name = name.strip("`").replace("<agent>", "agent")
+    return name if name.startswith("/") else f"{NAMESPACE}/{name}"
+
+
+def topics_of_the_page() -> dict[str, str]:
+    """Return the topics with their types, as ROS spells them."""
+    found: dict[str, str] = {}
+    for names, type_, about in table("Topics"):
         needed = re.search(r"where `(\w+)` is installed", about)
         if needed and find_spec(needed[1]) is None:
             continue
-        name = name.strip("`").replace("<agent>", "agent")
         package, _, word = type_.strip("`").partition("/")
-        found[name if name.startswith("/") else f"{NAMESPACE}/{name}"] = f"{package}/{kind}/{word}"
+        found |= {full_name(name): f"{package}/msg/{word}" for name in names.split(", ")}
+    return found
+
+
+def services_of_the_page() -> dict[str, str]:
+    """Return the services with their types, which follow from the names but for one."""
+    found = {}
+    names = [name for _, names, _ in table("Services") for name in names.split(", ")]
+    for name in names:
+        word = name.strip("`").rpartition("/")[2].title().replace("_", "")
+        word = "GetDisplayNames" if word == "SpawnableDisplayNames" else word
+        found[full_name(name)] = f"sailenv_msgs/srv/{word}"
+    assert len(found) == len(names)
     return found
 
 
@@ -71,7 +89,7 @@ def offered(ask: Callable[[str, str], Any], expected: dict[str, str]) -> dict[st
 
 def test_the_page_has_every_topic_and_service(probe: Probe) -> None:
     """Names and types are those of the node."""
-    topics, services = names_and_types("Topics"), names_and_types("Services")
+    topics, services = topics_of_the_page(), services_of_the_page()
     assert offered(probe.node.get_publisher_names_and_types_by_node, topics) == topics
     found = offered(probe.node.get_service_names_and_types_by_node, services)
     assert {name: type_ for name, type_ in found.items() if "sim_node" not in name} == services
@@ -100,7 +118,7 @@ def test_the_page_has_every_parameter() -> None:
         name: (types[type(entry.default)], shown_default(entry.default), shown_range(entry))
         for name, entry in PARAMETERS.items()
     }
-    rows = {name.strip("`"): tuple(cells) for name, *cells in table("Parameters of `sim_node`")}
+    rows = {name.strip("`"): tuple(cells) for name, *cells in table("Parameters")}
     assert {name: row[:3] for name, row in rows.items()} == expected
     assert {name for name, row in rows.items() if "*live*" in row[3]} == set(LIVE)
 
@@ -119,7 +137,7 @@ def flattened(entries: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def test_the_file_of_parameters_has_every_one_with_its_default() -> None:
     """`config/sim_node.yaml`, where an empty list has to be written as one empty text."""
-    file = yaml.safe_load((PAGE.parents[1] / "config" / "sim_node.yaml").read_text())
+    file = yaml.safe_load((ROOT / "config" / "sim_node.yaml").read_text())
     found = flattened(file["/**"]["ros__parameters"])
     declared = {name: entry.default for name, entry in PARAMETERS.items()}
     assert {name: [] if value == [""] else value for name, value in found.items()} == {

@@ -77,11 +77,11 @@ class Randomisation(SceneModel):
     """The key of `Values` that it fills."""
 
     name: Name = Field(
-        description="unique among them; its values depend on it and the seed, not on other entries"
+        description="unique; the values depend on it and the seed, not on other entries"
     )
     every: Annotated[Literal["epoch", "frame"], Choice(EVERY)] = Field(
         default="epoch",
-        description="`epoch`: drawn when the scene begins; `frame`: for each instant that is drawn",
+        description="`epoch`: when the scene begins; `frame`: at each instant",
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:

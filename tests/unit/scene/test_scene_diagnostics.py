@@ -85,8 +85,7 @@ VALUES = {
     ),
     "missing key": (
         "  - {name: a}",
-        "3:5: objects[0].asset: is missing "
-        "(what it is: a name of the catalogue, e.g. cube or Chair 01)",
+        "3:5: objects[0].asset: is missing (name in the catalogue, e.g. cube or Chair 01)",
     ),
     "unknown key with a near one": (
         "  - {name: a, asset: cube, friktion: 1}",

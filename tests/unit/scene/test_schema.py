@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -141,7 +142,46 @@ def test_the_text_is_json_in_the_order_of_the_models() -> None:
     assert list(schema["properties"])[:3] == ["version", "name", "title"]
 
 
-def test_the_reference_page_is_not_stale() -> None:
+def test_the_reference_tables_are_not_stale() -> None:
     """Documentation of every key is written by the command that writes the schema."""
-    page = Path(__file__).parents[3] / "docs" / "scene_format.md"
-    assert not reference.is_stale(page, scene_schema(BEHAVIOURS))
+    docs = Path(__file__).parents[3] / "docs"
+    assert not reference.is_stale(docs, scene_schema(BEHAVIOURS))
+
+
+def test_the_reference_tables_have_every_key_of_every_kind() -> None:
+    """Kinds, and the keys of each with those of the table that it shares; no others."""
+    docs = Path(__file__).parents[3] / "docs"
+    schema = scene_schema(BEHAVIOURS)
+    tables = {
+        title: set(re.findall(r"^\|`(\w+)`\|", text, re.MULTILINE))
+        for page in reference.PAGES
+        for title, text in re.findall(
+            r"^### (.+?)$(.*?)(?=^### |\Z)",
+            (docs / page).read_text().partition(reference.MARKER)[2],
+            re.MULTILINE | re.DOTALL,
+        )
+    }
+    kinds = {name: title for page in reference.PAGES.values() for name, title in page.items()}
+    behaviours = {
+        case["then"]["properties"]["type"]["const"]: case["then"]
+        for case in schema["$defs"]["BehaviourSpec"]["allOf"]
+    }
+    assert behaviours.keys() == BEHAVIOURS.keys()
+    titles = set(kinds.values())
+    for name in behaviours:
+        (kinds[name],) = (title for title in titles if name in title.split(", "))
+    described = {name: kind for name, kind in schema["$defs"].items() if kind.get("properties")}
+    described |= behaviours
+    assert described.keys() | {"", "_light", "_random", "_behaviour"} == kinds.keys()
+    shared = {"Light": "Every light", "Random": "Every entry", "MaterialSpec": "A surface"}
+    for name, kind in described.items():
+        keys = {
+            key
+            for key, entry in kind["properties"].items()
+            if "const" not in entry and key != "every"  # told in a line above the table
+        }
+        family = next((title for word, title in shared.items() if word in name), None)
+        family = "Every behaviour" if name in behaviours else family
+        also = tables[family] if family else set()
+        assert tables[kinds[name]] | also == keys, name
+    assert tables["The scene"] == set(schema["properties"])

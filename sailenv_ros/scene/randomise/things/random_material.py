@@ -48,9 +48,9 @@ class RandomMaterial(Randomisation):
     tint: Annotated[Draw, Drawn(LinearColour)] | None = optional(
         "its colours and patterns are multiplied by it"
     )
-    roughness: Annotated[Draw, Drawn(Fraction)] | None = optional("0 for a mirror, 1 for chalk")
+    roughness: Annotated[Draw, Drawn(Fraction)] | None = optional("0: a mirror; 1: chalk")
     metallic: Annotated[Draw, Drawn(Fraction)] | None = optional(
-        "0 for paint, plastic, wood; 1 for bare metal"
+        "0: paint, plastic, wood; 1: bare metal"
     )
     turn: Annotated[Draw, Drawn(_Turn)] | None = optional(
         "by which it is laid counter-clockwise [deg]"

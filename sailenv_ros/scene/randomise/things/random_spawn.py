@@ -54,8 +54,8 @@ class RandomSpawn(EpochRandomisation):
         ]
         | None
     ) = optional(
-        "lowest and highest corner of the box that their origins are in [m]; if left out they "
-        "stand upon the free floor, where nothing else is"
+        "lowest and highest corner of the box of their origins [m]; default: they "
+        "stand on the free floor"
     )
     height: Annotated[Draw, Drawn(_Metres)] | None = optional(
         "of their lowest point above the free floor; 0 if left out [m]"
@@ -73,9 +73,9 @@ class RandomSpawn(EpochRandomisation):
     static: Annotated[bool, Switch()] = Field(
         default=False, description="true for what physics never moves"
     )
-    gravity: Annotated[bool, Switch()] = Field(default=True, description="false for what floats")
+    gravity: Annotated[bool, Switch()] = Field(default=True, description="false: it floats")
     behaviours: tuple[BehaviourSpec, ...] = Field(
-        default=(), max_length=16, description="how each of them moves of itself"
+        default=(), max_length=16, description="their motion by themselves"
     )
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:

@@ -224,7 +224,7 @@ def test_the_page_has_every_setting() -> None:
             rows = [
                 row
                 for row in page.splitlines()
-                if f"`{rule.type}`" in row.partition(f"| `{name}` |")[0] and f"| `{name}` |" in row
+                if f"`{rule.type}`" in row.partition(f"|`{name}`|")[0] and f"|`{name}`|" in row
             ]
             assert len(rows) == 1, (rule.type, name)
             assert str(field.description) in rows[0]

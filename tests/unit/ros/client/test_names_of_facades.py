@@ -36,30 +36,36 @@ def cells(text: str) -> dict[str, list[str]]:
     rows = [
         [cell.strip() for cell in line.strip("|").split("|")]
         for line in text.splitlines()
-        if line.startswith("| `")
+        if line.startswith("|`")
     ]
     assert [name for name, count in Counter(row[0] for row in rows).items() if count > 1] == []
     return {row[0].strip("`"): row[1:] for row in rows}
 
 
+def grouped_names() -> dict[str, str]:
+    """Return the names of the lists, each once, with what is said of them."""
+    listed = re.findall(r"^- `(\w+)`: (.+)$", GROUPS.read_text(), re.MULTILINE)
+    assert len(dict(listed)) == len(listed)
+    return dict(listed)
+
+
 def old_names() -> tuple[str, dict[str, list[str]]]:
     """Return the text before the table of names for scripts of the client, and the table."""
     section = PORTING.read_text().split("\n## Names for its scripts\n")[1]
-    before, _, table = section.partition("| name |")
+    before, _, table = section.partition("|name|")
     return before, cells(table)
 
 
 def test_every_name_stands_in_one_group_or_is_for_old_scripts() -> None:
     """What a group says of where a name is to be had is so."""
     both = {"Simulation": public(Simulation), "Agent": public(Agent)}
-    grouped, (_, old) = cells(GROUPS.read_text()), old_names()
+    grouped, (_, old) = grouped_names(), old_names()
     assert grouped.keys() | old.keys() == both["Simulation"] | both["Agent"]
     assert not grouped.keys() & old.keys()
-    for name, (what, only) in grouped.items():
-        assert what, name
-        assert only in ("", "`Simulation`", "`Agent`"), name
+    for name, what in grouped.items():
+        only = re.findall(r"\(only `(\w+)`\)$", what)
         have = [kind for kind, names in both.items() if name in names]
-        assert have == ([only.strip("`")] if only else ["Simulation", "Agent"]), name
+        assert have == (only or ["Simulation", "Agent"]), name
     groups = re.findall(r"^## (.+)$", GROUPS.read_text(), re.MULTILINE)
     assert len(groups) == len(set(groups)) > 10
 
@@ -71,7 +77,7 @@ def test_duplicates_for_old_scripts_are_one_class_and_one_page() -> None:
     for name, (_, instead) in old.items():
         found = re.match(r"`(?:info\.)?([a-z_]+)", instead)
         assert found, name
-        assert found[1] == "spawnables" or found[1] in cells(GROUPS.read_text()), name
+        assert found[1] == "spawnables" or found[1] in grouped_names(), name
 
 
 def test_names_of_the_original_client_are_told() -> None:
