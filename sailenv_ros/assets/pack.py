@@ -6,6 +6,7 @@ A folder in, `Asset`s out; a source of the `AssetLibrary`. Writing lies in `pack
 from __future__ import annotations
 
 import fnmatch
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -77,10 +78,6 @@ class PackPart(_PackModel):
         if not self.meshes and not self.materials:
             raise ValueError("a part needs meshes or materials")
         return self
-
-    def takes(self, mesh: ModelPart) -> bool:
-        """Return whether a mesh belongs to it."""
-        return _fits(mesh.names, self.meshes) or _fits((mesh.material.name,), self.materials)
 
 
 class PackEntry(_PackModel):
@@ -285,23 +282,31 @@ def _glowing(entry: PackEntry, meshes: tuple[ModelPart, ...]) -> tuple[ModelPart
 
 def _labelled(entry: PackEntry, meshes: Sequence[ModelPart]) -> tuple[AssetPart, ...]:
     """Find the meshes of each part."""
+    if not entry.parts:
+        return ()
+    by_mesh, by_material = defaultdict[str, set[int]](set), defaultdict[str, set[int]](set)
+    for place, mesh in enumerate(meshes):
+        by_material[mesh.material.name].add(place)
+        for name in mesh.names:
+            by_mesh[name].add(place)
     made = []
     for name, part in entry.parts.items():
-        taken = tuple(place for place, mesh in enumerate(meshes) if part.takes(mesh))
+        taken = _fitting(by_mesh, part.meshes) | _fitting(by_material, part.materials)
         if not taken:
             raise AssetError(entry.name, f"no mesh of {entry.file} is of its part {name!r}")
-        made.append(AssetPart(name=name, category=part.category, meshes=taken))
+        made.append(AssetPart(name=name, category=part.category, meshes=tuple(sorted(taken))))
     return tuple(made)
 
 
-def _fits(names: Sequence[str], patterns: Sequence[str]) -> bool:
-    # A bookcase asks ten thousand times, nearly always by whole names.
-    return any(name in patterns for name in names) or any(
-        fnmatch.fnmatchcase(name, pattern)
-        for pattern in patterns
-        if not WILDCARDS.isdisjoint(pattern)
-        for name in names
-    )
+def _fitting(places: Mapping[str, set[int]], patterns: Sequence[str]) -> set[int]:
+    """Return the places whose names fit a pattern, nearly all of which are whole names."""
+    found: set[int] = set()
+    for pattern in patterns:
+        found |= places.get(pattern, set())
+        if not WILDCARDS.isdisjoint(pattern):
+            for name in (one for one in places if fnmatch.fnmatchcase(one, pattern)):
+                found |= places[name]
+    return found
 
 
 def _read(path: Path) -> PackContent:

@@ -7,6 +7,7 @@ names can be checked however wrong the rest is.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any, get_args, get_origin
 
 from sailenv_ros.scene.fields import SceneModel
@@ -22,11 +23,9 @@ def entries(model: type[SceneModel], data: object, loc: Loc = ()) -> Iterator[En
     if not isinstance(data, Mapping):
         return
     yield loc, model, data
-    for key, field in model.model_fields.items():
-        choices = _models_in(field.annotation)
-        if not choices or key not in data:
+    for key, (choices, named) in _nested(model).items():
+        if key not in data:
             continue
-        named = get_origin(field.annotation) is dict
         for place, part in _parts(data[key], (*loc, key), named=named):
             chosen = _chosen(choices, part)
             if chosen is not None:
@@ -43,6 +42,16 @@ def _parts(value: object, loc: Loc, *, named: bool) -> Iterator[tuple[Loc, objec
             yield (*loc, index), part
     else:
         yield loc, value
+
+
+@cache
+def _nested(model: type[SceneModel]) -> Mapping[str, tuple[list[type[SceneModel]], bool]]:
+    """Return which keys hold models, which ones, and whether by names."""
+    found = {
+        key: (_models_in(field.annotation), get_origin(field.annotation) is dict)
+        for key, field in model.model_fields.items()
+    }
+    return {key: (choices, named) for key, (choices, named) in found.items() if choices}
 
 
 def _models_in(annotation: Any) -> list[type[SceneModel]]:
