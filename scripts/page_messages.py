@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import inspect
+import json
 import sys
 import types
 from collections import abc
@@ -27,6 +28,7 @@ from typing_extensions import (
     is_typeddict,
 )
 
+from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.viewer.client import OWN_COMMANDS
@@ -113,19 +115,14 @@ class Writer:
             return PLAIN[hint]
         if is_typeddict(hint) or is_dataclass(hint):
             return self._named(hint, asked)
-        origin, args = get_origin(hint), get_args(hint)
-        within = [
-            one if one is ... else self.type_of(one, asked=asked)
-            for one in args
-            if origin is not Literal
-        ]
+        origin: Any = get_origin(hint)
+        args = get_args(hint)
         if origin is Literal:
-            return " | ".join(
-                f'"{value}"' if isinstance(value, str) else str(value) for value in args
-            )
+            return " | ".join(json.dumps(value) for value in args)
+        within = [self.type_of(one, asked=asked) for one in args if one is not ...]
         if origin in (Union, types.UnionType):
             return " | ".join(within)
-        if origin is tuple and ... not in within:
+        if origin is tuple and ... not in args:
             return f"{'readonly ' if asked else ''}[{', '.join(within)}]"
         if origin in (list, tuple, abc.Sequence, abc.Collection):
             item = within[0]
@@ -141,7 +138,8 @@ class Writer:
         for parameter in signature.parameters.values():
             hint = hints[parameter.name]
             variable = parameter.kind is parameter.VAR_KEYWORD
-            kind = get_args(hint)[0] if get_origin(hint) is Unpack else hint
+            origin: Any = get_origin(hint)
+            kind = get_args(hint)[0] if origin is Unpack else hint
             needed = parameter.default is parameter.empty and not variable
             taken.append(
                 f"{parameter.name}{'' if needed else '?'}: {self.type_of(kind, asked=True)}"
@@ -161,11 +159,10 @@ class Writer:
         for key, hint in get_type_hints(kind, localns=NAMES, include_extras=True).items():
             if known is not None and key not in known:
                 continue
-            optional = get_origin(hint) is NotRequired or key not in getattr(
-                kind, "__required_keys__", {key}
-            )
-            inner = get_args(hint)[0] if get_origin(hint) is NotRequired else hint
-            lines.append(f"  {key}{'?' if optional else ''}: {self.type_of(inner, asked=asked)};")
+            origin: Any = get_origin(hint)
+            maybe = origin is NotRequired or key not in getattr(kind, "__required_keys__", {key})
+            inner = get_args(hint)[0] if origin is NotRequired else hint
+            lines.append(f"  {key}{'?' if maybe else ''}: {self.type_of(inner, asked=asked)};")
         self._declared[name] = "\n".join([*lines, "}", ""])
         return name
 
@@ -177,13 +174,13 @@ def declared(run: Callable[..., Any]) -> tuple[dict[str, Any], inspect.Signature
     return get_type_hints(function), whole.replace(parameters=list(whole.parameters.values())[1:])
 
 
-def declared_operation(command: Command) -> tuple[dict[str, Any], inspect.Signature]:
+def declared_operation(name: str, command: Command) -> tuple[dict[str, Any], inspect.Signature]:
     """Return the same of a command that is an operation."""
-    assert command.operation is not None
-    hints = get_type_hints(command.operation.run, localns=NAMES, include_extras=True)
+    operation: Operation[..., Any] = getattr(Operations, name)
+    hints = get_type_hints(operation.run, localns=NAMES, include_extras=True)
     if command.answer is not None:
         hints["return"] = command.answer
-    return hints, command.operation.signature
+    return hints, operation.signature
 
 
 def written() -> str:
@@ -201,8 +198,8 @@ def written() -> str:
     for name in sorted({*COMMANDS, *OWN_COMMANDS}):
         if name in OWN_COMMANDS:
             hints, signature = declared(OWN_COMMANDS[name])
-        elif COMMANDS[name].operation is not None:
-            hints, signature = declared_operation(COMMANDS[name])
+        elif COMMANDS[name].is_operation:
+            hints, signature = declared_operation(name, COMMANDS[name])
         else:
             hints, signature = declared(COMMANDS[name].run)
         commands.append(f"  {name}: {writer.command(hints, signature)};\n")

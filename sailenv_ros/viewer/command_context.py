@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.edit_history import Conversation, EditHistory
 from sailenv_ros.viewer.request_arguments import Arguments
@@ -42,15 +41,15 @@ class Command:
         Gives what is answered, in plain values for JSON.
     changes : bool
         True if it changes anything: those who only watch may not.
-    operation : Operation or None
-        Declares values and answer, where the command is one; else `run` does.
+    is_operation : bool
+        True if the operation of the same name declares values and answer; else `run` does.
     answer : type or None
         Type of the answer where it is another than the operation's result.
     """
 
     run: Run
     changes: bool
-    operation: Operation[..., Any] | None = None
+    is_operation: bool = False
     answer: Any = None
 
 

@@ -155,20 +155,20 @@ def _of_object(words: str, operation: Operation[..., Any]) -> Run:
 
 OPERATION_COMMANDS = CommandTable(
     {
-        **{e.name: Command(run=_plain(e), changes=False, operation=e) for e in _LOOKS},
-        **{e.name: Command(run=_plain(e), changes=True, operation=e) for e in _CHANGES},
+        **{e.name: Command(run=_plain(e), changes=False, is_operation=True) for e in _LOOKS},
+        **{e.name: Command(run=_plain(e), changes=True, is_operation=True) for e in _CHANGES},
         **{
             each.name: Command(
                 run=_of_object(words, each),
                 changes=True,
-                operation=each,
+                is_operation=True,
                 answer=None if each.name == "despawn_object" else ObjectValues,
             )
             for words, each in _OF_OBJECTS.items()
         },
         **{
             each.name: Command(
-                run=edits_surroundings(words)(_plain(each)), changes=True, operation=each
+                run=edits_surroundings(words)(_plain(each)), changes=True, is_operation=True
             )
             for words, each in _OF_SURROUNDINGS.items()
         },
