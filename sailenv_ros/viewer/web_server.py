@@ -35,6 +35,7 @@ from sailenv_ros.viewer.scene_json import (
     picture_settings_to_json,
     skies_to_json,
 )
+from sailenv_ros.viewer.stats_news import StatsNews
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "ViewerServer"]
@@ -43,9 +44,6 @@ _log = logging.getLogger(__name__)
 
 DEFAULT_HOST = "127.0.0.1"
 DEFAULT_PORT = 8090
-
-STATS_S = 0.5
-"""Time between two reports of how fast the simulation runs [s]."""
 
 OBJECTS_S = 1.0
 """Least time between two looks at what physics has moved [s]."""
@@ -127,6 +125,13 @@ class ViewerServer(LoopServer):
         self._touched = 0
         self._objects_told_s = 0.0
         self._history = EditHistory()
+        self._stats = StatsNews(
+            simulation,
+            self._history,
+            tell=self._announce_stats,
+            viewers=lambda: len(self._clients),
+            time_stands=self._announce_objects,  # no step tells of what programs move
+        )
         self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
         self._end_news = contextlib.ExitStack()
         self._start()
@@ -194,7 +199,7 @@ class ViewerServer(LoopServer):
                 lambda: _Entrance(runner, self._gate), self.host, self.port, backlog=BACKLOG
             )
             listening(server.sockets[0].getsockname()[1])
-            stats = asyncio.create_task(self._send_stats_repeatedly())
+            stats = asyncio.create_task(self._stats.run())
             await self._stop.wait()
             stats.cancel()
             server.close()
@@ -299,6 +304,7 @@ class ViewerServer(LoopServer):
     def _touch(self) -> None:
         self._touched += 1
         self._announce_objects()
+        self._stats.history_changed()
 
     def _announce_scene(self) -> None:
         for client in self._clients:
@@ -309,28 +315,9 @@ class ViewerServer(LoopServer):
         for client in self._clients:
             client.objects_changed()
 
-    async def _send_stats_repeatedly(self) -> None:
-        """Send how fast simulated time runs to all clients, every STATS_S seconds."""
-        before = (time.monotonic(), self._simulation.sim_time_ns)
-        while True:
-            await asyncio.sleep(STATS_S)
-            now = (time.monotonic(), self._simulation.sim_time_ns)
-            self._history.forget_other_scenes(self._simulation.info.epoch)
-            stats: StatsMessage = {
-                "type": "stats",
-                "time_s": now[1] * 1e-9,
-                "real_time_factor": max(0.0, (now[1] - before[1]) * 1e-9 / (now[0] - before[0])),
-                "skipped_frames": self._simulation.skipped_frames,
-                "viewers": len(self._clients),
-                "building": self._simulation.background_task,
-                "undo": self._history.undo_what,
-                "redo": self._history.redo_what,
-            }
-            if now[1] == before[1]:  # no step tells of what programs move
-                self._announce_objects()
-            before = now
-            for client in self._clients:
-                client.send_stats(stats)
+    def _announce_stats(self, stats: StatsMessage) -> None:
+        for client in self._clients:
+            client.send_stats(stats)
 
     def _file(self, name: str) -> web.Response:
         found = page_file(name)

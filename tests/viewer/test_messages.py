@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,7 +13,7 @@ import pytest
 from typing_extensions import NotRequired, get_type_hints
 
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.viewer import ViewerServer
+from sailenv_ros.viewer import ViewerServer, stats_news
 from sailenv_ros.viewer.messages import (
     FrameHead,
     HelloMessage,
@@ -115,6 +116,34 @@ async def test_what_does_not_change_is_not_told_again(
         while simulation.sim_time_ns < before + 2_500_000_000:
             await page.frame()
         assert sum(one["type"] == "object" for one in page.told) == 1
+
+
+async def until_undoable(page: ViewerSocket, what: str) -> None:
+    """Read until the last report tells of a change to undo, or to do again."""
+
+    def tells(_: object = None) -> bool:
+        reports = [one for one in page.told if one["type"] == "stats"]
+        return bool(reports) and reports[-1][what] == "changing the surroundings"
+
+    if not tells():
+        await page.until(tells)
+
+
+def test_what_can_be_undone_is_told_at_once(
+    simulation: Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not with the next report of how fast time runs."""
+    monkeypatch.setattr(stats_news, "STATS_S", 3600.0)
+
+    async def change(server: ViewerServer) -> None:
+        async with page_of(server) as page:
+            await page.ask("set_environment", changes={"exposure": 0.5})
+            for what in ("undo", "redo"):
+                await until_undoable(page, what)
+                await page.ask(what)
+
+    with ViewerServer(simulation, port=0) as server:
+        asyncio.run(change(server))
 
 
 @in_a_loop

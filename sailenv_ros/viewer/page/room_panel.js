@@ -60,11 +60,10 @@ export class RoomPanel {
       line("along y [m]", this.#y),
       line("height [m]", this.#z),
     ));
+    new ResizeObserver(() => this.#draw()).observe(this.#canvas);
     addEventListener("keydown", (event) => event.code === "Escape" && this.#cancel());
     store.on(["scene", "tab"], ({ tab }) => {
-      if (tab !== this.title) return;
-      this.#draw();
-      this.#refresh(null);
+      if (tab === this.title) this.#refresh(null);
     });
     store.on(["selected", "hello"], ({ tab }) => tab === this.title && this.#draw());
   }

@@ -9,7 +9,7 @@
  * All that more than one module knows.
  *
  * @typedef {object} State
- * @property {boolean} online Whether the simulator answers.
+ * @property {boolean} online False from a lost connection to the next greeting.
  * @property {HelloMessage | null} hello What never changes, as it was told last.
  * @property {SceneMessage | null} scene The scene as it was told last.
  * @property {Map<number, InstanceNews>} instances Its objects by their ids.
@@ -31,7 +31,7 @@
 /** @returns {State} */
 function initial() {
   return {
-    online: false, hello: null, scene: null, instances: new Map(), stats: null, frame: null,
+    online: true, hello: null, scene: null, instances: new Map(), stats: null, frame: null,
     agent: "", lens: { width: 640, height: 480, fov_deg: 60 }, views: { main: "", all: true, chosen: [] },
     tab: "View", selected: 0, object: null, placing: false, pixel: null,
     draws: { boxes: false, space: false, whole: false }, overlay: null, pathAlways: false,
