@@ -103,7 +103,7 @@ class AgentNews(TypedDict):
     rate_hz: float
     following: bool
     mover: str
-    picture: dict[str, Any]
+    picture: dict[str, float | bool | str]
     look_at: LookAtNews | None
 
 

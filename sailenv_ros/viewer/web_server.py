@@ -172,7 +172,7 @@ class ViewerServer(LoopServer):
     def _stepped(self, _: int) -> None:
         """Have selected objects told, which physics may have moved; called by the simulation's."""
         now = time.monotonic()
-        if self._selects and now - self._objects_told_s >= OBJECTS_S:
+        if now - self._objects_told_s >= OBJECTS_S and self._selects:
             self._objects_told_s = now
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 self._loop.call_soon_threadsafe(self._announce_objects)

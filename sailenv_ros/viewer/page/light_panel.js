@@ -14,6 +14,10 @@ const TYPES = /** @type {LightNews["type"][]} */ (Object.keys(INTENSITIES));
 export class LightPanel {
   title = "Light";
   #actions;
+  #sky;
+  #exposure;
+  #share;
+  #ambient;
   #lights = el("div", { id: "lights" });
   /** @type {readonly number[]} */
   #colour = [1, 1, 1];
@@ -26,16 +30,16 @@ export class LightPanel {
     this.#actions = actions;
     /** @type {(changes: EnvironmentChanges) => void} */
     const sky = latest((changes) => actions.ask("set_environment", { changes }));
-    this.sky = el("select", {
-      id: "sky", on: { change: () => sky(this.sky.value ? { sky_map: this.sky.value, background: "sky" } : { sky_map: "" }) },
+    this.#sky = el("select", {
+      id: "sky", on: { change: () => sky(this.#sky.value ? { sky_map: this.#sky.value, background: "sky" } : { sky_map: "" }) },
     });
-    this.exposure = slider("exposure", -3, 3, 0.05, (value) => sky({ exposure: value }));
-    this.share = slider("sky's light", 0, 1, 0.01, (value) => sky({ sky_share: value }));
-    this.ambient = slider("ambient", 0, 1, 0.005, (value) => sky({ ambient: this.#tinted(value) }));
+    this.#exposure = slider("exposure", -3, 3, 0.05, (value) => sky({ exposure: value }));
+    this.#share = slider("sky's light", 0, 1, 0.01, (value) => sky({ sky_share: value }));
+    this.#ambient = slider("ambient", 0, 1, 0.005, (value) => sky({ ambient: this.#tinted(value) }));
     this.root = el(
       "div",
       {},
-      section("Picture and sky", line("sky", this.sky), this.exposure.root, this.share.root, this.ambient.root),
+      section("Picture and sky", line("sky", this.#sky), this.#exposure.root, this.#share.root, this.#ambient.root),
       // The adder first: a list that grows does not push it away from the pointer.
       section("Lights", this.#adder(), this.#lights),
     );
@@ -46,12 +50,12 @@ export class LightPanel {
   #show({ scene, hello }) {
     if (!scene || !hello) return;
     const { environment, lights } = scene;
-    options(this.sky, ["", ...hello.skies].map((name) => ({ value: name, words: name || "plain colours" })));
-    put(this.sky, environment.sky_map);
-    this.exposure.set(environment.exposure);
-    this.share.set(environment.sky_share);
+    options(this.#sky, ["", ...hello.skies].map((name) => ({ value: name, words: name || "plain colours" })));
+    put(this.#sky, environment.sky_map);
+    this.#exposure.set(environment.exposure);
+    this.#share.set(environment.sky_share);
     this.#colour = environment.ambient;
-    this.ambient.set(Math.max(...environment.ambient));
+    this.#ambient.set(Math.max(...environment.ambient));
     if (lights.length) keyed(this.#lights, lights, ({ name }) => name, (light) => this.#light(light));
     else keyed(this.#lights, [""], String, () => ({ root: el("p", { class: "advice" }, "This scene has none.") }));
   }

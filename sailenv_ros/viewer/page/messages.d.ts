@@ -130,7 +130,7 @@ export interface AgentNews {
   rate_hz: number;
   following: boolean;
   mover: string;
-  picture: Record<string, any>;
+  picture: Record<string, number | boolean | string>;
   look_at: LookAtNews | null;
 }
 
