@@ -9,8 +9,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any, Final, ParamSpec, TypeVar
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
@@ -32,13 +32,16 @@ from sailenv_ros.viewer.commands import COMMANDS
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import packed, sheet_png, view_png
+from sailenv_ros.viewer.messages import HelloMessage, SentFile, StatsMessage
 from sailenv_ros.viewer.outbox import Outbox
 from sailenv_ros.viewer.request_arguments import Arguments, arguments_of_text
 from sailenv_ros.viewer.scene_json import scene_to_json
+from sailenv_ros.viewer.selected_object import SelectedObject
+from sailenv_ros.viewer.served_commands import served
 from sailenv_ros.viewer.view_subscription import ViewSubscription
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
-__all__ = ["Client"]
+__all__ = ["OWN_COMMANDS", "Client"]
 
 _log = logging.getLogger(__name__)
 
@@ -63,7 +66,7 @@ class Client:
     may_change : bool
         False for who may only watch.
     limits : ViewerLimits
-    greeting : dict
+    greeting : HelloMessage
         Sent first; what never changes.
     touch : callable
         Called after each command that may have changed what is seen.
@@ -80,7 +83,7 @@ class Client:
         feeds: AgentFeeds,
         may_change: bool,
         limits: ViewerLimits,
-        greeting: dict[str, Any],
+        greeting: HelloMessage,
         touch: Callable[[], None],
         history: EditHistory,
     ) -> None:
@@ -96,12 +99,12 @@ class Client:
         self._touch = touch
         self._loop = asyncio.get_running_loop()
         self._subscription: ViewSubscription | None = None
-        self._selected = 0
         self._drop = drop
         self._outbox = Outbox(socket, drop=drop, send_s=limits.send_s)
+        self._selected = SelectedObject(self, self._outbox.send_json)
         self._news = asyncio.Event()
         self._sent_revision = (-1, -1)
-        self._stats: dict[str, Any] | None = None
+        self._stats: StatsMessage | None = None
         self._running: set[asyncio.Task[None]] = set()
         self._second, self._messages = 0.0, 0
 
@@ -119,8 +122,8 @@ class Client:
         return self._subscription.frame(number)
 
     def select(self, instance_id: int) -> None:
-        """Subscribe to the outline of an instance; 0 to stop."""
-        self._selected = instance_id
+        """Subscribe to the outline and the state of an instance; 0 to stop."""
+        self._selected.choose(instance_id)
         if self._subscription is not None:
             self._subscription.selected = instance_id
 
@@ -137,14 +140,14 @@ class Client:
 
     async def serve(self) -> None:
         """Answer until the client goes."""
-        await self._outbox.send_json({**self._greeting, "control": self._may_change})
-        sending_news = asyncio.create_task(self._send_news())
+        await self._outbox.send_json(self._greeting)
+        sending = [asyncio.create_task(one) for one in (self._send_news(), self._selected.tell())]
         self._news.set()
         try:
             await self._listen()
         finally:
             self._end_watch()
-            ending = [sending_news, *self._running, *self._outbox.tasks]
+            ending = [*sending, *self._running, *self._outbox.tasks]
             # Again and again: until Python 3.12, wait_for loses a cancellation that meets a result.
             for _ in range(10):
                 for task in ending:
@@ -157,7 +160,16 @@ class Client:
         """Have the scene told when there is time to."""
         self._news.set()
 
-    def send_stats(self, stats: dict[str, Any]) -> None:
+    @property
+    def selects(self) -> bool:
+        """True while it is to be told of an object's changes."""
+        return self._selected.id != 0
+
+    def objects_changed(self) -> None:
+        """Have the selected object told if it has changed."""
+        self._selected.changed()
+
+    def send_stats(self, stats: StatsMessage) -> None:
         """Have these numbers told; newer ones take the place of those that wait."""
         self._stats = stats
         self._news.set()
@@ -175,9 +187,7 @@ class Client:
                 break
             if not self._admits():
                 words = f"more than {self._limits.messages_per_s} messages in a second"
-                await self._socket.close(
-                    code=WSCloseCode.POLICY_VIOLATION, message=words.encode()
-                )  # fmt: skip
+                await self._socket.close(code=WSCloseCode.POLICY_VIOLATION, message=words.encode())
                 return
             if message.type != WSMsgType.TEXT:
                 await self._refuse(None, InvalidRequest("message", "bytes", "text"))
@@ -238,19 +248,18 @@ class Client:
                 number, InternalFault("an internal error of the simulator, see its log")
             )
         else:
-            if isinstance(result, _File):
-                head = {"type": "file", "id": number, "name": result.name, "mime": result.mime}
-                await self._outbox.send(packed(head, [result.data]))
+            if isinstance(result, SentFile):
+                await self._outbox.send(packed(result.head(number), [result.data]))
             else:
                 await self._outbox.send_json({"type": "reply", "id": number, "result": result})
 
     async def _done(self, given: Arguments) -> Any:
         name = given.text("do")
-        own = _OWN.get(name)
+        own = OWN_COMMANDS.get(name)
         if own is not None:
             return await own(self, given)
         if name not in COMMANDS:
-            raise UnknownName("command", name[:80], sorted({*COMMANDS, *_OWN, "shown"}))
+            raise UnknownName("command", name[:80], sorted({*COMMANDS, *OWN_COMMANDS, "shown"}))
         command = COMMANDS[name]
         if command.changes and not self._may_change:
             accepted = "one that only looks; start the simulator with --viewer-control to allow it"
@@ -261,10 +270,8 @@ class Client:
             if command.changes:
                 self._touch()
 
-    async def _watch_agent(self, given: Arguments) -> None:
-        agent, views = given.text("agent"), given.entries("views")
-        if not all(isinstance(view, str) for view in views):
-            raise InvalidRequest("views", views, "names of views")
+    @served
+    async def _watch_agent(self, agent: str, views: list[str]) -> None:
         if self._subscription is not None and self._subscription.agent == agent:
             self._subscription.show(self._feeds.checked(views))
             return
@@ -274,22 +281,24 @@ class Client:
         )
         self._end_watch()
         self._subscription = watch
-        watch.selected = self._selected
+        watch.selected = self._selected.id
 
     def _end_watch(self) -> None:
         if self._subscription is not None:
             self._feeds.leave(self._subscription)
             self._subscription = None
 
-    async def _screenshot(self, given: Arguments) -> _File:
+    @served
+    async def _screenshot(self, view: str, frame: int | None = None) -> SentFile:
         """Return one view as a PNG, without loss."""
-        view, frame = given.text("view"), self.frame(given.get("frame"))
+        seen = self.frame(frame)
         data = await asyncio.to_thread(
-            view_png, frame, view, categories=self.info.categories, depth_range_m=self._range(frame)
+            view_png, seen, view, categories=self.info.categories, depth_range_m=self._range(seen)
         )
-        return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_{view}.png", data)
+        return SentFile(f"{seen.scene}_{seen.agent}_{seen.sequence:06d}_{view}.png", data)
 
-    async def _sheet(self, given: Arguments) -> _File:
+    @served
+    async def _sheet(self) -> SentFile:
         """Return the five views on one sheet, rendered together at the next instant."""
         last = self.frame(None)
         frame: Frame = await self.run(Operations.capture, FIVE_VIEWS, agent=last.agent)
@@ -297,7 +306,7 @@ class Client:
         data = await asyncio.to_thread(
             sheet_png, frame, FIVE_VIEWS, categories=categories, depth_range_m=range_m
         )
-        return _File(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
+        return SentFile(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
 
     def _range(self, frame: Frame) -> float:
         ranges = (spec.depth_range_m for spec in self.info.agents if spec.name == frame.agent)
@@ -332,15 +341,9 @@ def _why(problem: BaseException) -> str:
     return str(problem) or type(problem).__name__
 
 
-class _File:
-    """Answer that is a file."""
-
-    def __init__(self, name: str, data: bytes) -> None:
-        self.name, self.data, self.mime = name, data, "image/png"
-
-
-_OWN: dict[str, Callable[[Client, Arguments], Any]] = {
+OWN_COMMANDS: Final[Mapping[str, Callable[[Client, Arguments], Awaitable[Any]]]] = {
     "watch": Client._watch_agent,
     "screenshot": Client._screenshot,
     "sheet": Client._sheet,
 }
+"""Commands about what this client is shown, by their names."""

@@ -41,10 +41,16 @@ class Command:
         Gives what is answered, in plain values for JSON.
     changes : bool
         True if it changes anything: those who only watch may not.
+    is_operation : bool
+        True if the operation of the same name declares values and answer; else `run` does.
+    answer : type or None
+        Type of the answer where it is another than the operation's result.
     """
 
     run: Run
     changes: bool
+    is_operation: bool = False
+    answer: Any = None
 
 
 class CommandTable(dict[str, Command]):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 import cv2
 import numpy as np
@@ -20,6 +19,7 @@ from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
+from sailenv_ros.viewer.messages import FileHead, FrameForAll, FrameForClient, ViewInfo
 
 __all__ = ["FrameMessages", "outline", "packed", "sheet_png", "view_png", "views_to_json"]
 
@@ -65,7 +65,7 @@ class FrameMessages:
             How many frames were not sent before it because the page had not shown those it had.
         """
         pictures = [self._picture(view) for view in views]
-        head: dict[str, Any] = {
+        head: FrameForClient = {
             "number": number,
             "dropped": dropped,
             "views": [
@@ -91,7 +91,7 @@ class FrameMessages:
         return self._pictures[view]
 
 
-def packed(head: Mapping[str, Any], pieces: Iterable[bytes] = ()) -> bytes:
+def packed(head: FileHead, pieces: Iterable[bytes] = ()) -> bytes:
     """Put a head and what belongs to it into one message."""
     return _packed(_json(head), pieces)
 
@@ -101,14 +101,14 @@ def _packed(head: str, pieces: Iterable[bytes]) -> bytes:
     return b"".join([len(data).to_bytes(4, "little"), data, *pieces])
 
 
-def _json(value: Mapping[str, Any]) -> str:
+def _json(value: Mapping[str, object]) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
 def _head_of(frame: Frame) -> str:
     """Write what every client is told of a frame, as JSON."""
     lens = frame.camera.intrinsics
-    head: dict[str, Any] = {
+    head: FrameForAll = {
         "type": "frame",
         "agent": frame.agent,
         "scene": frame.scene,
@@ -119,10 +119,10 @@ def _head_of(frame: Frame) -> str:
         "width": lens.width,
         "height": lens.height,
         "fov_deg": lens.vertical_fov_deg,
-        "lens": [lens.fx, lens.fy, lens.cx, lens.cy],
+        "lens": (lens.fx, lens.fy, lens.cx, lens.cy),
         "camera_from_world": frame.camera.camera_from_world[:3].ravel().tolist(),
-        "position": list(frame.camera.pose.position_m),
-        "rpy_deg": list(frame.camera.pose.rpy_deg),
+        "position": frame.camera.pose.position_m,
+        "rpy_deg": frame.camera.pose.rpy_deg,
         "lesson": "" if frame.lesson is None else str(frame.lesson),
         "timings_ms": {name: 1e3 * seconds for name, seconds in frame.timings_s.items()},
     }
@@ -133,7 +133,7 @@ def _head_of(frame: Frame) -> str:
     return _json(head)
 
 
-def views_to_json(views: Iterable[str]) -> list[dict[str, Any]]:
+def views_to_json(views: Iterable[str]) -> list[ViewInfo]:
     """Return what the page must know of views: which are shown at first, how values are written.
 
     Parameters

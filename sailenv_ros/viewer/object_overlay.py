@@ -5,18 +5,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.object_table import EDGES
 from sailenv_ros.viewer.encoding import outline
+from sailenv_ros.viewer.messages import Overlay
 
 __all__ = ["overlay_of"]
 
 
-def overlay_of(frame: Frame, *, boxes: bool, space: bool, whole: int) -> dict[str, Any]:
+def overlay_of(frame: Frame, *, boxes: bool, space: bool, whole: int) -> Overlay:
     """Return what is drawn over a frame.
 
     Parameters
@@ -31,11 +30,10 @@ def overlay_of(frame: Frame, *, boxes: bool, space: bool, whole: int) -> dict[st
 
     Returns
     -------
-    overlay : dict
-        ``boxes``: id, left, top, right, bottom [px] of each. ``edges``: id, and the ends u, v, u, v
-        of each edge that lies before the camera. ``whole``: closed lines u, v, u, v, … [px].
+    overlay : Overlay
+        Edges are those that lie before the camera.
     """
-    told: dict[str, Any] = {"boxes": [], "edges": [], "whole": []}
+    told: Overlay = {"boxes": [], "edges": [], "whole": []}
     if boxes or space:
         table = frame.objects.select(frame.objects.visible)
         if boxes:
@@ -46,7 +44,7 @@ def overlay_of(frame: Frame, *, boxes: bool, space: bool, whole: int) -> dict[st
             for row, id_ in enumerate(table.ids.tolist()):
                 ends = [np.concatenate(corners[row, list(edge)]) for edge in EDGES]
                 seen = [end.tolist() for end in ends if np.isfinite(end).all()]
-                told["edges"].append([id_, seen])
+                told["edges"].append((id_, seen))
     if whole:
         mask = frame.amodal_of(whole).mask(whole)
         told["whole"] = outline(mask.astype(np.uint16), 1)

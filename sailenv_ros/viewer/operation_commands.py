@@ -14,6 +14,7 @@ from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable, Run
+from sailenv_ros.viewer.messages import ObjectValues
 from sailenv_ros.viewer.recorded_commands import edits_object, edits_surroundings
 from sailenv_ros.viewer.request_arguments import Arguments
 from sailenv_ros.viewer.scene_json import object_to_json, to_json
@@ -154,14 +155,21 @@ def _of_object(words: str, operation: Operation[..., Any]) -> Run:
 
 OPERATION_COMMANDS = CommandTable(
     {
-        **{each.name: Command(run=_plain(each), changes=False) for each in _LOOKS},
-        **{each.name: Command(run=_plain(each), changes=True) for each in _CHANGES},
+        **{e.name: Command(run=_plain(e), changes=False, is_operation=True) for e in _LOOKS},
+        **{e.name: Command(run=_plain(e), changes=True, is_operation=True) for e in _CHANGES},
         **{
-            each.name: Command(run=_of_object(words, each), changes=True)
+            each.name: Command(
+                run=_of_object(words, each),
+                changes=True,
+                is_operation=True,
+                answer=None if each.name == "despawn_object" else ObjectValues,
+            )
             for words, each in _OF_OBJECTS.items()
         },
         **{
-            each.name: Command(run=edits_surroundings(words)(_plain(each)), changes=True)
+            each.name: Command(
+                run=edits_surroundings(words)(_plain(each)), changes=True, is_operation=True
+            )
             for words, each in _OF_SURROUNDINGS.items()
         },
     }

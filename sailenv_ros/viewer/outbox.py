@@ -48,7 +48,7 @@ class Outbox:
         """Tasks that other threads began and that have not ended."""
         return tuple(self._tasks)
 
-    async def send_json(self, message: Mapping[str, Any]) -> None:
+    async def send_json(self, message: Mapping[str, object]) -> None:
         """Send a message as text."""
         await self.send(json.dumps(message, separators=(",", ":"), allow_nan=False))
 
@@ -74,7 +74,7 @@ class Outbox:
         """Have a message sent; from another thread."""
         self._begin(lambda: self.send(message))
 
-    def post_json(self, message: Mapping[str, Any]) -> None:
+    def post_json(self, message: Mapping[str, object]) -> None:
         """Have a message sent as text; from another thread."""
         self._begin(lambda: self.send_json(message))
 

@@ -6,7 +6,7 @@ A `Frame` and a pixel in; plain values for JSON, or world coordinates, out.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.types.views import VIEWS
+from sailenv_ros.viewer.messages import PixelValues
 
 __all__ = ["pixel_of", "standing_point", "values_at"]
 
@@ -42,7 +43,7 @@ def pixel_of(frame: Frame, u: object, v: object) -> tuple[int, int]:
     return checked_integer("column", u, 0, width - 1), checked_integer("row", v, 0, height - 1)
 
 
-def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> dict[str, Any]:
+def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> PixelValues:
     """Return the values at a pixel, as the arrays have them.
 
     Parameters
@@ -56,7 +57,7 @@ def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> dict[str, Any]:
 
     Returns
     -------
-    values : dict
+    values : PixelValues
         By the views' names: integers as they are; real numbers, None where one of them is not
         finite, and the text ``"near"`` for a depth nearer than the near plane. Beside
         ``category_id`` and ``instance_id`` these two are the names, empty for none.
@@ -75,7 +76,7 @@ def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> dict[str, Any]:
             result[view] = "near"
         else:
             result[view] = value if np.isfinite(value).all() else None
-    return result
+    return cast(PixelValues, result)  # named by the views
 
 
 def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:

@@ -53,7 +53,10 @@ def edits_object(words: str) -> Callable[[Run], Run]:
 
 
 def edits_surroundings(words: str) -> Callable[[Run], Run]:
-    """Have a command that changes lights or surroundings be undoable; see `edits_object`."""
+    """Have a command that changes lights or surroundings be undoable; see `edits_object`.
+
+    A light is named by the argument ``light_name``, or by the answer where that is its name.
+    """
 
     def declare(run: Run) -> Run:
         @wraps(run)
@@ -63,7 +66,8 @@ def edits_surroundings(words: str) -> Callable[[Run], Run]:
             epoch = context.info.epoch
             result = await run(context, given)
             after = await context.run(EditOperations.surroundings_record)
-            name = given.optional_text("light_name") or ""
+            made = result if isinstance(result, str) else ""
+            name = given.optional_text("light_name") or made
             keys = tuple(sorted(given.mapping("changes")))
             what = f"{words} {name}".strip()
             take_down(context, what, (words, name, *keys), epoch, before, after)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, fields, is_dataclass
 from functools import cache
 from typing import Any, get_args, get_type_hints
@@ -24,6 +24,19 @@ from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.types.picture_settings import LIMITS, NAMES, PictureSettings
 from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
 from sailenv_ros.types.validation import Bounds
+from sailenv_ros.viewer.messages import (
+    BehaviourInfo,
+    BehaviourParameter,
+    ObjectValues,
+    PictureSetting,
+)
+from sailenv_ros.viewer.scene_messages import (
+    LightNews,
+    LookAtNews,
+    MoverNews,
+    PoseValues,
+    SceneMessage,
+)
 
 __all__ = [
     "behaviours_to_json",
@@ -36,10 +49,8 @@ __all__ = [
     "to_json",
 ]
 
-_LIGHT_NUMBERS = ("intensity", "indirect_multiplier", "range_m")
 
-
-def scene_to_json(info: SceneInfo) -> dict[str, Any]:
+def scene_to_json(info: SceneInfo) -> SceneMessage:
     """Return what the scene is now."""
     surroundings = info.environment
     return {
@@ -54,7 +65,7 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
         "seed": info.seed,
         "renderer": info.renderer,
         "categories": [
-            {"id": category.id, "name": category.name, "colour": list(category.colour)}
+            {"id": category.id, "name": category.name, "colour": category.colour}
             for category in info.categories.values()
             if category.id not in (0, UNLABELLED_CATEGORY)
         ],
@@ -77,9 +88,9 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
         "spawnables": list(info.spawnables),
         "lights": [_light(light) for light in info.lights],
         "environment": {
-            "ambient": list(surroundings.ambient),
+            "ambient": surroundings.ambient,
             "background": surroundings.background,
-            "background_colour": list(surroundings.background_colour),
+            "background_colour": surroundings.background_colour,
             "sky_map": surroundings.sky_map,
             "sky_rotation": surroundings.sky_rotation,
             "sky_blend": surroundings.sky_blend,
@@ -104,7 +115,7 @@ def scene_to_json(info: SceneInfo) -> dict[str, Any]:
     }
 
 
-def object_to_json(state: ObjectState) -> dict[str, Any]:
+def object_to_json(state: ObjectState) -> ObjectValues:
     """Return what and where an object is."""
     return {
         "id": state.id,
@@ -112,26 +123,26 @@ def object_to_json(state: ObjectState) -> dict[str, Any]:
         "asset": state.asset,
         "category": state.category,
         **pose_to_json(state.pose),
-        "scale": list(state.scale),
-        "size": list(state.size_m),
+        "scale": state.scale,
+        "size": state.size_m,
         "static": state.static,
         "mass_kg": state.mass_kg,
         "behaviours": to_json(state.behaviours),
     }
 
 
-def pose_to_json(pose: Pose) -> dict[str, Any]:
+def pose_to_json(pose: Pose) -> PoseValues:
     """Return a pose: position [m] and roll, pitch, yaw [deg]."""
-    return {"position": list(pose.position_m), "rpy_deg": list(pose.rpy_deg)}
+    return {"position": pose.position_m, "rpy_deg": pose.rpy_deg}
 
 
 @cache
-def behaviours_to_json() -> list[dict[str, Any]]:
+def behaviours_to_json() -> list[BehaviourInfo]:
     """Return which behaviours there are, with their parameters."""
     return [_behaviour(kind) for kind in behaviour_kinds().values()]
 
 
-def picture_settings_to_json() -> list[dict[str, Any]]:
+def picture_settings_to_json() -> list[PictureSetting]:
     """Return which settings a picture has: defaults, choices, limits and units."""
     usual, types, unbounded = PictureSettings(), get_type_hints(PictureSettings), Bounds()
     return [
@@ -159,8 +170,8 @@ def skies_to_json() -> list[str]:
     return sorted(sky_files(pack.folder for pack in installed_packs()))
 
 
-def _behaviour(kind: BehaviourKind) -> dict[str, Any]:
-    parameters = [
+def _behaviour(kind: BehaviourKind) -> BehaviourInfo:
+    parameters: list[BehaviourParameter] = [
         {
             "name": name,
             "about": field.description or "",
@@ -172,32 +183,32 @@ def _behaviour(kind: BehaviourKind) -> dict[str, Any]:
     return {"type": kind.type, "summary": kind.summary, "parameters": parameters}
 
 
-def _light(light: Light) -> dict[str, Any]:
-    told: dict[str, Any] = {name: getattr(light, name) for name in _LIGHT_NUMBERS}
+def _light(light: Light) -> LightNews:
     return {
-        **told,
         "name": light.name,
         "type": light.type,
-        "colour": list(light.colour),
-        "position_m": list(light.position_m),
-        "direction": list(light.direction),
+        "intensity": light.intensity,
+        "indirect_multiplier": light.indirect_multiplier,
+        "range_m": light.range_m,
+        "colour": light.colour,
+        "position_m": light.position_m,
+        "direction": light.direction,
     }
 
 
-def _mover(mover: MoverInfo) -> dict[str, Any]:
-    waypoints: Sequence[Pose] = mover.waypoints
+def _mover(mover: MoverInfo) -> MoverNews:
     return {
         "name": mover.name,
         "controller": mover.controller,
-        "waypoints": [pose_to_json(pose) for pose in waypoints],
+        "waypoints": [pose_to_json(pose) for pose in mover.waypoints],
         "total_time_s": mover.total_time_s,
         "loop": mover.loop,
         "is_body": mover.body is not None,
     }
 
 
-def _look_at(faced: LookAt | None) -> dict[str, Any] | None:
-    return None if faced is None else {"object": faced.obj, "point": list(faced.point_m)}
+def _look_at(faced: LookAt | None) -> LookAtNews | None:
+    return None if faced is None else {"object": faced.obj, "point": faced.point_m}
 
 
 def to_json(value: Any) -> Any:

@@ -12,7 +12,6 @@ import secrets
 import socket
 import time
 from collections.abc import Awaitable, Callable
-from typing import Any
 
 from aiohttp import web
 
@@ -28,6 +27,7 @@ from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import views_to_json
+from sailenv_ros.viewer.messages import StatsMessage
 from sailenv_ros.viewer.page_files import page_file
 from sailenv_ros.viewer.scene_json import (
     behaviours_to_json,
@@ -35,6 +35,7 @@ from sailenv_ros.viewer.scene_json import (
     picture_settings_to_json,
     skies_to_json,
 )
+from sailenv_ros.viewer.stats_news import StatsNews
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "ViewerServer"]
@@ -44,8 +45,8 @@ _log = logging.getLogger(__name__)
 DEFAULT_HOST = "127.0.0.1"
 DEFAULT_PORT = 8090
 
-STATS_S = 0.5
-"""Time between two reports of how fast the simulation runs [s]."""
+OBJECTS_S = 1.0
+"""Least time between two looks at what physics has moved [s]."""
 
 MAX_NAME = 200
 
@@ -122,11 +123,20 @@ class ViewerServer(LoopServer):
         self._clients: set[Client] = set()
         self._connected = 0
         self._touched = 0
+        self._objects_told_s = 0.0
         self._history = EditHistory()
+        self._stats = StatsNews(
+            simulation,
+            self._history,
+            tell=self._announce_stats,
+            viewers=lambda: len(self._clients),
+            time_stands=self._announce_objects,  # no step tells of what programs move
+        )
         self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
-        self._end_news: Callable[[], None] = lambda: None
+        self._end_news = contextlib.ExitStack()
         self._start()
-        self._end_news = simulation.on_info(self._scene_changed)
+        self._end_news.callback(simulation.on_info(self._scene_changed))
+        self._end_news.callback(simulation.on_step(self._stepped))
 
     @property
     def url(self) -> str:
@@ -151,13 +161,21 @@ class ViewerServer(LoopServer):
         self._debug_agent.set_intrinsics(intrinsics)
 
     def _release(self) -> None:
-        self._end_news()
+        self._end_news.close()
         self._feeds.close()
 
     def _scene_changed(self, _: SceneInfo) -> None:
         """Have everybody told; called by the simulation's thread."""
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(self._announce_scene)
+
+    def _stepped(self, _: int) -> None:
+        """Have selected objects told, which physics may have moved; called by the simulation's."""
+        now = time.monotonic()
+        if now - self._objects_told_s >= OBJECTS_S and self._selects:
+            self._objects_told_s = now
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self._announce_objects)
 
     # -- in the thread ---------------------------------------------------------------------
 
@@ -181,7 +199,7 @@ class ViewerServer(LoopServer):
                 lambda: _Entrance(runner, self._gate), self.host, self.port, backlog=BACKLOG
             )
             listening(server.sockets[0].getsockname()[1])
-            stats = asyncio.create_task(self._send_stats_repeatedly())
+            stats = asyncio.create_task(self._stats.run())
             await self._stop.wait()
             stats.cancel()
             server.close()
@@ -260,6 +278,7 @@ class ViewerServer(LoopServer):
             limits=self._limits,
             greeting={
                 "type": "hello",
+                "control": self._may_change,
                 "debug_agent": NAME,
                 "views": views_to_json(self._simulation.supported_views),
                 "behaviours": behaviours_to_json(),
@@ -278,33 +297,27 @@ class ViewerServer(LoopServer):
         finally:
             self._clients.discard(client)
 
+    @property
+    def _selects(self) -> bool:
+        return any(client.selects for client in tuple(self._clients))
+
     def _touch(self) -> None:
         self._touched += 1
+        self._announce_objects()
+        self._stats.history_changed()
 
     def _announce_scene(self) -> None:
         for client in self._clients:
             client.scene_changed()
+        self._announce_objects()
 
-    async def _send_stats_repeatedly(self) -> None:
-        """Send how fast simulated time runs to all clients, every STATS_S seconds."""
-        before = (time.monotonic(), self._simulation.sim_time_ns)
-        while True:
-            await asyncio.sleep(STATS_S)
-            now = (time.monotonic(), self._simulation.sim_time_ns)
-            self._history.forget_other_scenes(self._simulation.info.epoch)
-            stats: dict[str, Any] = {
-                "type": "stats",
-                "time_s": now[1] * 1e-9,
-                "real_time_factor": max(0.0, (now[1] - before[1]) * 1e-9 / (now[0] - before[0])),
-                "skipped_frames": self._simulation.skipped_frames,
-                "viewers": len(self._clients),
-                "building": self._simulation.background_task,
-                "undo": self._history.undo_what,
-                "redo": self._history.redo_what,
-            }
-            before = now
-            for client in self._clients:
-                client.send_stats(stats)
+    def _announce_objects(self) -> None:
+        for client in self._clients:
+            client.objects_changed()
+
+    def _announce_stats(self, stats: StatsMessage) -> None:
+        for client in self._clients:
+            client.send_stats(stats)
 
     def _file(self, name: str) -> web.Response:
         found = page_file(name)

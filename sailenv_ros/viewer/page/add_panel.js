@@ -1,53 +1,53 @@
+// @ts-check
 // The catalogue: what can be put into the scene, by a click or by dragging it into a picture.
 
-import { el, section } from "./dom.js";
+import { el, keyed, section } from "./dom.js";
+
+/** @import {Actions} from "./actions.js" */
+/** @import {Store} from "./store.js" */
 
 export class AddPanel {
   title = "Add";
+  #actions;
+  #search = el("input", {
+    type: "search", placeholder: "Search the catalogue", id: "catalogue-search",
+    on: { input: () => this.#filter() },
+  });
+  #cards = el("div", { class: "cards", id: "catalogue" });
 
-  constructor(app) {
-    this.app = app;
-    this.names = "";
-    this.search = el("input", {
-      type: "search", placeholder: "Search the catalogue", id: "catalogue-search",
-      on: { input: () => this.#filter() },
+  /**
+   * @param {Store} store
+   * @param {Actions} actions
+   */
+  constructor(store, actions) {
+    this.#actions = actions;
+    this.root = el("div", {}, section(
+      "Catalogue",
+      this.#search,
+      el("p", { class: "advice" }, "Click to put one where you look; or drag it into the picture."),
+      this.#cards,
+    ));
+    store.on(["scene"], ({ scene }) => {
+      keyed(this.#cards, scene?.spawnables ?? [], (asset) => asset, (asset) => ({ root: this.#card(asset) }));
+      this.#filter();
     });
-    this.cards = el("div", { class: "cards", id: "catalogue" });
-    this.root = el(
-      "div",
-      {},
-      section(
-        "Catalogue",
-        this.search,
-        el("p", { class: "advice" }, "Click to put one where you look; or drag it into the picture."),
-        this.cards,
-      ),
-    );
   }
 
-  frame() {}
-
-  update(scene) {
-    const names = scene.spawnables.join();
-    if (names === this.names) return;
-    this.names = names;
-    this.cards.replaceChildren(...scene.spawnables.map((asset) => this.#card(asset)));
-    this.#filter();
-  }
-
+  /** @param {string} asset */
   #card(asset) {
     const picture = el("img", {
       loading: "lazy", decoding: "async", alt: "", width: 128, height: 96, draggable: false,
       src: `thumbnail/${encodeURIComponent(asset)}${location.search}`,
-      on: { error: (event) => event.target.classList.add("missing") },
+      on: { error: () => picture.classList.add("missing") },
     });
     return el(
       "button",
       {
         class: "card", title: asset, draggable: true, data: { asset },
         on: {
-          click: () => this.app.spawn(asset),
-          dragstart: (event) => {
+          click: () => this.#actions.spawn(asset),
+          dragstart: (/** @type {DragEvent} */ event) => {
+            if (!event.dataTransfer) return;
             event.dataTransfer.setData("text/plain", asset);
             event.dataTransfer.effectAllowed = "copy";
           },
@@ -59,9 +59,11 @@ export class AddPanel {
   }
 
   #filter() {
-    const words = this.search.value.trim().toLowerCase();
-    for (const card of this.cards.children) {
-      card.hidden = words !== "" && !card.title.replaceAll("_", " ").includes(words) && !card.title.includes(words);
+    const words = this.#search.value.trim().toLowerCase();
+    for (const card of this.#cards.children) {
+      if (!(card instanceof HTMLElement)) continue;
+      const asset = card.title;
+      card.hidden = words !== "" && !asset.replaceAll("_", " ").includes(words) && !asset.includes(words);
     }
   }
 }

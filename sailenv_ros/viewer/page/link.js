@@ -1,10 +1,32 @@
+// @ts-check
 // The socket: requests with answers, frames, news; connects again by itself.
 
-export class Link extends EventTarget {
+/** @import {Answer, Commands, FrameHead, Head, News, Shown} from "./messages.js" */
+
+/** @typedef {{ give: (result: any) => void, refuse: (error: Error) => void }} Waiting */
+
+/**
+ * What is called when something comes by itself.
+ *
+ * @typedef {object} Listener
+ * @property {(news: News) => void} news
+ * @property {(head: FrameHead, pictures: ArrayBuffer) => void} frame
+ * @property {() => void} offline
+ */
+
+export class Link {
+  /** @type {WebSocket | null} */
   #socket = null;
+  /** @type {Map<number | null, Waiting>} */
   #waiting = new Map();
   #next = 1;
   #pause = 500;
+  #listener;
+
+  /** @param {Listener} listener */
+  constructor(listener) {
+    this.#listener = listener;
+  }
 
   connect() {
     const address = new URL("socket" + location.search, location.href);
@@ -16,7 +38,7 @@ export class Link extends EventTarget {
     };
     socket.onmessage = (event) => this.#take(event.data);
     socket.onclose = () => {
-      this.#tell("offline");
+      this.#listener.offline();
       for (const { refuse } of this.#waiting.values()) refuse(new Error("the connection was lost"));
       this.#waiting.clear();
       setTimeout(() => this.connect(), this.#pause);
@@ -25,48 +47,60 @@ export class Link extends EventTarget {
     this.#socket = socket;
   }
 
-  get open() {
-    return this.#socket?.readyState === WebSocket.OPEN;
-  }
-
-  /** Ask; the promise gives what is answered or fails with the simulator's words. */
-  ask(what, values = {}) {
-    if (!this.open) return Promise.reject(new Error("there is no connection to the simulator"));
+  /**
+   * Ask; the promise gives what is answered or fails with the simulator's words.
+   * @template {keyof Commands} K
+   * @param {K} what
+   * @param {Commands[K]["values"]} values
+   * @returns {Promise<Commands[K]["result"]>}
+   */
+  ask(what, values) {
+    if (this.#socket?.readyState !== WebSocket.OPEN) {
+      return Promise.reject(new Error("there is no connection to the simulator"));
+    }
     const id = this.#next++;
+    const text = JSON.stringify({ ...values, do: what, id });
     return new Promise((give, refuse) => {
       this.#waiting.set(id, { give, refuse });
-      this.#socket.send(JSON.stringify({ ...values, do: what, id }));
+      this.#socket?.send(text);
     });
   }
 
+  /** @param {number} number */
   shown(number) {
-    if (this.open) this.#socket.send(JSON.stringify({ do: "shown", number }));
+    /** @type {Shown} */
+    const message = { do: "shown", number };
+    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(message));
   }
 
+  /** @param {string | ArrayBuffer} data */
   #take(data) {
     if (typeof data === "string") {
-      this.#handle(JSON.parse(data));
+      this.#takeText(JSON.parse(data));
       return;
     }
     const size = new DataView(data).getUint32(0, true);
+    /** @type {Head} */
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, size)));
-    this.#handle(head, data.slice(4 + size));
-  }
-
-  #handle(message, body) {
-    const waits = this.#waiting.get(message.id);
-    if (message.type === "reply" || message.type === "file" || message.type === "refused") {
-      this.#waiting.delete(message.id);
-      if (message.type === "refused") waits?.refuse(new Error(message.error));
-      else if (message.type === "file") {
-        waits?.give({ name: message.name, blob: new Blob([body], { type: message.mime }) });
-      } else waits?.give(message.result);
-      return;
+    const body = data.slice(4 + size);
+    if (head.type === "frame") {
+      this.#listener.frame(head, body);
+    } else {
+      this.#answered(head.id)?.give({ name: head.name, blob: new Blob([body], { type: head.mime }) });
     }
-    this.#tell(message.type, { message, body });
   }
 
-  #tell(type, detail = {}) {
-    this.dispatchEvent(new CustomEvent(type, { detail }));
+  /** @param {Answer | News} message */
+  #takeText(message) {
+    if (message.type === "reply") this.#answered(message.id)?.give(message.result);
+    else if (message.type === "refused") this.#answered(message.id)?.refuse(new Error(message.error));
+    else this.#listener.news(message);
+  }
+
+  /** @param {number | null} id */
+  #answered(id) {
+    const waiting = this.#waiting.get(id);
+    this.#waiting.delete(id);
+    return waiting;
   }
 }

@@ -1,10 +1,20 @@
+// @ts-check
 // What is done to the watched agent's picture: a control for each setting that the simulator tells.
 
-import { button, el, latest, put, section, slider } from "./dom.js";
+import { button, el, keyed, latest, line, options, put, say, section, slider } from "./dom.js";
+import { agentOf } from "./store.js";
+
+/** @import {Actions} from "./actions.js" */
+/** @import {PictureChanges, PictureSetting} from "./messages.js" */
+/** @import {State, Store} from "./store.js" */
+
+/** @typedef {{ least?: number, most?: number, step?: number, label?: string }} Look */
+/** @typedef {PictureSetting["default"]} Value */
+/** @typedef {{ root: HTMLElement, set: (value: any) => void }} Control */
 
 const WIDEST_SLIDER = 100;
 
-// How settings are shown; of one that is not here, its own name and limits.
+/** How settings are shown; of one that is not here, its own name and limits. @type {Record<string, Look>} */
 const SHOWN = {
   exposure: { least: -3, most: 3, step: 0.05 },
   occlusion_strength: { label: "occlusion", step: 0.01 },
@@ -15,92 +25,113 @@ const SHOWN = {
 
 export class PicturePanel {
   title = "Picture";
+  #store;
+  #actions;
+  /** @type {Map<string, Control>} */
+  #controls = new Map();
+  #about = el("p", { class: "advice" });
+  #holder = el("div", { id: "picture-settings" });
 
-  constructor(app) {
-    this.app = app;
-    this.controls = new Map();
-    this.about = el("p", { class: "advice" });
-    this.holder = el("div", { id: "picture-settings" });
-    this.root = el(
-      "div",
-      {},
-      section(
-        "Picture",
-        this.about,
-        this.holder,
-        el("div", { class: "buttons" },
-          button("Defaults", () => this.#defaults(), { glyph: "reset", kind: "primary defaults" })),
-      ),
-    );
+  /**
+   * @param {Store} store
+   * @param {Actions} actions
+   */
+  constructor(store, actions) {
+    this.#store = store;
+    this.#actions = actions;
+    this.root = el("div", {}, section(
+      "Picture",
+      this.#about,
+      this.#holder,
+      el("div", { class: "buttons" },
+        button("Defaults", () => this.#defaults(), { glyph: "reset", kind: "primary defaults" })),
+    ));
+    store.on(["hello"], ({ hello }) => {
+      keyed(this.#holder, hello?.picture_settings ?? [], ({ name }) => name, (setting) => {
+        const control = this.#control(setting);
+        this.#controls.set(setting.name, control);
+        return { root: control.root };
+      });
+    });
+    store.on(["scene", "agent", "hello"], (state) => this.#show(state));
   }
 
-  frame() {}
-
-  update(scene) {
-    const told = this.app.hello.picture_settings;
-    if (this.controls.size !== told.length) {
-      this.controls = new Map(told.map((setting) => [setting.name, this.#control(setting)]));
-      this.holder.replaceChildren(...[...this.controls.values()].map(({ root }) => root));
-    }
-    const agent = scene.agents.find(({ name }) => name === this.app.agent);
+  /** @param {Readonly<State>} state */
+  #show(state) {
+    const agent = agentOf(state);
     if (!agent) return;
-    this.about.textContent = `Of ${agent.name}, for all who look through it. Labels, depth and flow do not depend on it.`;
-    for (const [name, control] of this.controls) control.set(agent.picture[name]);
+    say(this.#about, `Of ${agent.name}, for all who look through it. Labels, depth and flow do not depend on it.`);
+    for (const [name, control] of this.#controls) control.set(agent.picture[name]);
   }
 
+  /** @param {PictureSetting} setting @returns {Control} */
   #control(setting) {
     const { name, choices } = setting;
     const label = SHOWN[name]?.label ?? name.replaceAll("_", " ");
     // Whose picture it is, is settled when the control is moved, not when it is sent.
-    const newest = latest(async ([agent, value]) => {
+    /** @type {(sent: { agent: string, value: Value }) => void} */
+    const newest = latest(async ({ agent, value }) => {
       try {
-        await this.app.ask("set_picture", { agent, changes: { [name]: value } });
+        await this.#actions.ask("set_picture", { agent, changes: { [name]: value } });
       } catch (error) {
-        this.update(this.app.scene); // what was refused is not shown as if it were so
+        this.#show(this.#store.state); // what was refused is not shown as if it were so
         throw error;
       }
     });
-    const send = (value) => newest([this.app.agent, value]);
-    const line = (input, set) => ({ root: el("label", { class: "line", data: { setting: name } }, el("span", {}, label), input), set });
+    /** @param {Value} value */
+    const send = (value) => newest({ agent: this.#store.state.agent, value });
     if (typeof setting.default === "boolean") {
       const input = el("input", { type: "checkbox", on: { change: () => send(input.checked) } });
-      return line(input, (value) => (input.checked = value));
+      return of(name, line(label, input), (value) => (input.checked = value));
     }
     if (choices.length) {
-      const options = choices.map((choice) => el("option", { value: choice }, String(choice)));
-      const input = el("select", { on: { change: () => {
-        send(choices[input.selectedIndex]);
-        input.blur();
-      } } }, ...options);
-      return line(input, (value) => put(input, value));
-    }
-    return this.#number(setting, label, send, line);
-  }
-
-  #number({ name, whole, least, most, unit }, label, send, line) {
-    const from = SHOWN[name]?.least ?? least;
-    const to = SHOWN[name]?.most ?? most;
-    if (from === null || to === null || to - from > WIDEST_SLIDER) {
-      const input = el("input", {
-        type: "number", min: from ?? "", max: to ?? "", step: SHOWN[name]?.step ?? 1, title: unit,
+      const input = el("select", {
         on: {
           change: () => {
-            if (input.value !== "") send(Number(input.value));
+            send(input.value);
             input.blur();
           },
         },
       });
-      return line(input, (value) => put(input, value));
+      options(input, choices.map((choice) => ({ value: choice, words: choice })));
+      return of(name, line(label, input), (value) => put(input, value));
     }
-    const step = SHOWN[name]?.step ?? (whole ? 1 : (to - from) / 200);
-    const made = slider(label, from, to, step, send);
-    made.root.dataset.setting = name;
-    made.root.title = unit;
-    return made;
+    return number(setting, label, send);
   }
 
   #defaults() {
-    const changes = Object.fromEntries(this.app.hello.picture_settings.map((setting) => [setting.name, setting.default]));
-    this.app.try("set_picture", { agent: this.app.agent, changes });
+    const { hello, agent } = this.#store.state;
+    const told = (hello?.picture_settings ?? []).map((setting) => [setting.name, setting.default]);
+    /** @type {PictureChanges} */
+    const changes = Object.fromEntries(told);
+    this.#actions.try("set_picture", { agent, changes });
   }
+}
+
+/** @param {string} name @param {HTMLElement} root @param {(value: any) => void} set @returns {Control} */
+function of(name, root, set) {
+  root.dataset.setting = name;
+  return { root, set };
+}
+
+/** @param {PictureSetting} setting @param {string} label @param {(value: number) => void} send @returns {Control} */
+function number({ name, whole, least, most, unit }, label, send) {
+  const look = SHOWN[name] ?? {};
+  const from = look.least ?? least;
+  const to = look.most ?? most;
+  if (from === null || to === null || to - from > WIDEST_SLIDER) {
+    const input = el("input", {
+      type: "number", min: from ?? "", max: to ?? "", step: look.step ?? 1, title: unit,
+      on: {
+        change: () => {
+          if (input.value !== "") send(Number(input.value));
+          input.blur();
+        },
+      },
+    });
+    return of(name, line(label, input), (value) => put(input, value));
+  }
+  const made = slider(label, from, to, look.step ?? (whole ? 1 : (to - from) / 200), send);
+  made.root.title = unit;
+  return of(name, made.root, made.set);
 }

@@ -1,6 +1,16 @@
+// @ts-check
 // The floor plan: a room is drawn by dragging where there is none, and resized by its walls.
 
-import { el, fixed, latest, put, section, toast } from "./dom.js";
+import { el, fixed, latest, line, put, section, toast } from "./dom.js";
+import { drawPlan } from "./plan_drawing.js";
+import { mayChange } from "./store.js";
+
+/** @import {Actions} from "./actions.js" */
+/** @import {FloorPlanValues} from "./messages.js" */
+/** @import {Store} from "./store.js" */
+
+/** @typedef {{ x: boolean, y: boolean }} Grip Whether a drag changes the size along x, along y. */
+/** @typedef {[number, number, number]} Size */
 
 const GRAB_PX = 9;
 const SNAP_M = 0.1;
@@ -8,64 +18,70 @@ const HEIGHT_M = 2.5;
 const LEAST_M = 1;
 const MOST_M = 100;
 const EMPTY_M = 10; // across the plan where there is no room
-// Faces of a box by its corners' numbers: together they cover what is seen of it from above.
-const FACES = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
 
 export class RoomPanel {
   title = "Room";
+  #store;
+  #actions;
+  /** @type {FloorPlanValues} */
   #plan = { size: null, openings: [], objects: [] };
-  #drag = null; // { x, y: whether this axis is dragged, size: as it would be }
+  /** @type {(Grip & { size: Size | null }) | null} */
+  #drag = null; // with the size as it would be
   #refresh = latest(async () => {
-    this.#plan = await this.app.ask("floor_plan", {});
+    this.#plan = await this.#actions.ask("floor_plan", {});
     this.#show();
   });
+  #canvas = el("canvas", {
+    id: "plan", role: "img", "aria-label": "Floor plan, north is up",
+    on: {
+      pointerdown: (/** @type {PointerEvent} */ event) => this.#begin(event),
+      pointermove: (/** @type {PointerEvent} */ event) => this.#move(event),
+      pointerup: () => this.#end(),
+      pointercancel: () => this.#cancel(),
+    },
+  });
+  #advice = el("p", { class: "advice" });
+  #x = this.#input("x", "along x [m]");
+  #y = this.#input("y", "along y [m]");
+  #z = this.#input("z", "height [m]");
 
-  constructor(app) {
-    this.app = app;
-    this.canvas = el("canvas", {
-      id: "plan", role: "img", "aria-label": "Floor plan, north is up",
-      on: {
-        pointerdown: (event) => this.#begin(event),
-        pointermove: (event) => this.#move(event),
-        pointerup: () => this.#end(),
-        pointercancel: () => this.#cancel(),
-      },
-    });
-    this.advice = el("p", { class: "advice" });
-    this.inputs = ["along x [m]", "along y [m]", "height [m]"].map((label, axis) =>
-      el("input", {
-        type: "number", min: LEAST_M, max: MOST_M, step: SNAP_M, id: `room-${["x", "y", "z"][axis]}`, "aria-label": label,
-        on: { change: () => this.#typed() },
-      }));
-    this.root = el(
-      "div",
-      {},
-      section(
-        "Floor plan",
-        this.canvas,
-        this.advice,
-        ...["along x [m]", "along y [m]", "height [m]"].map((label, axis) =>
-          el("label", { class: "line" }, el("span", {}, label), this.inputs[axis])),
-      ),
-    );
+  /**
+   * @param {Store} store
+   * @param {Actions} actions
+   */
+  constructor(store, actions) {
+    this.#store = store;
+    this.#actions = actions;
+    this.root = el("div", {}, section(
+      "Floor plan",
+      this.#canvas,
+      this.#advice,
+      line("along x [m]", this.#x),
+      line("along y [m]", this.#y),
+      line("height [m]", this.#z),
+    ));
+    new ResizeObserver(() => this.#draw()).observe(this.#canvas);
     addEventListener("keydown", (event) => event.code === "Escape" && this.#cancel());
+    store.on(["scene", "tab"], ({ tab }) => {
+      if (tab === this.title) this.#refresh(null);
+    });
+    store.on(["selected", "hello"], ({ tab }) => tab === this.title && this.#draw());
   }
 
-  frame() {}
-
-  update() {
-    if (this.root.isConnected) this.#refresh(null);
-  }
-
-  opened() {
-    this.#draw();
-    this.#refresh(null);
+  /** @param {string} axis @param {string} label */
+  #input(axis, label) {
+    return el("input", {
+      type: "number", min: LEAST_M, max: MOST_M, step: SNAP_M, id: `room-${axis}`, "aria-label": label,
+      on: { change: () => this.#typed() },
+    });
   }
 
   #show() {
     const { size } = this.#plan;
-    for (const [axis, input] of this.inputs.entries()) put(input, size ? fixed(size[axis], 2) : "");
-    this.advice.textContent = size
+    put(this.#x, size ? fixed(size[0]) : "");
+    put(this.#y, size ? fixed(size[1]) : "");
+    put(this.#z, size ? fixed(size[2]) : "");
+    this.#advice.textContent = size
       ? "Drag a wall or a corner. The room stays around the origin, so the opposite wall moves too; objects stay."
       : "There is no room. Drag in the plan to draw one around the origin.";
     this.#draw();
@@ -77,12 +93,12 @@ export class RoomPanel {
   get #scale() {
     const { size } = this.#plan;
     const across = size ? 1.35 * Math.max(size[0], size[1]) + 1 : EMPTY_M;
-    return this.canvas.clientWidth / across;
+    return this.#canvas.clientWidth / across;
   }
 
-  /** Where an event is, in metres from the origin. */
+  /** Where an event is, in metres from the origin. @param {MouseEvent} event @returns {[number, number]} */
   #place(event) {
-    const box = this.canvas.getBoundingClientRect();
+    const box = this.#canvas.getBoundingClientRect();
     const scale = this.#scale;
     return [
       (event.clientX - box.left - box.width / 2) / scale,
@@ -90,11 +106,11 @@ export class RoomPanel {
     ];
   }
 
-  /** Which walls an event is on: whether it would change the size along x, along y. */
+  /** Which walls an event is on. @param {MouseEvent} event @returns {Grip} */
   #grip(event) {
     const { size } = this.#plan;
     if (!size) return { x: true, y: true };
-    const [x, y] = this.#place(event).map(Math.abs);
+    const [x, y] = absolute(this.#place(event));
     const reach = GRAB_PX / this.#scale;
     const [halfX, halfY] = [size[0] / 2, size[1] / 2];
     return {
@@ -103,24 +119,27 @@ export class RoomPanel {
     };
   }
 
+  /** @param {PointerEvent} event */
   #begin(event) {
-    if (event.button !== 0 || !this.app.control) return;
+    if (event.button !== 0 || !mayChange(this.#store.state)) return;
     const grip = this.#grip(event);
     if (!grip.x && !grip.y) return;
-    this.canvas.setPointerCapture(event.pointerId);
+    this.#canvas.setPointerCapture(event.pointerId);
     this.#drag = { ...grip, size: this.#plan.size };
   }
 
+  /** @param {PointerEvent} event */
   #move(event) {
     if (!this.#drag) {
       const grip = this.#grip(event);
       const [x, y] = this.#place(event);
       const corner = x * y > 0 ? "nesw-resize" : "nwse-resize";
       const beside = grip.x ? "ew-resize" : grip.y ? "ns-resize" : "default";
-      this.canvas.style.cursor = this.#plan.size ? (grip.x && grip.y ? corner : beside) : "crosshair";
+      this.#canvas.style.cursor = this.#plan.size ? (grip.x && grip.y ? corner : beside) : "crosshair";
       return;
     }
-    const [x, y] = this.#place(event).map((value) => snapped(2 * Math.abs(value)));
+    const [halfX, halfY] = absolute(this.#place(event));
+    const [x, y] = [snapped(2 * halfX), snapped(2 * halfY)];
     const [oldX, oldY, height] = this.#plan.size ?? [x, y, HEIGHT_M];
     this.#drag.size = [this.#drag.x ? x : oldX, this.#drag.y ? y : oldY, height];
     this.#draw();
@@ -139,119 +158,37 @@ export class RoomPanel {
   }
 
   #typed() {
-    const values = this.inputs.map((input) => Number(input.value));
-    if (!this.#plan.size && !this.inputs[2].value) values[2] = HEIGHT_M;
-    if (values.every((value) => value > 0)) this.#send(values);
+    /** @type {Size} */
+    const size = [Number(this.#x.value), Number(this.#y.value), Number(this.#z.value)];
+    if (!this.#plan.size && !this.#z.value) size[2] = HEIGHT_M;
+    if (size.every((value) => value > 0)) this.#send(size);
   }
 
+  /** @param {Size} size */
   async #send(size) {
     if (size.join() === this.#plan.size?.join()) return;
-    const done = await this.app.try("set_room", { size });
+    const done = await this.#actions.try("set_room", { size });
     if (done?.replaced.length) toast(`The room takes the place of: ${done.replaced.join(", ")}`);
     this.#refresh(null);
   }
 
-  // ---- drawing
-
   #draw() {
-    const side = this.canvas.clientWidth;
-    if (!side) return;
-    const [scale, ratio] = [this.#scale, devicePixelRatio];
-    const pixels = Math.round(side * ratio);
-    if (this.canvas.width !== pixels) this.canvas.width = this.canvas.height = pixels;
-    const styles = getComputedStyle(document.body);
-    const colour = (name) => styles.getPropertyValue(name).trim();
-    const pen = this.canvas.getContext("2d");
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.clearRect(0, 0, side, side);
-    pen.translate(side / 2, side / 2);
-    const at = ([x, y]) => [x * scale, -y * scale];
-    this.#grid(pen, side, scale, colour);
-    this.#objects(pen, at, colour);
+    const { selected } = this.#store.state;
     const size = this.#drag?.size ?? this.#plan.size;
-    if (size) this.#walls(pen, at, size, colour);
-    this.canvas.dataset.scale = scale;
-    this.canvas.dataset.size = this.#plan.size?.join(" ") ?? "";
-  }
-
-  #grid(pen, side, scale, colour) {
-    const step = scale > 8 ? 1 : 10;
-    pen.strokeStyle = colour("--line");
-    pen.lineWidth = 1;
-    pen.beginPath();
-    for (let line = -Math.floor(side / 2 / scale / step) * step; line * scale < side / 2; line += step) {
-      pen.moveTo(line * scale, -side / 2);
-      pen.lineTo(line * scale, side / 2);
-      pen.moveTo(-side / 2, line * scale);
-      pen.lineTo(side / 2, line * scale);
-    }
-    pen.stroke();
-    pen.strokeStyle = colour("--soft");
-    pen.beginPath();
-    pen.moveTo(-6, 0);
-    pen.lineTo(6, 0);
-    pen.moveTo(0, -6);
-    pen.lineTo(0, 6);
-    pen.stroke();
-  }
-
-  #objects(pen, at, colour) {
-    for (const { id, corners } of this.#plan.objects) {
-      const path = new Path2D();
-      for (const face of FACES) {
-        const points = face.map((number) => at(corners[number]));
-        // All the same way round, so that faces which overlap stay filled.
-        if (area(points) < 0) points.reverse();
-        points.forEach((point, nth) => (nth ? path.lineTo(...point) : path.moveTo(...point)));
-        path.closePath();
-      }
-      const chosen = id === this.app.selected;
-      pen.globalAlpha = chosen ? 0.7 : 0.28;
-      pen.fillStyle = colour(chosen ? "--accent" : "--soft");
-      pen.fill(path);
-      pen.globalAlpha = 1;
-    }
-  }
-
-  #walls(pen, at, size, colour) {
-    const [halfX, halfY] = [size[0] / 2, size[1] / 2];
-    const [left, top] = at([-halfX, halfY]);
-    const [right, bottom] = at([halfX, -halfY]);
-    pen.lineWidth = 4;
-    pen.strokeStyle = colour(this.#drag ? "--accent" : "--ink");
-    pen.strokeRect(left, top, right - left, bottom - top);
-    for (const { type, wall, at: middle, width } of this.#plan.openings) {
-      const along = wall === "north" || wall === "south";
-      const side = wall === "north" || wall === "east" ? 1 : -1;
-      const ends = [middle - width / 2, middle + width / 2];
-      pen.strokeStyle = colour(type === "door" ? "--card" : "--accent");
-      pen.beginPath();
-      pen.moveTo(...at(along ? [ends[0], side * halfY] : [side * halfX, ends[0]]));
-      pen.lineTo(...at(along ? [ends[1], side * halfY] : [side * halfX, ends[1]]));
-      pen.stroke();
-    }
-    if (this.app.control) {
-      pen.fillStyle = colour("--accent");
-      for (const [x, y] of [[0, 1], [1, 0], [0, -1], [-1, 0], [1, 1], [1, -1], [-1, 1], [-1, -1]]) {
-        const [u, v] = at([x * halfX, y * halfY]);
-        pen.fillRect(u - 4, v - 4, 8, 8);
-      }
-    }
-    pen.fillStyle = colour("--ink");
-    pen.font = "600 12px system-ui, sans-serif";
-    pen.textAlign = "center";
-    pen.fillText(`${fixed(size[0])} × ${fixed(size[1])} m`, 0, bottom + 18);
+    const drawn = drawPlan(this.#canvas, { ...this.#plan, size }, {
+      scale: this.#scale, selected, dragged: this.#drag !== null, grips: mayChange(this.#store.state),
+    });
+    if (!drawn) return;
+    this.#canvas.dataset.scale = String(this.#scale);
+    this.#canvas.dataset.size = this.#plan.size?.join(" ") ?? "";
   }
 }
 
+/** @param {[number, number]} place @returns {[number, number]} */
+const absolute = ([x, y]) => [Math.abs(x), Math.abs(y)];
+
+/** @param {number} value */
 function snapped(value) {
   const steps = Math.round(value / SNAP_M);
   return Number(Math.min(MOST_M, Math.max(LEAST_M, steps * SNAP_M)).toFixed(2));
-}
-
-function area(points) {
-  return points.reduce((sum, [x, y], nth) => {
-    const [nextX, nextY] = points[(nth + 1) % points.length];
-    return sum + x * nextY - nextX * y;
-  }, 0);
 }

@@ -1,106 +1,134 @@
+// @ts-check
 // The scene as a whole: save it, begin it with another seed, how fast time runs, who is there.
 
-import { button, download, el, fixed, put, section, toast } from "./dom.js";
-import { pairs } from "./view_panel.js";
+import { button, download, el, fixed, line, options, pairs, put, say, section, toast } from "./dom.js";
 
-const SIZES = [[320, 240], [640, 480], [800, 450], [1280, 720]];
+/** @import {Actions} from "./actions.js" */
+/** @import {State, Store} from "./store.js" */
+
+const SIZES = [
+  { width: 320, height: 240 }, { width: 640, height: 480 }, { width: 800, height: 450 }, { width: 1280, height: 720 },
+];
 
 export class ScenePanel {
   title = "Scene";
 
-  constructor(app) {
-    this.app = app;
-    this.name = el("input", { type: "text", id: "save-name", placeholder: "my_room", spellcheck: false });
-    this.sceneTitle = el("input", { type: "text", id: "save-title", placeholder: "as it was" });
-    this.overwrite = el("input", { type: "checkbox", id: "save-overwrite" });
-    this.saved = el("p", { class: "advice", id: "saved" });
-    this.seed = el("input", { type: "number", min: 0, step: 1, id: "seed" });
-    this.factor = el("input", {
+  #store;
+  #actions;
+  #name;
+  #sceneTitle;
+  #overwrite;
+  #saved;
+  #seed;
+  #factor;
+  #size;
+  #kind;
+  #roomSeed;
+  #made;
+  #lesson;
+  #agents;
+  #about;
+  #kept = "";
+  #drawn = 0;
+  #askedForKinds = false;
+
+  /**
+   * @param {Store} store
+   * @param {Actions} actions
+   */
+  constructor(store, actions) {
+    this.#store = store;
+    this.#actions = actions;
+    this.#name = el("input", { type: "text", id: "save-name", placeholder: "my_room", spellcheck: false });
+    this.#sceneTitle = el("input", { type: "text", id: "save-title", placeholder: "as it was" });
+    this.#overwrite = el("input", { type: "checkbox", id: "save-overwrite" });
+    this.#saved = el("p", { class: "advice", id: "saved" });
+    this.#seed = el("input", { type: "number", min: 0, step: 1, id: "seed" });
+    this.#factor = el("input", {
       type: "number", min: 0.1, max: 10, step: 0.1, id: "factor",
-      on: { change: () => app.try("set_real_time_factor", { factor: Number(this.factor.value) }) },
+      on: { change: () => actions.try("set_real_time_factor", { factor: Number(this.#factor.value) }) },
     });
-    this.size = el("select", {
+    this.#size = el("select", {
       id: "size",
       on: {
         change: () => {
-          const [width, height] = this.size.value.split("x").map(Number);
-          this.app.lens = { ...this.app.lens, width, height };
-          app.try("lens", this.app.lens);
+          const size = SIZES.find((one) => nameOf(one) === this.#size.value);
+          if (!size) return;
+          const lens = { ...store.state.lens, ...size };
+          store.set({ lens });
+          actions.try("lens", lens);
         },
       },
-    }, ...SIZES.map(([w, h]) => el("option", { value: `${w}x${h}` }, `${w} × ${h}`)));
-    this.kind = el("select", { id: "room-kind" });
-    this.roomSeed = el("input", { type: "number", min: 0, max: 2147483647, step: 1, value: 1, id: "room-seed" });
-    this.made = el("p", { class: "advice", id: "room-made" });
-    this.kept = "";
-    this.lesson = el("p", { class: "advice", id: "lesson" }, "The scene has none.");
-    this.agents = el("dl", { class: "values" });
-    this.about = el("dl", { class: "values" });
+    }, ...SIZES.map((size) => el("option", { value: nameOf(size) }, `${size.width} × ${size.height}`)));
+    this.#kind = el("select", { id: "room-kind" });
+    this.#roomSeed = el("input", { type: "number", min: 0, max: 2147483647, step: 1, value: 1, id: "room-seed" });
+    this.#made = el("p", { class: "advice", id: "room-made" });
+    this.#lesson = el("p", { class: "advice", id: "lesson" }, "The scene has none.");
+    this.#agents = el("dl", { class: "values" });
+    this.#about = el("dl", { class: "values" });
     this.root = el(
       "div",
       {},
       section(
         "New room",
-        el("label", { class: "line" }, el("span", {}, "kind"), this.kind),
-        el("label", { class: "line" }, el("span", {}, "seed"), this.roomSeed),
+        line("kind", this.#kind),
+        line("seed", this.#roomSeed),
         el("div", { class: "buttons" },
           button("Make", () => this.#make(), { kind: "primary make-room" }),
           button("Again", () => this.#again(), { kind: "again-room", title: "the room of the next seed" }),
           button("Keep", () => this.#keep(), { glyph: "save", kind: "keep-room" })),
-        this.made,
+        this.#made,
       ),
       section(
         "Save as a scene file",
-        el("label", { class: "line" }, el("span", {}, "name"), this.name),
-        el("label", { class: "line" }, el("span", {}, "title"), this.sceneTitle),
-        el("label", { class: "line" }, el("span", {}, "replace it"), this.overwrite),
+        line("name", this.#name),
+        line("title", this.#sceneTitle),
+        line("replace it", this.#overwrite),
         el("div", { class: "buttons" },
           button("Save", () => this.#save(), { glyph: "save", kind: "primary save" }),
           button("Download", () => this.#download(), { kind: "download" })),
-        this.saved,
+        this.#saved,
       ),
       section(
         "Time and chance",
-        el("label", { class: "line" }, el("span", {}, "real-time factor"), this.factor),
-        el("label", { class: "line" }, el("span", {}, "seed"), this.seed,
-          button("Begin anew", () => app.try("reset", { seed: Number(this.seed.value) }))),
+        line("real-time factor", this.#factor),
+        line("seed", this.#seed,
+          button("Begin anew", () => actions.try("reset", { seed: Number(this.#seed.value) }))),
         el("div", { class: "buttons" },
           button("Randomise", () => this.#randomise(), { title: "Begin the scene anew, drawn at random", kind: "randomise" }),
           button("Keep it", () => this.#keepDrawn(), { title: "Save what was drawn as a scene", kind: "keep-drawn" })),
-        el("label", { class: "line" }, el("span", {}, "picture here"), this.size),
+        line("picture here", this.#size),
       ),
       section(
         "Lessons",
-        this.lesson,
+        this.#lesson,
         el("div", { class: "buttons" },
-          button("Begin", () => app.try("start_lessons", {}), { title: "Begin with the first lesson", kind: "start-lessons" }),
-          button("Stop", () => app.try("stop_lessons", {}), { title: "What is there stays", kind: "stop-lessons" })),
+          button("Begin", () => actions.try("start_lessons", {}), { title: "Begin with the first lesson", kind: "start-lessons" }),
+          button("Stop", () => actions.try("stop_lessons", {}), { title: "What is there stays", kind: "stop-lessons" })),
       ),
-      section("Agents", this.agents),
-      section("Simulator", this.about),
+      section("Agents", this.#agents),
+      section("Simulator", this.#about),
     );
+    store.on(["scene", "lens"], (state) => this.#show(state));
+    // Which lesson the frame on the screen is of.
+    store.on(["frame"], ({ frame }) => say(this.#lesson, frame?.lesson || "The scene has none."));
   }
 
-  /** Say which lesson the frame on the screen is of. */
-  frame({ lesson }) {
-    const told = lesson || "The scene has none.";
-    if (this.lesson.textContent !== told) this.lesson.textContent = told;
-  }
-
-  update(scene) {
-    if (!this.kind.options.length) this.#kinds();
-    put(this.seed, scene.seed);
-    put(this.factor, scene.real_time_factor);
-    const lens = this.app.lens;
-    put(this.size, `${lens.width}x${lens.height}`);
-    this.agents.replaceChildren(
+  /** @param {Readonly<State>} state */
+  #show({ scene, lens }) {
+    if (!scene) return;
+    this.#kinds();
+    put(this.#seed, scene.seed);
+    put(this.#factor, scene.real_time_factor);
+    put(this.#size, nameOf(lens));
+    this.#agents.replaceChildren(
       ...pairs(scene.agents.map((agent) => [
         agent.name,
         `${agent.width} × ${agent.height}, ${agent.rate_hz ? `${fixed(agent.rate_hz, 0)} Hz` : "on request"}` +
           (agent.following ? `, follows ${agent.mover}` : ""),
       ])),
     );
-    this.about.replaceChildren(...pairs([
+    this.#about.replaceChildren(...pairs([
       ["renderer", scene.renderer],
       ["objects", String(scene.instances.filter(({ is_part }) => !is_part).length)],
       ["mode", scene.mode],
@@ -108,64 +136,68 @@ export class ScenePanel {
   }
 
   async #randomise() {
-    const index = await this.app.try("randomise", {});
-    if (index !== undefined) this.drawn = index;
+    const index = await this.#actions.try("randomise", {});
+    if (index !== undefined) this.#drawn = index;
   }
 
   /** Save what was drawn, under a name of its own unless one is typed. */
   async #keepDrawn() {
-    const { scene, seed } = this.app.scene;
-    if (!this.name.value.trim()) this.name.value = `${scene.replace(/[^A-Za-z0-9 _-]/g, "_").slice(0, 40)}_${seed}_${this.drawn ?? 0}`;
+    const { scene } = this.#store.state;
+    if (!scene) return;
+    if (!this.#name.value.trim()) this.#name.value = `${scene.scene.replace(/[^A-Za-z0-9 _-]/g, "_").slice(0, 40)}_${scene.seed}_${this.#drawn}`;
     await this.#save();
   }
 
   async #kinds() {
-    if (this.asked) return;
-    this.asked = true;
-    const kinds = await this.app.try("room_kinds", {});
-    this.asked = kinds !== undefined;
+    if (this.#askedForKinds) return;
+    this.#askedForKinds = true;
+    const kinds = await this.#actions.try("room_kinds", {});
+    this.#askedForKinds = kinds !== undefined;
     if (kinds === undefined) return;
-    this.kind.replaceChildren(...kinds.map(({ kind, title }) => el("option", { value: kind }, title)));
+    options(this.#kind, kinds.map(({ kind, title }) => ({ value: kind, words: title })));
   }
 
   async #make() {
-    const kind = this.kind.value, seed = Number(this.roomSeed.value);
-    this.made.textContent = "The room is being made …";
-    const made = await this.app.try("generate_room", { kind, seed });
-    this.kept = made === undefined ? "" : `${kind}_${seed}`;
-    this.made.textContent = made === undefined ? "" : `${made.scene} is this room's name.`;
+    const kind = this.#kind.value, seed = Number(this.#roomSeed.value);
+    this.#made.textContent = "The room is being made …";
+    const made = await this.#actions.try("generate_room", { kind, seed });
+    this.#kept = made === undefined ? "" : `${kind}_${seed}`;
+    this.#made.textContent = made === undefined ? "" : `${made.scene} is this room's name.`;
   }
 
   #again() {
-    this.roomSeed.value = String((Number(this.roomSeed.value) + 1) % 2147483648);
+    this.#roomSeed.value = String((Number(this.#roomSeed.value) + 1) % 2147483648);
     return this.#make();
   }
 
   async #keep() {
-    if (!this.kept || this.app.scene.scene !== `generated_${this.kept}`) {
+    if (!this.#kept || this.#store.state.scene?.scene !== `generated_${this.#kept}`) {
       toast("Make a room first.");
       return;
     }
-    const path = await this.app.try("save_scene", { name: this.kept, keep_models: true });
+    const path = await this.#actions.try("save_scene", { name: this.#kept, keep_models: true });
     if (path === undefined) return;
-    this.made.textContent = `Kept: ${path}`;
+    this.#made.textContent = `Kept: ${path}`;
     toast("Kept. It is in the list of scenes now.");
   }
 
   async #save() {
-    const path = await this.app.try("save_scene", {
-      name: this.name.value.trim(), overwrite: this.overwrite.checked, keep_models: true,
-      ...(this.sceneTitle.value.trim() ? { title: this.sceneTitle.value.trim() } : {}),
+    const path = await this.#actions.try("save_scene", {
+      name: this.#name.value.trim(), overwrite: this.#overwrite.checked, keep_models: true,
+      ...(this.#sceneTitle.value.trim() ? { title: this.#sceneTitle.value.trim() } : {}),
     });
     if (path === undefined) return;
-    this.saved.textContent = `Saved: ${path}`;
+    this.#saved.textContent = `Saved: ${path}`;
     toast("Saved. It is in the list of scenes now.");
   }
 
   async #download() {
-    const text = await this.app.try("scene_text", {});
+    const text = await this.#actions.try("scene_text", {});
     if (text === undefined) return;
-    const name = this.name.value.trim() || `${this.app.scene.scene}_edited`;
+    const name = this.#name.value.trim() || `${this.#store.state.scene?.scene}_edited`;
     download(`${name}.yaml`, new Blob([text], { type: "application/yaml" }));
   }
 }
+
+/** The value of a size in the list. @param {{ width: number, height: number }} size */
+const nameOf = ({ width, height }) => `${width}x${height}`;

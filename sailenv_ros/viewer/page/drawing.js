@@ -1,0 +1,128 @@
+// @ts-check
+// What is drawn over a picture, in pixels of its frame.
+
+import { placeOf } from "./lens.js";
+
+/** @import {FrameHead, MoverNews, Overlay} from "./messages.js" */
+
+/** @typedef {CanvasRenderingContext2D} Pen */
+
+/**
+ * The selected object's outline.
+ * @param {Pen} pen
+ * @param {readonly (readonly number[])[]} outline Closed lines u, v, u, v, … [px].
+ * @param {number} line Width of a line of the page [px of the frame].
+ */
+export function drawOutline(pen, outline, line) {
+  if (!outline.length) return;
+  const path = closedLines(outline);
+  pen.lineJoin = "round";
+  pen.strokeStyle = "rgb(0 0 0 / 0.6)";
+  pen.lineWidth = 5 * line;
+  pen.stroke(path);
+  pen.strokeStyle = "#ffd23f";
+  pen.lineWidth = 2.5 * line;
+  pen.stroke(path);
+}
+
+/**
+ * Boxes around objects, boxes in space, and the outline of what is hidden too.
+ * @param {Pen} pen
+ * @param {Overlay} overlay
+ * @param {number} line
+ */
+export function drawObjects(pen, overlay, line) {
+  pen.lineJoin = "round";
+  pen.lineWidth = 1.5 * line;
+  for (const [id, left, top, right, bottom] of overlay.boxes) {
+    pen.strokeStyle = colourOf(id);
+    pen.strokeRect(left - 0.5, top - 0.5, right - left + 1, bottom - top + 1);
+  }
+  for (const [id, edges] of overlay.edges) {
+    pen.strokeStyle = colourOf(id);
+    pen.beginPath();
+    for (const [u0, v0, u1, v1] of edges) {
+      pen.moveTo(u0, v0);
+      pen.lineTo(u1, v1);
+    }
+    pen.stroke();
+  }
+  if (!overlay.whole.length) return;
+  pen.setLineDash([5 * line, 4 * line]);
+  pen.lineWidth = 2.5 * line;
+  pen.strokeStyle = "white";
+  pen.stroke(closedLines(overlay.whole));
+  pen.setLineDash([]);
+}
+
+/**
+ * Where a point of the world is seen [px]; null behind the camera.
+ * @param {FrameHead} head
+ * @param {readonly [number, number, number]} point
+ */
+function project(head, [x, y, z]) {
+  const [across, down, depth] = [0, 4, 8].map((row) => {
+    const [a = 0, b = 0, c = 0, d = 0] = head.camera_from_world.slice(row, row + 4);
+    return a * x + b * y + c * z + d;
+  });
+  if (across === undefined || down === undefined || depth === undefined || depth < 0.05) return null;
+  return placeOf(head.lens, across, down, depth);
+}
+
+/**
+ * A mover's track.
+ * @param {Pen} pen
+ * @param {FrameHead} head
+ * @param {MoverNews} mover
+ * @param {number} line
+ */
+export function drawWaypoints(pen, head, { waypoints, loop }, line) {
+  const places = waypoints.map((waypoint) => project(head, waypoint.position));
+  pen.strokeStyle = "rgb(62 198 189 / 0.9)";
+  pen.lineWidth = 2 * line;
+  pen.setLineDash([6 * line, 5 * line]);
+  pen.beginPath();
+  places.forEach((place, at) => {
+    const before = at || !loop ? places[at - 1] : places.at(-1);
+    if (place && before) {
+      pen.moveTo(...before);
+      pen.lineTo(...place);
+    }
+  });
+  pen.stroke();
+  pen.setLineDash([]);
+  pen.font = `600 ${11 * line}px system-ui, sans-serif`;
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  places.forEach((place, at) => {
+    if (!place) return;
+    pen.beginPath();
+    pen.arc(...place, 9 * line, 0, 2 * Math.PI);
+    pen.fillStyle = "#0e7c74";
+    pen.fill();
+    pen.strokeStyle = "white";
+    pen.lineWidth = 1.5 * line;
+    pen.stroke();
+    pen.fillStyle = "white";
+    pen.fillText(String(at + 1), ...place);
+  });
+}
+
+/** @param {readonly (readonly number[])[]} lines */
+function closedLines(lines) {
+  const path = new Path2D();
+  for (const points of lines) {
+    for (let at = 0; at < points.length; at += 2) {
+      const [u = 0, v = 0] = points.slice(at, at + 2);
+      if (at) path.lineTo(u, v);
+      else path.moveTo(u, v);
+    }
+    path.closePath();
+  }
+  return path;
+}
+
+/** A colour of its own for each object: steps of the golden angle keep hues apart. @param {number} id */
+function colourOf(id) {
+  return `hsl(${(id * 137.508) % 360} 85% 62%)`;
+}
