@@ -29,6 +29,7 @@ PROGRAMS = {
     "Agent": (
         "from sailenv_ros import Agent\n"
         "with Agent(simulator={{'scene': {scene!r}, 'gateway.port': 0}},\n"
+        "           timeout_s=120.0, start_timeout_s=120.0,\n"
         "           namespace='/bench_{pid}') as agent: agent.get_frame()"
     ),
 }
