@@ -16,8 +16,9 @@ def add_parser(subparsers: Any) -> None:
     """Add the command to those of `sailenv`."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "bench",
-        help="measure flow's speed and accuracy, and frames per second",
-        description="Repeat the paper's experiments on this machine; see docs/experiments.md.",
+        help="measure speed and the accuracy of flow",
+        description="Measure this machine: every benchmark as one table (docs/performance.md), or"
+        " the paper's experiments (docs/experiments.md).",
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="EXPERIMENT")
