@@ -10,7 +10,7 @@ from sailenv_bench.suite.parts import PARTS
 
 __all__ = ["figures_page", "shown"]
 
-COLUMNS = ("measured", "ratio", "median", "compared with", "its median")
+COLUMNS = ("measured", "ratio", "median", "compared with", "which has")
 
 
 def figures_page(origin: Mapping[str, Any], data: Mapping[str, Any]) -> str:
@@ -39,7 +39,7 @@ def figures_page(origin: Mapping[str, Any], data: Mapping[str, Any]) -> str:
         record = records.get(part.name)
         if record is None:
             continue
-        lines.append(_row((f"**{part.title}** (`--part {part.name}`)", "", "", "", "")))
+        lines.append(_row((f"**{part.title}** (`{part.name}`)", "", "", "", "")))
         if "failed" in record:
             lines.append(_row((f"failed: {record['failed']}", "", "", "", "")))
         for entry in record.get("measurements", ()):
@@ -64,7 +64,7 @@ def _cells(row: Measurement) -> Iterable[str]:
     yield "" if row.ratio is None else f"**{_ratio(row.ratio)}**"
     yield f"{shown(row.value)} {row.unit}"
     yield row.other
-    yield "" if row.other_value is None else f"{shown(row.other_value)} {row.unit}"
+    yield shown(row.other_value)
 
 
 def _ratio(ratio: float) -> str:
@@ -73,7 +73,7 @@ def _ratio(ratio: float) -> str:
 
 def _row(cells: Iterable[str]) -> str:
     escaped = (" ".join(cell.replace("|", "\\|").split()) for cell in cells)
-    return f"| {' | '.join(escaped)} |"
+    return f"|{'|'.join(escaped)}|"
 
 
 def _machine(origin: Mapping[str, Any], data: Mapping[str, Any]) -> list[str]:
@@ -88,7 +88,8 @@ def _machine(origin: Mapping[str, Any], data: Mapping[str, Any]) -> list[str]:
         f"- Commit: {origin['commit'] or 'unknown'}, {origin['began']}, "
         f"{seconds / 60.0:.0f} minutes",
         f"- Versions: Python {origin['python']}, {versions}",
-        "- A ratio is the median divided by the median beside it. Both were measured in turn. "
+        "- A ratio is the median divided by the other one, in the same unit. Both were measured in "
+        "turn. "
         "Of times, a ratio below 1 is faster; of rates, one above 1.",
     ]
     if data["quick"]:
