@@ -20,12 +20,14 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from sailenv_bench.suite.measurement import Measurement
 from sailenv_ros.light.bake import light_files as files
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.pipeline import bake
@@ -168,6 +170,32 @@ def in_turn(checkouts: dict[str, Path], scenes: list[str], rounds: int) -> None:
         print(f"{scene:10} {name:8} {wall:6.1f} s, {processor:6.1f} s of processor")
 
 
+def baked(scenes: Sequence[str], workers: int) -> Iterator[dict[str, Any]]:
+    """Bake scenes into an empty cache, which is thrown away."""
+    library = SceneLibrary()
+    # The furniture is in the user's cache, which is moved afterwards.
+    snapshots = {scene: library.snapshot(scene) for scene in scenes}
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ["SAILENV_CACHE"] = folder
+        for scene, snapshot in snapshots.items():
+            yield measured(scene, snapshot, workers)
+
+
+def measurements(quick: bool) -> Iterator[Measurement]:
+    """Measure for `sailenv bench all`; the processor time needs no comparison to be steady."""
+    for result in baked(["room_03"] if quick else ["room_01", "room_03"], 0):
+        yield Measurement(
+            name=f"{result['scene']}, until a draft is shown",
+            value=result["previews_s"][0],
+            unit="s",
+            other="the whole bake",
+            other_value=result["total_s"],
+        )
+        yield Measurement(
+            name=f"{result['scene']}, processor time", value=result["processor_s"], unit="s"
+        )
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -183,16 +211,11 @@ def main() -> None:
             {"this": here, "other": args.against.resolve()}, args.scene or ["room_01"], args.rounds
         )
         return
-    library = SceneLibrary()
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores")
     results = []
-    # The furniture is in the user's cache, which is moved afterwards.
-    snapshots = {scene: library.snapshot(scene) for scene in args.scene or ["room_01"]}
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["SAILENV_CACHE"] = folder
-        for scene, snapshot in snapshots.items():
-            results.append(measured(scene, snapshot, args.workers))
-            _print(results[-1])
+    for result in baked(args.scene or ["room_01"], args.workers):
+        results.append(result)
+        _print(result)
     if args.json:
         args.json.write_text(json.dumps(results, indent=1), encoding="utf-8")
 

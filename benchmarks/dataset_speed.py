@@ -17,11 +17,13 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 
+from sailenv_bench.suite.measurement import Measurement
 from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.remote_storage import open_storage
@@ -31,6 +33,7 @@ from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.views import RENDERED_VIEWS
 
 CLIPS_OF_SHARD = 50
+SCENES = ("room_01", "room_02", "room_03")
 
 
 def main() -> None:
@@ -47,29 +50,68 @@ def main() -> None:
     if args.costs:
         _tell_costs(folder, args.views, args.formats)
         return
-    scenes = ("room_01", "room_02", "room_03")
-    job = _job(folder, scenes, args.frames, args.views, args.formats)
+    job = _job(folder, SCENES, args.frames, args.views, args.formats)
     ways: dict[str, tuple[int, str | None]] = {"1 worker": (1, None), "2 workers": (2, None)}
     if args.ray:
         ways["Ray, 2 processors"] = (1, "local")
     hashes = set()
     try:
-        # Whatever is kept for the next time, such as baked light, is there after this.
-        make_dataset(job, folder / "first", engine_of(2, None))
         print("| way | frames a minute | MB/s | processor time a frame [ms] |")
         print("|---|---:|---:|---:|")
-        for name, (workers, ray) in ways.items():
-            began, busy = time.monotonic(), _processor_s()
-            made = make_dataset(job, folder / name, engine_of(workers, ray))
-            seconds = time.monotonic() - began
+        for made in _made(job, folder, ways):
             hashes.add(made.sha256)
-            rate, speed = 60.0 * made.frames / seconds, made.bytes / seconds * 1e-6
-            cost = "" if ray else f"{1e3 * (_processor_s() - busy) / made.frames:.0f}"
-            print(f"| {name} | {rate:.0f} | {speed:.0f} | {cost} |", flush=True)
-            shutil.rmtree(folder / name)
+            cost = "" if made.way.startswith("Ray") else f"{made.cost_ms:.0f}"
+            print(f"| {made.way} | {made.rate:.0f} | {made.speed:.0f} | {cost} |", flush=True)
         print(f"hashes: {'equal' if len(hashes) == 1 else 'DIFFERENT'}")
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+class Made(NamedTuple):
+    """Speed of one way: frames a minute, MB/s, processor time of a frame [ms]."""
+
+    way: str
+    rate: float
+    speed: float
+    cost_ms: float
+    sha256: str
+
+
+def _made(job: Job, folder: Path, ways: dict[str, tuple[int, str | None]]) -> Iterator[Made]:
+    """Make the data set in each way, after a first time that is not counted."""
+    # Whatever is kept for the next time, such as baked light, is there after this.
+    make_dataset(job, folder / "first", engine_of(2, None))
+    for way, (workers, ray) in ways.items():
+        began, busy = time.monotonic(), _processor_s()
+        made = make_dataset(job, folder / way, engine_of(workers, ray))
+        seconds = time.monotonic() - began
+        yield Made(
+            way=way,
+            rate=60.0 * made.frames / seconds,
+            speed=made.bytes / seconds * 1e-6,
+            cost_ms=1e3 * (_processor_s() - busy) / made.frames,
+            sha256=made.sha256,
+        )
+        shutil.rmtree(folder / way)
+
+
+def measurements(quick: bool) -> Iterator[Measurement]:
+    """Measure for `sailenv bench all`."""
+    with tempfile.TemporaryDirectory(prefix="dataset_") as name:
+        folder = Path(name)
+        scenes, frames = (SCENES[:1], 20) if quick else (SCENES, 300)
+        job = _job(folder, scenes, frames, RENDERED_VIEWS, ["webdataset"])
+        one, two = _made(job, folder, {"1": (1, None), "2": (2, None)})
+        assert one.sha256 == two.sha256
+        label = f"{frames} pictures 640×480 of {len(scenes)} rooms, every view, WebDataset"
+        yield Measurement(
+            name=f"{label}: 2 workers",
+            value=two.rate,
+            unit="frames a minute",
+            other="1 worker",
+            other_value=one.rate,
+        )
+        yield Measurement(name=f"{label}: processor time of a frame", value=one.cost_ms, unit="ms")
 
 
 def _job(

@@ -27,8 +27,12 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sailenv_bench.suite.measurement import Measurement
 
 ROOM_M = (6.0, 6.0, 3.0)
 SIZE_M = 0.3
@@ -54,7 +58,8 @@ def main() -> None:
     results: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for _ in range(options.rounds):
         for kind, (label, folder) in itertools.product(options.kinds, versions.items()):
-            results.setdefault((kind, label), []).append(_run(folder, kind, options))
+            found = _run(folder, kind, options.bodies, options.seconds)
+            results.setdefault((kind, label), []).append(found)
     print(f"{options.bodies} bodies, {options.seconds} simulated seconds, {options.rounds} rounds")
     print(
         "kind         version  cpu [s/s]  wall [s/s]  factor  out [mm]  depth [mm]  moved [mm]"
@@ -100,8 +105,28 @@ def scene_of(kind: str, bodies: int) -> dict[str, Any]:
     return {"version": 1, "room": {"size": list(ROOM_M), "skirting": False}, "objects": objects}
 
 
-def _run(folder: Path, kind: str, options: argparse.Namespace) -> dict[str, Any]:
-    counts = ["--bodies", str(options.bodies), "--seconds", str(options.seconds)]
+def measurements(quick: bool) -> Iterator[Measurement]:
+    """Measure for `sailenv bench all`."""
+    # Here: the version that this one is run against may be without it.
+    from sailenv_bench.suite.measurement import Measurement
+
+    bodies, seconds, rounds = (50, 1, 1) if quick else (200, 5, 2)
+    here = Path(__file__).resolve().parents[1]
+    cpu_s: dict[str, list[float]] = {kind: [] for kind in KINDS}
+    for _, kind in itertools.product(range(rounds), KINDS):
+        cpu_s[kind].append(float(_run(here, kind, bodies, seconds)["cpu_s"]) / seconds)
+    for kind, times in cpu_s.items():
+        yield Measurement(
+            name=f"{bodies} bodies, {kind}",
+            value=statistics.median(times),
+            unit="s",
+            other="the simulated second",
+            other_value=1.0,
+        )
+
+
+def _run(folder: Path, kind: str, bodies: int, seconds: int) -> dict[str, Any]:
+    counts = ["--bodies", str(bodies), "--seconds", str(seconds)]
     done = subprocess.run(
         [sys.executable, __file__, "--measure", kind, *counts],
         env={**os.environ, "PYTHONPATH": str(folder), "SAILENV_THREADS": "1"},

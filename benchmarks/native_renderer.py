@@ -25,7 +25,7 @@ import platform
 import statistics
 import time
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -35,6 +35,7 @@ import numpy as np
 import render_passes  # type: ignore[import-not-found]  # beside this file
 
 from sailenv_bench.experiments.baselines import BASELINES, BaselineScene
+from sailenv_bench.suite.measurement import Measurement
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -65,14 +66,18 @@ Times = dict[tuple[str, str], list[float]]
 
 
 def measure(
-    scene: str, size: tuple[int, int], frames: int, threads: Sequence[int]
+    scene: str,
+    size: tuple[int, int],
+    frames: int,
+    threads: Sequence[int],
+    others_named: Sequence[str] = OTHERS,
 ) -> dict[str, Any]:
     """Time one scene at one size; medians [ms], and the greatest differences."""
     world = render_passes.world_maker(scene, 400)()
     camera_of = render_passes._camera_of(world, CameraIntrinsics(width=size[0], height=size[1]))
     renderers: dict[str, RenderBackend] = {"OpenGL": Renderer()}
     renderers |= {f"native {count}": NativeRenderer(threads=count) for count in threads}
-    others = _others(scene, size)
+    others = _others(scene, size, others_named)
     wall: Times = defaultdict(list)
     cpu: Times = defaultdict(list)
     stages: dict[str, list[float]] = defaultdict(list)
@@ -179,10 +184,12 @@ def _draw_elsewhere(pipe: Any, name: str, scene: str, size: tuple[int, int]) -> 
     os._exit(0)
 
 
-def _others(scene: str, size: tuple[int, int]) -> dict[str, Elsewhere]:
+def _others(
+    scene: str, size: tuple[int, int], names: Sequence[str] = OTHERS
+) -> dict[str, Elsewhere]:
     """Start the other renderers that are to be had here."""
     made = {}
-    for name in OTHERS:
+    for name in names:
         try:
             made[name] = Elsewhere(name, scene, size)
         except RuntimeError as problem:
@@ -319,6 +326,35 @@ def _of(snapshot: WorldSnapshot, contents: SceneContents) -> WorldSnapshot:
         world_from_body=snapshot.world_from_body[:count].copy(),
         histories=snapshot.histories[:count].copy(),
     )
+
+
+def measurements(quick: bool) -> Iterator[Measurement]:
+    """Measure for `sailenv bench all`."""
+    threads = len(os.sched_getaffinity(0))
+    ours = f"native {threads}"
+    scenes, sizes = (SCENES[:1], SIZES[:1]) if quick else (SCENES, SIZES)
+    for scene, size in itertools.product(scenes, sizes):
+        others = OTHERS[::2] if scene == SCENES[0] else ()
+        wall = measure(scene, size, 2 if quick else 8, [threads], others)["wall_ms"]
+        label = f"{scene}, {size[0]}×{size[1]}"
+        compared = [(views, "OpenGL") for views in SETS] + [("five views", one) for one in others]
+        for views, other in compared:
+            yield Measurement(
+                name=f"{label}, {views}",
+                value=wall[f"{ours} {views}"],
+                unit="ms",
+                other=other.replace("PyBullet TinyRenderer", "PyBullet's `getCameraImage`"),
+                other_value=wall.get(f"{other} {views}"),
+            )
+    found = measure_agents(SCENES[0], threads, 2 if quick else 6)["wall_ms"]
+    for agents in AGENTS:
+        yield Measurement(
+            name=f"{SCENES[0]}, 320×240, five views, cameras: {agents}",
+            value=found[f"{ours}, {agents} agents"],
+            unit="ms",
+            other="OpenGL",
+            other_value=found[f"OpenGL, {agents} agents"],
+        )
 
 
 def main() -> None:

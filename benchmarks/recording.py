@@ -16,8 +16,11 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
+from sailenv_bench.suite.measurement import Measurement
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.lockstep import FrameRecorder
@@ -48,7 +51,11 @@ def main() -> None:
         print(f"disk: {_disk_speed(folder):.0f} MB/s written and synced, one stream")
         frames = _frames(args.scene)
         for compression in COMPRESSIONS:
-            _in_process(folder / compression, frames, args.frames, compression)
+            made = _in_process(folder / compression, frames, args.frames, compression)
+            print(
+                f"in process  {compression:5} {made.speed:6.0f} MB/s {made.rate:6.1f} fps "
+                f"{100 * made.busy:4.0f} % CPU  size {made.size:.2f}  read {made.read:6.1f} fps"
+            )
         for compression in COMPRESSIONS:
             _node(folder / f"node_{compression}", args, compression)
     finally:
@@ -83,7 +90,38 @@ def _renumbered(frame: Frame, number: int) -> Frame:
     )
 
 
-def _in_process(folder: Path, frames: list[Frame], count: int, compression: str) -> None:
+class Written(NamedTuple):
+    """MB/s, frames/s, share of a processor, file's share of the bytes, and frames/s of reading."""
+
+    speed: float
+    rate: float
+    busy: float
+    size: float
+    read: float
+
+
+def measurements(quick: bool) -> Iterator[Measurement]:
+    """Measure for `sailenv bench all`."""
+    frames = _frames("optical")
+    with tempfile.TemporaryDirectory(prefix="recording_") as name:
+        made = {
+            compression: _in_process(
+                Path(name) / compression, frames, 20 if quick else 150, compression
+            )
+            for compression in COMPRESSIONS
+        }
+    for compression, one in made.items():
+        none = compression == "none"
+        yield Measurement(
+            name=f"optical, five views 640×480, {'no compression' if none else compression}",
+            value=one.rate,
+            unit="frames/s",
+            other="" if none else "no compression",
+            other_value=None if none else made["none"].rate,
+        )
+
+
+def _in_process(folder: Path, frames: list[Frame], count: int, compression: str) -> Written:
     began, used = time.perf_counter(), time.process_time()
     with RecordingWriter(folder, RecordingOptions(compression=compression)) as writer:  # type: ignore[arg-type]  # one of COMPRESSIONS
         recorder = FrameRecorder(writer)
@@ -97,11 +135,8 @@ def _in_process(folder: Path, frames: list[Frame], count: int, compression: str)
     with RecordingReader(folder) as reader:
         read = sum(frame["rgb"].shape[0] > 0 for frame in RecordedFrames(reader))
     back = read / (time.perf_counter() - began)
-    print(
-        f"in process  {compression:5} {speed:6.0f} MB/s {count / seconds:6.1f} fps "
-        f"{cpu / seconds * 100:4.0f} % CPU  size {ratio:.2f}  read {back:6.1f} fps"
-    )
     shutil.rmtree(folder)
+    return Written(speed, count / seconds, cpu / seconds, ratio, back)
 
 
 def _node(folder: Path, args: argparse.Namespace, compression: str) -> None:

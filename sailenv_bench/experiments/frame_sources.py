@@ -19,6 +19,9 @@ from sailenv_ros.types.camera import CameraIntrinsics
 
 __all__ = ["FrameSource", "agent_source", "in_process_source"]
 
+ANSWER_S = 120.0
+"""Time that a simulator may take on a busy machine, where the first frames take long [s]."""
+
 
 class FrameSource(Protocol):
     """A source of frames of one size of picture, in lockstep."""
@@ -63,6 +66,8 @@ def agent_source(scene: str, width: int, height: int) -> Iterator[FrameSource]:
         "width": width,
         "height": height,
         "namespace": f"/bench_{os.getpid()}",
+        "timeout_s": ANSWER_S,
+        "start_timeout_s": ANSWER_S,
         "simulator": {"scene": scene, "mode": "lockstep", "agent.name": "", "gateway.port": 0},
         **off,
     }

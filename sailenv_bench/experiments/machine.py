@@ -23,6 +23,9 @@ PACKAGES = (
     "onnxruntime", "torch", "rclpy",
 )  # fmt: skip
 
+CHANGES = ("status", "--porcelain", "-uno", "--", ":/", ":(top,exclude)docs", ":(top,exclude)*.md")
+"""Words of git that list what differs from the commit, without the pages and their figures."""
+
 
 def provenance(command: Sequence[str]) -> dict[str, Any]:
     """Return where and how a measurement is being made.
@@ -37,8 +40,8 @@ def provenance(command: Sequence[str]) -> dict[str, Any]:
     origin : dict
         ``machine``, ``cpu``, ``cpus`` (that this process may use), ``memory_gib``, ``system``,
         ``python``, ``versions`` by package, ``commit`` (empty outside a checkout; ``+`` at its end
-        if files differ from it), ``command``, ``began`` (UTC, ISO 8601), ``load`` (of the last 1, 5
-        and 15 minutes, before the measurement).
+        if files other than pages differ from it), ``command``, ``began`` (UTC, ISO 8601),
+        ``load`` (of the last 1, 5 and 15 minutes, before the measurement).
     """
     return {
         "machine": platform.node(),
@@ -81,7 +84,7 @@ def _commit(folder: Path) -> str:
         # A package that is installed inside a checkout is not that checkout's code.
         if not _git(folder, "ls-files", str(Path(__file__))).strip():
             return ""
-        return commit + ("+" if _git(folder, "status", "--porcelain", "-uno").strip() else "")
+        return commit + ("+" if _git(folder, *CHANGES).strip() else "")
     except (OSError, subprocess.SubprocessError):
         return ""
 

@@ -1,4 +1,4 @@
-"""`sailenv bench`: the paper's measurements of flow, and what frames cost, on this machine."""
+"""`sailenv bench`: the paper's experiments and the speed benchmarks, on this machine."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from sailenv_ros.cli import bench_all
 from sailenv_ros.cli.experiment import add_common
 
 __all__ = ["add_parser", "run"]
@@ -15,11 +16,13 @@ def add_parser(subparsers: Any) -> None:
     """Add the command to those of `sailenv`."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
         "bench",
-        help="measure flow's speed and accuracy, and frames per second",
-        description="Repeat the paper's experiments on this machine; see docs/experiments.md.",
+        help="measure speed and the accuracy of flow",
+        description="Measure this machine: every benchmark as one table (docs/performance.md), or"
+        " the paper's experiments (docs/experiments.md).",
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="EXPERIMENT")
+    bench_all.add_parser(actions)
     speed = actions.add_parser(
         "flow-speed", help="time of a frame with flow, beside OpenCV's estimates and networks"
     )
@@ -81,6 +84,8 @@ def _add_networks(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Do one of them; 0 if all is well."""
+    if args.action == "all":
+        return bench_all.every_part(args)
     if args.action == "streams":
         from sailenv_ros.cli.bench_streams import streams
 

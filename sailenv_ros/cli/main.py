@@ -24,7 +24,7 @@ COMMANDS = {
     "behaviours": "list how objects can move of themselves, with every parameter",
     "assets": "build the furniture, list and picture objects, add one's own",
     "bag": "say what a recording holds, restore a damaged one",
-    "bench": "measure flow's speed and accuracy, and frames per second",
+    "bench": "measure speed and the accuracy of flow, as one table or as the paper's experiments",
     "dataset": "make data sets by recipe, check them, look at them",
     "doctor": "examine this machine: Python, ROS, OpenGL devices, scenes, shared memory",
     "eval": "show a detector the rooms' objects and score what it sees",

@@ -1,4 +1,4 @@
-"""What a work is: the settings that decide on every byte of it, kept in a file where it grows."""
+"""Identity of a job: the settings that decide on every byte, kept in a file where it grows."""
 
 from __future__ import annotations
 

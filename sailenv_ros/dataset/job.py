@@ -30,7 +30,7 @@ __all__ = ["JOB_FILE", "Job", "RecipeError", "load_job", "load_recipe"]
 
 
 JOB_FILE = "job.json"
-"""What decides on every byte of a data set; written first."""
+"""Settings that decide on every byte of a data set; written first."""
 
 
 class RecipeError(SceneError):

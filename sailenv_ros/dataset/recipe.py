@@ -285,5 +285,5 @@ class DatasetRecipe(SceneModel):
 
     @property
     def annotation_rules(self) -> AnnotationRules:
-        """Which objects are annotated, as formats take it."""
+        """Objects that are annotated, as formats take it."""
         return AnnotationRules(**self.annotations.model_dump())

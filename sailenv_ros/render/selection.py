@@ -1,4 +1,4 @@
-"""Which renderer draws: OpenGL on graphics hardware, or the native library."""
+"""Selection of the renderer: OpenGL on graphics hardware, or the native library."""
 
 from __future__ import annotations
 

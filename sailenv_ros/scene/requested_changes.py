@@ -1,4 +1,4 @@
-"""What requests change of a running scene, by the keys that it has in a scene file."""
+"""Requested changes of a running scene, by the keys of scene files."""
 
 from __future__ import annotations
 

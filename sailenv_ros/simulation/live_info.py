@@ -1,4 +1,4 @@
-"""What clients are told of the scene that is simulated now: live scene in, `SceneInfo` out."""
+"""Description of the simulated scene for clients: live scene in, `SceneInfo` out."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ __all__ = ["OpenPacks"]
 
 
 class OpenPacks:
-    """What is installed as this is made.
+    """Packs that are installed as this is made.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which streamed frames fall due when, and to whom they go.
+"""Schedule of streamed frames: when each is due, and for whom.
 
 Counts physics steps; knows neither the wall clock nor how a frame is made.
 """

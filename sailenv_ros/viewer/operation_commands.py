@@ -25,7 +25,7 @@ MAX_STEPS_AT_ONCE = 2400
 """Ten seconds of simulated time: nobody else is served meanwhile."""
 
 OBJECT_KEYS = ("name", "category", "scale")
-"""What a page may change of an object; its material has a command of its own."""
+"""Changes of an object that a page may request; its material has a command of its own."""
 
 Guard = Callable[[CommandContext, Arguments], None]
 """Raises where a page may not ask for what a program may."""

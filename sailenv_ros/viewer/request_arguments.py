@@ -22,7 +22,7 @@ _INTEGER = Bounds(whole=True)
 _LARGEST = 2**63
 
 _OF_SOCKET = ("do", "id")
-"""What the socket itself takes of a message: the name of the command and the number of the call."""
+"""Keys of a message that the socket itself takes: the command's name and the call's number."""
 
 
 def arguments_of_text(text: str) -> Arguments:

@@ -1,4 +1,4 @@
-"""What a world holds apart from poses, as renderers and clients are told it.
+"""Contents of a world apart from poses, as renderers and clients receive them.
 
 Bodies, lights and surroundings in, `SceneContents` out, under a new revision at each change.
 """

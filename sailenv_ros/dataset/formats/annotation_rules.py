@@ -11,7 +11,7 @@ __all__ = ["ALL_OBJECTS", "AnnotationRules"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnnotationRules:
-    """Which objects are annotated.
+    """Objects that are annotated.
 
     Attributes
     ----------

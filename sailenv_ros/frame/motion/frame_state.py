@@ -1,4 +1,4 @@
-"""What motion needs to know of a frame, whether it is a `FrameData` or the dict of an agent."""
+"""State of a frame that motion needs, of a `FrameData` or of the dict of an agent."""
 
 from __future__ import annotations
 

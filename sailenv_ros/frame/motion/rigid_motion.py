@@ -57,7 +57,7 @@ class ObservedPoses:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotionTable:
-    """What the kernel takes; computed by `motion_table`.
+    """Arguments of the kernel; computed by `motion_table`.
 
     Attributes
     ----------

@@ -18,7 +18,7 @@ SMALLEST_M = 0.15
 
 @dataclass(frozen=True, eq=False, slots=True)
 class BakedRows:
-    """What light depends on of the contents that are shown.
+    """Part of the shown contents that light depends on.
 
     Attributes
     ----------

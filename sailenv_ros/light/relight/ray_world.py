@@ -1,4 +1,4 @@
-"""What rays meet before and after changes, as kernels take it.
+"""Triangles that rays hit before and after changes, as kernels take them.
 
 From `BakedScene` and changes to structures of `native.ray_types`.
 """

@@ -24,7 +24,7 @@ __all__ = ["RELATIONS", "DrawnNumber", "RelativeDraw"]
 RELATIONS: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
     {"times": lambda own, amount: own * amount, "add": lambda own, amount: own + amount}
 )
-"""What becomes of the scene's own number and a drawn amount, by the names in a file."""
+"""Ways to combine the scene's own number and a drawn amount, by their names in a file."""
 
 _NUMBER = Number(least=-1e6, most=1e6)
 

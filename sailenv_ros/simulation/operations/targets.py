@@ -1,4 +1,4 @@
-"""What operations need of the simulation that they are carried out in.
+"""Protocols of the simulation that operations need.
 
 Each operation names the narrowest of these that it can do with; `OperationTarget` is all of them.
 None knows who has it.
