@@ -32,12 +32,12 @@ class Wrench(BehaviourParameters):
         "out: at the centre of mass"
     )
     duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
-        "how long it acts [s], at least one step; left out: for ever"
+        "how long it acts [s], at least one step; left out: forever"
     )
 
     @property
     def duration_s(self) -> float | None:
-        """Time until it ends [s]; None if it acts for ever."""
+        """Time until it ends [s]; None if it acts forever."""
         return self.duration
 
     @property
