@@ -242,7 +242,8 @@ def mip_chain(texels: NDArray[np.uint8]) -> NDArray[np.uint32]:
     edge = len(texels)
     checked("texels", texels, np.uint8, (edge, edge, 4))
     # Two neighbours of the last row are read in one step with the next ones.
-    chain = np.zeros(sum(s * (s + 1) for s in _edges(edge)) + 2, np.uint32)
+    chain = np.empty(sum(s * (s + 1) for s in _edges(edge)) + 2, np.uint32)
+    chain[-2:] = 0
     _MIPS(texels, edge, chain)
     return chain
 

@@ -120,6 +120,13 @@ class PartTable:
         casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
         shown: list[tuple[_ModelParts, int, bool]] = []
         is_new = False
+        known = {id(made.model) for made in self._models.values()}
+        self._textures.prepare(
+            part.material
+            for drawn in contents.instances
+            if id(drawn.model) not in known
+            for part in drawn.model.parts
+        )
         for row, (drawn, flat) in enumerate(
             zip(contents.instances, unwrappings(contents), strict=True)
         ):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.drawing import mip_chain
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.render_types import TEXTURE, address, record
 from sailenv_ros.render.scene.packed_maps import pack_maps
 from sailenv_ros.render.scene.texture_images import SIZES_PX, array_of, square_texels
@@ -17,50 +19,82 @@ __all__ = ["TextureStore"]
 
 _Key = tuple[int, ...]
 
+_Entry = tuple[object, NDArray[np.uint32], NDArray[np.void]]
+"""What keeps the key unique, the texels of all levels, and the TEXTURE that tells of them."""
+
 
 class TextureStore:
     """The textures of the scenes that were shown last."""
 
     def __init__(self) -> None:
         # The number of a texture is unique only while it lives: the first entry keeps it.
-        self._textures: dict[_Key, tuple[object, NDArray[np.uint32], NDArray[np.void]]] = {}
+        self._textures: dict[_Key, _Entry] = {}
+
+    def prepare(self, materials: Iterable[Material]) -> None:
+        """Make the maps of materials, several at once: a room has some hundreds."""
+        missing: dict[_Key, tuple[Callable[[Material], _Entry | None], Material]] = {}
+        for material in materials:
+            missing[_colour_key(material)] = _colour_entry, material
+            missing[_detail_key(material)] = _detail_entry, material
+        for key in self._textures.keys() & missing.keys():
+            del missing[key]
+        if not missing:
+            return
+        with ThreadPoolExecutor(thread_count()) as pool:
+            made = pool.map(lambda job: job[0](job[1]), missing.values())
+            self._textures.update(
+                (key, entry) for key, entry in zip(missing, made, strict=True) if entry is not None
+            )
 
     def colour_map(self, material: Material) -> int:
         """Return the address of a material's colour map; 0 if it has none."""
-        texture = material.base_colour_texture
-        if texture is None:
-            return 0
-        key = (id(texture),)
-        if key not in self._textures:
-            self._add(key, texture, texture, is_colour=True)
-        return address(self._textures[key][2])
+        return self._address(_colour_key(material), material, _colour_entry)
 
     def detail_map(self, material: Material) -> int:
         """Return the address of a material's normals, roughness and metallic; 0 if it has none."""
-        key = _detail_key(material)
-        if key not in self._textures:
-            packed = pack_maps(material)
-            if packed is None:
-                return 0
-            kept = material.metallic_roughness_texture, material.normal_texture
-            self._add(key, kept, packed, is_colour=False)
-        return address(self._textures[key][2])
+        return self._address(_detail_key(material), material, _detail_entry)
 
     def trim(self, shown: Iterable[Material]) -> None:
         """Forget what is not shown, if that is more than what is."""
         kept: set[_Key] = set()
         for material in shown:
-            kept |= {(id(material.base_colour_texture),), _detail_key(material)}
+            kept |= {_colour_key(material), _detail_key(material)}
         sizes = {key: chain.nbytes for key, (_, chain, _) in self._textures.items()}
         held = sum(size for key, size in sizes.items() if key in kept)
         if sum(sizes.values()) > 2 * held:
             self._textures = {key: entry for key, entry in self._textures.items() if key in kept}
 
-    def _add(self, key: _Key, kept: object, texture: Texture, *, is_colour: bool) -> None:
-        edge = SIZES_PX[array_of(texture)]
-        chain = mip_chain(square_texels(texture, edge, is_colour=is_colour))
-        entry = record(TEXTURE, texels_at=address(chain), log2_size=edge.bit_length() - 1)
-        self._textures[key] = (kept, chain, entry)
+    def _address(
+        self, key: _Key, material: Material, make: Callable[[Material], _Entry | None]
+    ) -> int:
+        entry = self._textures.get(key) or make(material)
+        if entry is None:
+            return 0
+        self._textures[key] = entry
+        return address(entry[2])
+
+
+def _colour_entry(material: Material) -> _Entry | None:
+    texture = material.base_colour_texture
+    return None if texture is None else _entry(texture, texture, is_colour=True)
+
+
+def _detail_entry(material: Material) -> _Entry | None:
+    packed = pack_maps(material)
+    if packed is None:
+        return None
+    kept = material.metallic_roughness_texture, material.normal_texture
+    return _entry(kept, packed, is_colour=False)
+
+
+def _entry(kept: object, texture: Texture, *, is_colour: bool) -> _Entry:
+    edge = SIZES_PX[array_of(texture)]
+    chain = mip_chain(square_texels(texture, edge, is_colour=is_colour))
+    return kept, chain, record(TEXTURE, texels_at=address(chain), log2_size=edge.bit_length() - 1)
+
+
+def _colour_key(material: Material) -> _Key:
+    return (id(material.base_colour_texture),)
 
 
 def _detail_key(material: Material) -> _Key:
