@@ -37,6 +37,7 @@ _TITLES = {
     "MaterialSpec": "A material",
     "MoverSpec": "A mover",
     "ObjectSpec": "An object",
+    "OutsideSpec": "What lies outside",
     "PartitionSpec": "A partition",
     "PictureSpec": "A picture",
     "PointLightSpec": "A point light",
