@@ -20,6 +20,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from benchmarks.reference.scene_export import without_outside
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.light.bake.pipeline import bake
@@ -89,7 +90,7 @@ def whitened(snapshot: WorldSnapshot) -> WorldSnapshot:
 
 def in_scene(name: str, renderer: NativeRenderer) -> tuple[WorldSnapshot, Iterator[Camera]]:
     """Return a scene in its finished light, and plausible cameras."""
-    room = room_at_rest(name)
+    room = without_outside(room_at_rest(name))
     return whitened(room), plausible_views(room, renderer, f"blots{name}", width=1024, height=768)
 
 

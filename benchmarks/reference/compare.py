@@ -31,7 +31,7 @@ from benchmarks.reference.moved import moved_room
 from benchmarks.reference.parts import Parts
 from benchmarks.reference.regions import REGIONS, regions_of
 from benchmarks.reference.regions import VIEWS as SHOWN_BY
-from benchmarks.reference.scene_export import scene_of, sensor
+from benchmarks.reference.scene_export import scene_of, sensor, without_outside
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.render.contract import RenderBackend
@@ -138,7 +138,7 @@ def _snapshot(scene: str) -> WorldSnapshot:
         # The traced sky is as bright as it is.
         environment = replace(world.contents.environment, sky_blend=False)
         world.set_environment(environment)
-        return world.snapshot()
+        return without_outside(world.snapshot())
     finally:
         world.close()
 

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from benchmarks.reference.scene_export import without_outside
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight.baked_scene import BakedScene
@@ -71,7 +72,7 @@ def main() -> int:
     arguments = _arguments()
     rows, missing = [], 0
     for room in arguments.rooms:
-        snapshot = SceneLibrary().snapshot(room)
+        snapshot = without_outside(SceneLibrary().snapshot(room))
         baked = snapshot.contents.baked
         if baked is None:
             print(f"{room}: not baked; sailenv scene bake {room}", file=sys.stderr)

@@ -23,7 +23,15 @@ from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Material, Mesh
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["analytic_sky", "lamp", "scene_of", "sensor", "surroundings", "world_mesh"]
+__all__ = [
+    "analytic_sky",
+    "lamp",
+    "scene_of",
+    "sensor",
+    "surroundings",
+    "without_outside",
+    "world_mesh",
+]
 
 Dict = dict[str, Any]
 Floats = NDArray[np.float64]
@@ -62,6 +70,21 @@ def scene_of(snapshot: WorldSnapshot, parts: Parts) -> Dict:
     for number, (material, pieces) in enumerate(_pieces_by_material(snapshot)):
         scene[f"shape {number:04d}"] = _shape(material, pieces, parts)
     return scene
+
+
+def without_outside(snapshot: WorldSnapshot) -> WorldSnapshot:
+    """Return a snapshot as it is without what lies outside rooms.
+
+    That takes no part in the light: it is shown as the sky is, of which a tracer knows nothing.
+    """
+    kept = [drawn.outside is None for drawn in snapshot.contents.instances]
+    inside = tuple(drawn for drawn in snapshot.contents.instances if drawn.outside is None)
+    return replace(
+        snapshot,
+        contents=replace(snapshot.contents, instances=inside),
+        world_from_body=snapshot.world_from_body[kept],
+        histories=snapshot.histories[kept],
+    )
 
 
 def sensor(camera: Camera) -> Dict:

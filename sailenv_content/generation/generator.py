@@ -36,6 +36,7 @@ from sailenv_ros.errors import InvalidState
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.scene.room_rules import WALLS, room_part_names
 from sailenv_ros.scene.spec import EnvironmentSpec, SceneSpec
+from sailenv_ros.scene.spec_outside import OutsideSpec
 from sailenv_ros.scene.spec_room import RoomSpec, SurfaceSpec, WallMaterialsSpec
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.world.build import build_world
@@ -151,6 +152,11 @@ class Generator:
             return RandomStream(kind, seed, attempt, purpose)
 
         shell = shell_of(kind, self._rules, dice("shell"))
+        outside = dice("outside")
+        shell.entry["outside"] = {
+            "kind": outside.one(file.outside),
+            "seed": outside.whole((0, 999)),
+        }
         plan = RoomPlan(areas=shell.areas, doors=shell.doors, walls=shell.walls)
         plan.stand(shell.leaves, shell.clear)
         namer = Namer(room_part_names(shell.entry))
@@ -280,6 +286,7 @@ def _without_looks(room: RoomSpec | None) -> RoomSpec | None:
             "wall_materials": WallMaterialsSpec(),
             "floor": one,
             "ceiling": None if room.ceiling is None else one,
+            "outside": OutsideSpec(),
             "partitions": tuple(each.model_copy(update=bare) for each in room.partitions),
             "floors": tuple(each.model_copy(update={"surface": one}) for each in room.floors),
         }

@@ -1,9 +1,9 @@
-"""Models of packs, read from their files once on a machine: later starts read plain arrays."""
+"""Models that take long to read or to make: once on a machine, as plain arrays after that."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from sailenv_ros.assets.glb import read_glb
 from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.model import ConvexShape, Material, Mesh, ModelPart
 
-__all__ = ["read_once"]
+__all__ = ["cached_parts", "read_once"]
 
 _LIBRARIES = ("trimesh", "pillow")
 _MESH = tuple(field.name for field in fields(Mesh))
@@ -43,11 +43,19 @@ def read_once(path: Path, checksum: str) -> tuple[Parts, Hulls]:
     if not checksum:
         return read_glb(path)
     code = code_digest("assets", "types", libraries=_LIBRARIES)
-    return _model_of(cached_arrays("model", [checksum], lambda: _read(path), code=code))
+    return _model_of(
+        cached_arrays("model", [checksum], lambda: _arrays_of(*read_glb(path)), code=code)
+    )
 
 
-def _read(path: Path) -> Arrays:
-    parts, hulls = read_glb(path)
+def cached_parts(
+    kind: str, key: Iterable[object], make: Callable[[], Parts], *, code: str
+) -> Parts:
+    """Return the parts of a model that code makes; see `cached_arrays` for the parameters."""
+    return _model_of(cached_arrays(kind, key, lambda: _arrays_of(make(), ()), code=code))[0]
+
+
+def _arrays_of(parts: Parts, hulls: Hulls) -> Arrays:
     arrays: dict[str, NDArray[Any]] = {}
     textures: dict[int, str] = {}
     materials: dict[int, int] = {}

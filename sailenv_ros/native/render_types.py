@@ -68,7 +68,8 @@ PART = structure(
 
 INSTANCES = structure(
     ("world_from_body_at scales_at drawn_at at_baked_pose_at", ADDRESS),
-    ("count", "<i8"),
+    ("count clipped", "<i8"),
+    ("clip", "<i4", 4),
 )
 
 DRAW_LIST = structure(("parts_at", ADDRESS), ("count", "<i8"))
@@ -108,6 +109,8 @@ LIGHT = structure(
     ("reflection_scale layers_per_roughness", "<f4"),
     ("reflection_points_at reflection_table_at", ADDRESS),
     ("room_low room_high", "<f4", 3),
+    ("outside_id", "<i4"),
+    ("outside_radiance", "<f4"),
 )
 
 VIEW = structure(

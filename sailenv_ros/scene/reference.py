@@ -54,6 +54,7 @@ PAGES: Mapping[str, Mapping[str, str]] = {
         "PartitionSpec": "A partition",
         "DoorwaySpec": "A doorway",
         "FloorAreaSpec": "A floor area",
+        "OutsideSpec": "What lies outside",
     },
     "scene_objects.md": {
         "ObjectSpec": "An object",

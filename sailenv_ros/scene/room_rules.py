@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias
 
 from sailenv_ros.scene.messages import shown
+from sailenv_ros.scene.spec_outside import NO_OUTSIDE, OUTSIDE
 from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = [
@@ -105,6 +106,10 @@ def names_beside_room(scene: Entry) -> Faults:
 def room_part_names(room: Entry) -> Iterator[str]:
     """Yield the names of all objects that a room may become."""
     yield from ("floor", "ceiling", "skirting")
+    outside = room.get("outside")
+    kind = outside.get("kind") if isinstance(outside, Mapping) else outside
+    if isinstance(kind, str) and kind != NO_OUTSIDE:
+        yield OUTSIDE
     yield from (f"{wall} wall" for wall in WALLS)
     for key in ("partitions", "floors"):
         parts = room.get(key)

@@ -39,6 +39,7 @@ from sailenv_ros.scene.room_rules import (
 )
 from sailenv_ros.scene.rules import only_beside
 from sailenv_ros.scene.spec_materials import LookSpec, MaterialName
+from sailenv_ros.scene.spec_outside import OutsideSpec
 
 __all__ = [
     "CurtainSpec",
@@ -315,6 +316,11 @@ class RoomSpec(SceneModel):
     )
     floors: tuple[FloorAreaSpec, ...] = Field(
         default=(), max_length=64, description="rectangles whose floor differs"
+    )
+
+    outside: OutsideSpec = Field(
+        default_factory=OutsideSpec,
+        description="what lies behind windows and open doors: street, garden or none",
     )
 
     def look_of(self, part: str) -> dict[str, Any] | None:

@@ -20,6 +20,7 @@ from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Model
+from sailenv_ros.types.outside import Outside
 
 __all__ = ["DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
 
@@ -40,6 +41,10 @@ class DrawnInstance:
     stands : bool or None
         True if its light is baked: it never moves, or stands until its joint is moved. None takes
         what the instance says of physics.
+    outside : Outside or None
+        Of what lies outside a room. It is shown as the sky is: what its materials emit is the
+        radiance that they have there, blended with the room as the sky is where that is wanted; it
+        takes no light, casts no shadow and gives none.
     """
 
     instance: Instance
@@ -47,6 +52,7 @@ class DrawnInstance:
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     lit_by: tuple[str, ...] = ()
     stands: bool | None = None
+    outside: Outside | None = None
 
     def lamp_power(self, lights: Iterable[Light]) -> tuple[float, float, float]:
         """Return (3,): radiant intensity of the lights whose lamp it is, summed [W/sr]."""

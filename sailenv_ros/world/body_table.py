@@ -34,7 +34,7 @@ class BodyTable:
         The engine that they live in.
     placements : iterable of Placement
         What is there from the start; get the ids 1, 2, 3 … in this order. Parts of their models
-        get the ids that follow.
+        get the ids that follow, and after them what lies outside.
     waiting : collection of str
         Names of those that are nowhere at first.
 
@@ -61,11 +61,14 @@ class BodyTable:
         self._pieces: tuple[LabelledPiece, ...] | None = None
         self._ids = InstanceIds()
         self._last_poses: dict[int, NDArray[np.float64]] = {}
-        for placement in placements:
+        listed = list(placements)
+        for placement in (one for one in listed if one.outside is None):
             self._add_body(placement, waits=placement.name in waiting)
         self.joints.arrange(self)
         for body_id in range(1, self._ids.last + 1):
             self._number_parts(body_id)
+        for placement in (one for one in listed if one.outside is not None):
+            self._add_body(placement)
         self._first_names = {id_: body.placement.name for id_, body in self._bodies.items()}
         self._room_parts = frozenset(
             body.placement.name for body in self if body.placement.entry is None

@@ -12,6 +12,7 @@ from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.material_library import MaterialLibrary, material_names
 from sailenv_ros.assets.model_materials import finished
+from sailenv_ros.assets.outside import Daylight, daylight_of, outside_asset, outside_of
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
 from sailenv_ros.assets.skies import load_sky
@@ -68,7 +69,10 @@ def build_world(
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
     found = materials or MaterialLibrary(assets)
-    parts = list(room_placements(spec.room, table, found))
+    lights = [light.to_light() for light in spec.lights]
+    environment = make_environment(spec.environment, skies or {})
+    daylight = daylight_of(lights, environment)
+    parts = list(room_placements(spec.room, table, found, daylight))
     world = World(
         scene=spec.name,
         epoch=epoch,
@@ -87,8 +91,8 @@ def build_world(
         waiting=spec.lesson_objects.union(e.name for e in spec.objects if e.appear),
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,
-        lights=[light.to_light() for light in spec.lights],
-        environment=make_environment(spec.environment, skies or {}),
+        lights=lights,
+        environment=environment,
         gravity=spec.gravity,
         settled=spec.settled,
         described=spec,
@@ -121,9 +125,22 @@ def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Enviro
 
 
 def room_placements(
-    room: RoomSpec | None, categories: CategoryTable, materials: MaterialLibrary | None = None
+    room: RoomSpec | None,
+    categories: CategoryTable,
+    materials: MaterialLibrary | None = None,
+    daylight: Daylight | None = None,
 ) -> Iterator[Placement]:
-    """Yield the parts of a room, none if there is no room."""
+    """Yield the parts of a room, none if there is no room.
+
+    Parameters
+    ----------
+    room : RoomSpec or None
+    categories : CategoryTable
+    materials : MaterialLibrary or None
+        Where its materials come from; None knows those that are made for rooms.
+    daylight : Daylight or None
+        In which what lies outside is seen; None leaves that out.
+    """
     made = () if room is None else room_parts(room, materials)
     places = {part.asset.display_name: np.asarray(part.position_m) for part in made}
     for part in made:
@@ -140,6 +157,16 @@ def room_placements(
             pose=Pose(part.position_m),
             static=joint is None,
             joint=joint,
+        )
+    beyond = None if room is None or daylight is None else outside_asset(room, daylight)
+    if room is not None and beyond is not None:
+        yield Placement(
+            name=beyond.display_name,
+            asset=beyond,
+            category_id=categories.named(beyond.category).id,
+            pose=Pose(),
+            static=True,
+            outside=outside_of(room, made),
         )
 
 

@@ -157,7 +157,9 @@ class ContentsMaker:
             model=model,
             scale=placement.scale,
             lit_by=self._lit_by.get(piece.body_id, ()),
-            stands=placement.static or (placement.joint is not None and not placement.behaviours),
+            stands=placement.outside is None
+            and (placement.static or (placement.joint is not None and not placement.behaviours)),
+            outside=placement.outside,
         )
 
 

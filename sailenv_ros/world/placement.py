@@ -9,6 +9,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.spec import JointSpec, ObjectSpec
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset, TriangleShape
+from sailenv_ros.types.outside import Outside
 
 __all__ = ["JointPlacement", "Placement"]
 
@@ -65,6 +66,8 @@ class Placement:
         What it moves on; `pose` is only where it begins then.
     entry : ObjectSpec or None
         What a scene file says of it; None for a part of a room.
+    outside : Outside or None
+        Of what lies outside a room: seen as the sky is, and no part of its light.
     """
 
     name: str
@@ -83,6 +86,7 @@ class Placement:
     materials: tuple[str, ...] = ()
     joint: JointPlacement | None = None
     entry: ObjectSpec | None = None
+    outside: Outside | None = None
 
     def __post_init__(self) -> None:
         hollow = any(isinstance(shape, TriangleShape) for shape in self.asset.collision)

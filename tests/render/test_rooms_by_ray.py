@@ -18,7 +18,7 @@ from tests.support.embree_cast import RayCast
 pytestmark = pytest.mark.gl
 
 VIEWS_PER_ROOM = 4
-WIDTH, HEIGHT = 320, 240
+WIDTH, HEIGHT = 384, 288
 
 
 @pytest.fixture(scope="module", params=["room_01", "room_02", "room_03"])

@@ -13,6 +13,7 @@ from pydantic import Field
 
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector, optional
 from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
+from sailenv_ros.scene.spec_outside import OUTSIDE_KINDS
 from sailenv_ros.scene.spec_room import SurfaceSpec
 
 __all__ = [
@@ -276,6 +277,9 @@ class KindFile(_RuleModel):
     shape: ShapeRule = Field(description="its size")
     windows: WindowRule = Field(default_factory=WindowRule, description="its windows")
     doors: OpeningRule = Field(default_factory=OpeningRule, description="its doors")
+    outside: tuple[Annotated[str, Choice(OUTSIDE_KINDS)], ...] = Field(
+        default=OUTSIDE_KINDS[1:], min_length=1, description="what lies outside: one is taken"
+    )
     materials: tuple[_Name, ...] = Field(min_length=1, description="names of materials.yaml")
     light: tuple[_Name, ...] = Field(min_length=1, description="names of light.yaml")
     furniture: tuple[PieceRule, ...] = Field(default=(), description="in this order")

@@ -93,7 +93,7 @@ class ViewScene(ABC):
     @cached_property
     def object_ids(self) -> frozenset[int]:
         """Ids of what stands in the scene: not of floors, walls and other parts of rooms."""
-        parts = {"floor", "wall", "ceiling", "skirting", "window", "door", "curtain"}
+        parts = {"floor", "wall", "ceiling", "skirting", "window", "door", "curtain", "outside"}
         found = (drawn.instance for drawn in self.snapshot.contents.instances)
         return frozenset(i.id for i in found if i.category not in parts)
 

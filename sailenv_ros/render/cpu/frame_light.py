@@ -30,6 +30,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     light_alone,
     main_light,
 )
+from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
 from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
@@ -207,6 +208,7 @@ class FrameLight:
         if main is not None:
             light["main_colour"][0] = main.power
             light["main_towards"][0] = -np.asarray(main.direction)
+        light["outside_id"], light["outside_radiance"] = shown_outside(snapshot.contents)
         if environment.sky is not None:
             wanted = environment.sky, seen_exposure(environment)
             if self._sky is None or self._sky[0] != wanted:

@@ -176,6 +176,7 @@ class PartTable:
         poses: NDArray[np.float64],
         at_baked_pose: NDArray[np.bool_] | None,
         drawn: NDArray[np.bool_] | None = None,
+        clip: tuple[int, tuple[int, int, int, int]] | None = None,
     ) -> NDArray[np.void]:
         """Return (1,) INSTANCES; the arrays must live as long as it.
 
@@ -187,7 +188,10 @@ class PartTable:
             None where nothing is shaded.
         drawn : (N,) bool or None
             Which instances are drawn; None for all.
+        clip : (int, (4,) tuple of int) or None
+            Row of an instance that is drawn in a part of the picture alone, see `OpeningWindows`.
         """
+        row, part = (-1, (0, 0, 0, 0)) if clip is None else clip
         return record(
             INSTANCES,
             world_from_body_at=address(poses),
@@ -195,6 +199,8 @@ class PartTable:
             drawn_at=address(drawn),
             at_baked_pose_at=address(at_baked_pose),
             count=len(poses),
+            clipped=row + 1,
+            clip=part,
         )
 
     def _make(self, model: Model, meshes: list[DrawnMesh]) -> _ModelParts:

@@ -20,6 +20,7 @@ from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.flat_mirrors import Window
+from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.types.camera import Camera
@@ -62,6 +63,7 @@ class NativeRenderer(DrawingRenderer):
         super().__init__(threads)
         self._drawing = Drawing(self._threads)
         self._table = PartTable() if table is None else table
+        self._openings = OpeningWindows()
         self._light = FrameLight(self._drawing, self._threads, reflections)
 
     @property
@@ -105,7 +107,7 @@ class NativeRenderer(DrawingRenderer):
             marked = time.perf_counter()
         poses = np.ascontiguousarray(snapshot.world_from_body)
         at_baked_pose = table.at_baked_pose(snapshot)
-        instances = table.instances(poses, at_baked_pose)
+        instances = table.instances(poses, at_baked_pose, clip=self._openings.of(snapshot, camera))
         # With supersampling the picture is drawn apart: ground truth is of pixel centres.
         sampled = light is not None and camera.picture.supersampling > 1
         height, width = camera.intrinsics.height, camera.intrinsics.width
@@ -128,6 +130,9 @@ class NativeRenderer(DrawingRenderer):
         )
         if sampled:
             fine = camera.of_samples()
+            instances = table.instances(
+                poses, at_baked_pose, clip=self._openings.of(snapshot, fine)
+            )
             height, width = fine.intrinsics.height, fine.intrinsics.width
             arrays["rgb"] = np.empty((height, width, 4), np.float16)
             if camera.picture.occlusion_strength > 0.0:

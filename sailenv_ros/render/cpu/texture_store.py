@@ -20,7 +20,7 @@ __all__ = ["TextureStore"]
 _Key = tuple[int, ...]
 
 _Entry = tuple[object, NDArray[np.uint32], NDArray[np.void]]
-"""What keeps the key unique, the texels of all levels, and the TEXTURE that tells of them."""
+"""Textures that keep the key unique, the texels of all levels, the TEXTURE that tells of them."""
 
 
 class TextureStore:

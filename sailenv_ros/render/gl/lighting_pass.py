@@ -21,6 +21,7 @@ from sailenv_ros.render.gl.programs import ProgramCache, set_lens, set_uniform
 from sailenv_ros.render.gl.reflection_texture import ReflectionTexture
 from sailenv_ros.render.gl.shadow_pass import ShadowPass
 from sailenv_ros.render.scene.lamps import MAX_LIGHTS, strongest_lamps
+from sailenv_ros.render.scene.outside_light import NOTHING_OUTSIDE
 from sailenv_ros.render.scene.reflection_points import MOST
 from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX
@@ -65,6 +66,8 @@ class Illumination:
         Whether what emits light does so.
     blended : bool
         Whether the sky is blended with the room, as for people to see; see `seen_sky`.
+    outside : (int, float)
+        See `shown_outside`.
     """
 
     main: Light | None
@@ -78,6 +81,7 @@ class Illumination:
     reflections: ReflectionTexture | None = None
     glows: bool = True
     blended: bool = True
+    outside: tuple[int, float] = NOTHING_OUTSIDE
 
 
 class LightingPass:
@@ -175,6 +179,9 @@ class LightingPass:
         self._lamps.write(rows.tobytes())
         self._lamps.bind_to_uniform_block(0)
         set_uniform(program, "glow", float(illumination.glows))
+        outside_id, outside_radiance = illumination.outside
+        set_uniform(program, "outside_id", float(outside_id))
+        set_uniform(program, "outside_radiance", outside_radiance)
         set_uniform(program, "lamp_count", len(rows))
         colour, towards = (0.0, 0.0, 0.0), np.array([0.0, 0.0, 1.0])
         if sun is not None:

@@ -31,6 +31,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     main_light,
     sum_texels,
 )
+from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.room_reflections import RoomReflections
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Light
@@ -70,6 +71,7 @@ class SceneLight:
             if main is not None:
                 self._shadow.draw(main, snapshot, draws, geometry)
             return Illumination(
+                outside=shown_outside(contents),
                 main=main,
                 lamps=tuple(light for light in contents.lights if light is not main),
                 environment=contents.environment,
@@ -88,6 +90,7 @@ class SceneLight:
         static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, ~still)
         self._reflections.write_table(self._room.points.table(snapshot))
         return Illumination(
+            outside=shown_outside(contents),
             main=main,
             lamps=composited.live,
             environment=contents.environment,

@@ -34,8 +34,7 @@ comes to rest creeps for seconds, by less than can be seen, and needs no new map
 
 def casts(drawn: DrawnInstance) -> bool:
     """Return whether a body casts a shadow: walls and ceilings of halls do, grounds do not."""
-    boxes = _boxes([drawn])
-    return bool(_casting(boxes[:, 1] - boxes[:, 0])[0])
+    return bool(_casting([drawn], _boxes([drawn]))[0])
 
 
 def _boxes(instances: Sequence[DrawnInstance]) -> NDArray[np.float64]:
@@ -46,9 +45,11 @@ def _boxes(instances: Sequence[DrawnInstance]) -> NDArray[np.float64]:
     return boxes
 
 
-def _casting(extents: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _casting(instances: Sequence[DrawnInstance], boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    extents = boxes[:, 1] - boxes[:, 0]
     largest = np.where(extents.min(axis=1) < 1e-3, LARGEST_SHEET_M, LARGEST_CASTER_M)
-    casting: NDArray[np.bool_] = np.linalg.norm(extents, axis=1) <= largest
+    outside = np.array([drawn.outside is not None for drawn in instances], bool)
+    casting: NDArray[np.bool_] = (np.linalg.norm(extents, axis=1) <= largest) & ~outside
     return casting
 
 
@@ -292,7 +293,8 @@ class _Spheres:
         boxes = _boxes(contents.instances)
         extents = boxes[:, 1] - boxes[:, 0]
         self._middles = boxes.mean(axis=1)
-        self._radii = np.where(_casting(extents), 0.5 * np.linalg.norm(extents, axis=1), 0.0)
+        casting = _casting(contents.instances, boxes)
+        self._radii = np.where(casting, 0.5 * np.linalg.norm(extents, axis=1), 0.0)
 
 
 def _caster_bounds(

@@ -8,6 +8,7 @@ from typing import Any
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.randomise.selectors import OfCategory, is_meant, selectors_in
 from sailenv_ros.scene.room_rules import room_part_names
+from sailenv_ros.scene.spec_outside import OUTSIDE
 
 __all__ = [
     "box_in_order",
@@ -81,7 +82,8 @@ def selectable(
             found[name] = known or (category_of(asset) if isinstance(asset, str) else "")
     room = scene.get("room")
     if kind == "material" and isinstance(room, Mapping):
-        found |= {name: _part_category(name) for name in room_part_names(room)}
+        parts = (name for name in room_part_names(room) if name != OUTSIDE)
+        found |= {name: _part_category(name) for name in parts}
     return found
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from sailenv_ros.assets.outside import daylight_of
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, NameTaken
 from sailenv_ros.scene.entries import checked_scene
 from sailenv_ros.scene.room_rules import inside_walls, room_part_names, without_overlaps
@@ -149,8 +150,10 @@ def restore_room(editor: SceneEditor, present: RoomRecord, wanted: RoomRecord) -
     for record in wanted.objects:
         if record.name in staying:
             raise NameTaken("object", record.name)
+    daylight = daylight_of(world.contents.lights, world.contents.environment)
+    stock = scene.library.materials.of(world.scene)
     world.replace_room(
-        room_placements(wanted.room, world.categories, scene.library.materials.of(world.scene)),
+        room_placements(wanted.room, world.categories, stock, daylight),
         world.described.model_copy(update={"room": wanted.room}),
         without=going,
     )

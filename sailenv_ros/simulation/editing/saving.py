@@ -42,7 +42,7 @@ __all__ = [
 
 Entry = dict[str, Any]
 
-_MAY_BE_LEFT_OUT = ("ceiling", "skirting", "curtains")
+_MAY_BE_LEFT_OUT = ("ceiling", "skirting", "curtains", "outside")
 """Parts of a room without which a file can describe it."""
 
 _SKY_COLOURS = ("sky_zenith", "sky_horizon", "sky_ground")
@@ -129,7 +129,7 @@ def room_entry(world: World) -> Entry:
     if room is None:
         return {}
     entry: Entry = room.model_dump(mode="json", exclude_unset=True)
-    entry.update({key: False for key in ("ceiling", "skirting") if key in missing})
+    entry.update({key: False for key in ("ceiling", "skirting", "outside") if key in missing})
     windows = [opening for opening in entry.get("openings", ()) if opening["type"] == "window"]
     for number, window in enumerate(windows, start=1):
         if f"curtains {number}" in missing:

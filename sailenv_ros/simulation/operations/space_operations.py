@@ -80,6 +80,8 @@ class SpaceOperations(Caller):
     def scene_bounds(core: HasWorld) -> tuple[Point, Point]:
         """Return the lowest and the highest corner of the box around everything that is drawn.
 
+        What lies outside a room is left out.
+
         Returns
         -------
         low, high : (3,) tuples of float
@@ -87,13 +89,14 @@ class SpaceOperations(Caller):
             Both are (0, 0, 0) in a scene without objects.
         """
         snapshot = core.world.snapshot()
-        if not len(snapshot.contents.instances):
+        inside = [drawn.outside is None for drawn in snapshot.contents.instances]
+        if not any(inside):
             return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        ends = boxes_of(snapshot)
+        ends, poses = boxes_of(snapshot)[inside], snapshot.world_from_body[inside]
         middles = np.append(ends.mean(axis=1), np.ones((len(ends), 1)), axis=1)
-        centres = np.einsum("nij,nj->ni", snapshot.world_from_body, middles)[:, :3]
+        centres = np.einsum("nij,nj->ni", poses, middles)[:, :3]
         halves = np.ptp(ends, axis=1) / 2.0
-        reaches = np.einsum("nij,nj->ni", np.abs(snapshot.world_from_body[:, :3, :3]), halves)
+        reaches = np.einsum("nij,nj->ni", np.abs(poses[:, :3, :3]), halves)
         low, high = (centres - reaches).min(axis=0), (centres + reaches).max(axis=0)
         return vector("low", low), vector("high", high)
 

@@ -197,7 +197,8 @@ class Randomiser:
         objects = () if described is None else tuple(entry.name for entry in described.objects)
         lights = () if described is None else described.lights
         own_of_agents = {one.spec.name: self._own_cameras.of(one.spec) for one in scene.agents}
-        surfaces = [b.placement.name for b in scene.world.bodies if b.placement.entry is None]
+        parts = (b.placement for b in scene.world.bodies if b.placement.entry is None)
+        surfaces = [placement.name for placement in parts if placement.outside is None]
         return RandomTargets(
             objects=objects,
             surfaces=tuple(surfaces),

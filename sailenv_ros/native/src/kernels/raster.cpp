@@ -34,6 +34,17 @@ double pixel_of(const Projection& p, int32_t sample) {
     return p.fine ? 0.5 * (sample - 1) : sample;
 }
 
+// The same for what is drawn in a part of the picture alone.
+Projection clipped(const Projection& p, const Instances& instances) {
+    Projection result = p;
+    const int32_t scale = p.fine ? 2 : 1, last = p.fine ? 2 : 0;
+    result.x0 = std::max(p.x0, scale * instances.clip[0]);
+    result.y0 = std::max(p.y0, scale * instances.clip[1]);
+    result.x1 = std::min(p.x1, scale * instances.clip[2] + last);
+    result.y1 = std::min(p.y1, scale * instances.clip[3] + last);
+    return result;
+}
+
 void set_sides(InstanceFrame& frame, const Projection& p) {
     const double* m = frame.eye_from_object;
     double wide[4];
@@ -455,7 +466,7 @@ void set_frames(Scratch& scratch, const Instances& instances, const double* eye_
         InstanceFrame& frame = scratch.frames[static_cast<size_t>(k)];
         const double *pose = instances.world_from_body + 16 * k, *scale = instances.scales + 3 * k;
         compose(eye_from_world, pose, scale, frame.eye_from_object);
-        set_sides(frame, projection);
+        set_sides(frame, k + 1 == instances.clipped ? clipped(projection, instances) : projection);
         set_eye(frame);
         // Normals go by the inverse transpose: the rotation with the reciprocal scale.
         for (int j = 0; j < 3; j++) {
@@ -473,6 +484,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
     set.seen.clear();
     set.parts_seen.clear();
     set.corners_at.assign(static_cast<size_t>(parts.count), -1);
+    const Projection part_of_it = clipped(projection, instances);
+    const bool nowhere = part_of_it.x0 > part_of_it.x1 || part_of_it.y0 > part_of_it.y1;
     int64_t corners = 0, most_triangles = 0;
     set.segment_count = 0;
     auto end_segment = [&](int64_t first_cluster, int64_t first_triangle) {
@@ -490,6 +503,7 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
         const int32_t number = order == nullptr ? static_cast<int32_t>(place) : order[place];
         const Part& part = parts.parts[number];
         if (instances.drawn != nullptr && !instances.drawn[part.instance]) continue;
+        if (part.instance + 1 == instances.clipped && nowhere) continue;
         const InstanceFrame& frame = scratch.frames[static_cast<size_t>(part.instance)];
         const double centre[3] = {part.sphere[0], part.sphere[1], part.sphere[2]};
         if (is_beyond(centre, part.sphere[3], frame.sides)) continue;
@@ -551,10 +565,11 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
             const int64_t at = set.corners_at[static_cast<size_t>(seen.part)];
             const int64_t number = segment.first_triangle + segment.triangle_count;
             Triangle* next = set.triangles.data() + number;
-            const int64_t made =
-                projection.perspective
-                    ? set_cluster_up<true>(seen, part, at, set, projection, rows, next)
-                    : set_cluster_up<false>(seen, part, at, set, projection, rows, next);
+            const Projection& onto =
+                part.instance + 1 == instances.clipped ? part_of_it : projection;
+            const int64_t made = projection.perspective
+                                     ? set_cluster_up<true>(seen, part, at, set, onto, rows, next)
+                                     : set_cluster_up<false>(seen, part, at, set, onto, rows, next);
             if (projection.fine) std::fill_n(set.part_of.begin() + number, made, seen.part);
             segment.triangle_count += made;
         }

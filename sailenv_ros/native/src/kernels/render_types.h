@@ -60,6 +60,8 @@ struct Instances {
     const uint8_t* drawn;           // (N,), or null: all are
     const uint8_t* at_baked_pose;   // (N,)
     int64_t count;
+    int64_t clipped;  // 1 + the instance that is drawn in a part of the picture alone; 0 for none
+    int32_t clip[4];  // first column and row, last column and row of that part; may be empty
 };
 
 struct DrawList {
@@ -126,6 +128,8 @@ struct Light {
     const ReflectionPoint* reflection_points;
     const int32_t* reflection_table;  // (ids,): the point that an instance uses
     vec3 room_low, room_high;
+    int32_t outside_id;      // of what lies outside the room, which shines as the sky does; 0
+    float outside_radiance;  // of its white
 };
 
 struct View {

@@ -40,6 +40,29 @@ void place_points(const Shading& s, Chunk& c) {
     }
 }
 
+// Which of eight pixels see what lies outside the room.
+LANES_INLINE i8 sees_outside(const Light& light, const Chunk& c, int32_t i) {
+    return load(c.id + i) == light.outside_id;
+}
+
+bool sees_outside_alone(const Shading& s, const Chunk& c) {
+    if (s.light->outside_id == 0) return false;
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        if (any(~(sees_outside(*s.light, c, i) | load(c.empty + i)))) return false;
+    }
+    return true;
+}
+
+// What lies outside shines as the sky does: no light falls on it.
+void shine_as_outside(const Shading& s, Chunk& c) {
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const i8 outside = sees_outside(*s.light, c, i);
+        const Vec3x8 root = c.base.at(i);
+        c.light.set(i, where(outside, root * root * s.light->outside_radiance, c.light.at(i)));
+        store(c.from_around + i, outside ? splat(0.0f) : load(c.from_around + i));
+    }
+}
+
 // The light of what was gathered.
 void light_chunk(const Shading& s, Chunk& c) {
     if (!c.hit) {
@@ -50,6 +73,14 @@ void light_chunk(const Shading& s, Chunk& c) {
         return;
     }
     if (c.coloured) colour_for_picture(c);
+    if (sees_outside_alone(s, c)) {
+        for (int32_t i = 0; i < c.padded; i += 8) {
+            c.light.set(i, splat(vec3(0.0f, 0.0f, 0.0f)));
+            store(c.from_around + i, splat(0.0f));
+        }
+        shine_as_outside(s, c);
+        return;
+    }
     if (c.detailed) apply_detail_maps(s, c);
     place_points(s, c);
     if (s.light->baked) {

@@ -87,6 +87,11 @@ void reflect_to_eye(const Shading& s, Chunk& c) {
             add_reflected(here, light.main_towards, light.main_colour * arrives, sum);
         }
         for (int32_t k = 0; k < light.lamp_count; k++) add_lamp(light.lamps[k], here, sum);
+        const i8 beyond = light.outside_id > 0 ? load(c.id + i) == light.outside_id : splat(0);
+        if (any(beyond)) {
+            sum = where(beyond, base * light.outside_radiance, sum);
+            store(c.from_around + i, beyond ? splat(0.0f) : load(c.from_around + i));
+        }
         c.light.set(i, sum);
     }
 }

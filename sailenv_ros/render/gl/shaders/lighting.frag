@@ -17,6 +17,8 @@ uniform vec3 main_towards;         // optical frame
 uniform mat4 shadow_from_optical;
 uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, penumbra [texels]
 uniform float glow;                // 1 if what emits light does so
+uniform float outside_id;          // of what lies outside the room, which shines as the sky; 0
+uniform float outside_radiance;    // of its white
 #ifdef BAKED
 uniform sampler2D light_at;        // place in the light map, 0 where there is none
 uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
@@ -179,5 +181,9 @@ void main() {
 #ifdef LAMPS
     for (int i = 0; i < lamp_count; i++) radiance += lamp_light(lamps[i], here);
 #endif
+    if (outside_id > 0.0 && texelFetch(surface, pixel, 0).y == outside_id) {
+        radiance = base * outside_radiance;
+        from_around = vec3(0.0);
+    }
     out_colour = finished(radiance, from_around);
 }
