@@ -120,11 +120,11 @@ class PartTable:
         casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
         shown: list[tuple[_ModelParts, int, bool]] = []
         is_new = False
-        known = {id(made.model) for made in self._models.values()}
+        prepared = {id(made.model) for made in self._models.values()}
         self._textures.prepare(
             part.material
             for drawn in contents.instances
-            if id(drawn.model) not in known
+            if id(drawn.model) not in prepared
             for part in drawn.model.parts
         )
         for row, (drawn, flat) in enumerate(
