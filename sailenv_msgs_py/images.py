@@ -17,7 +17,8 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.types.views import ViewSpec, view_spec
+from sailenv_ros.types.view_spec import ViewSpec
+from sailenv_ros.types.views import view_spec
 
 __all__ = ["image_from_view", "picture_to_image", "view_from_image"]
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from sailenv_ros.dataset.reader import Dataset, DatasetFrame
 from sailenv_ros.errors import RecordingError, UnknownName
 from sailenv_ros.extras import need
-from sailenv_ros.types.views import VIEWS, ViewSpec
+from sailenv_ros.types.view_spec import ViewSpec
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["DatasetSamples", "SampleFormat", "check_format", "sample_of"]
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, get_args
+from typing import Annotated
 
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Choice, Number, Switch
 from sailenv_ros.scene.fields import SceneModel
-from sailenv_ros.types.picture_settings import LIMITS, PictureSettings, ToneCurve
+from sailenv_ros.types.picture_settings import LIMITS, PictureSettings, ToneCurve, picture_choices
 
 __all__ = ["PictureSpec"]
 
@@ -20,13 +20,13 @@ def _number(name: str) -> Number:
 
 
 class PictureSpec(SceneModel):
-    """Settings of an agent's picture; nothing else depends on them."""
+    """Settings of an agent's picture and depth sensor; nothing else depends on them."""
 
     exposure: Annotated[float, _number("exposure")] = Field(
         default=_STANDARD.exposure,
         description="brightens this agent's picture, besides the environment's exposure [stops]",
     )
-    tone_curve: Annotated[ToneCurve, Choice(get_args(ToneCurve))] = Field(
+    tone_curve: Annotated[ToneCurve, Choice(picture_choices()["tone_curve"])] = Field(
         default=_STANDARD.tone_curve,
         description="filmic rolls highlights off; linear is plain sRGB, cut off at white",
     )
@@ -56,6 +56,10 @@ class PictureSpec(SceneModel):
     read_noise: Annotated[float, _number("read_noise")] = Field(
         default=_STANDARD.read_noise,
         description="standard deviation that reading a pixel adds [electrons]",
+    )
+    depth_sensor: Annotated[str, Choice(picture_choices()["depth_sensor"])] = Field(
+        default=_STANDARD.depth_sensor,
+        description="sensor of the view `measured_depth`; ideal: without errors",
     )
 
     def to_settings(self) -> PictureSettings:

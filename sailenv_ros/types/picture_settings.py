@@ -1,6 +1,7 @@
-"""Settings of the picture of an agent's camera: exposure, tone curve, effects.
+"""Settings of the sensors of an agent's camera: exposure, tone curve, effects, depth sensor.
 
-Travels in `Camera` to the renderer. Concerns the picture alone: no ground truth depends on it.
+Travels in `Camera` to the renderer. Concerns the picture and the measured depth alone: no ground
+truth depends on it.
 """
 
 from __future__ import annotations
@@ -12,9 +13,18 @@ from typing import Any, Literal, get_args
 from typing_extensions import TypedDict
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.types.depth_sensor_names import IDEAL, depth_sensor_names
 from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag
 
-__all__ = ["LIMITS", "MAX_SIZE_PX", "NAMES", "PictureChanges", "PictureSettings", "ToneCurve"]
+__all__ = [
+    "LIMITS",
+    "MAX_SIZE_PX",
+    "NAMES",
+    "PictureChanges",
+    "PictureSettings",
+    "ToneCurve",
+    "picture_choices",
+]
 
 MAX_SIZE_PX = 4096
 """Most pixels, or samples, along a side of a picture."""
@@ -35,7 +45,7 @@ LIMITS: Mapping[str, Bounds] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureSettings:
-    """Settings that change the picture and nothing else.
+    """Settings that change the picture and the measured depth, and nothing else.
 
     Attributes
     ----------
@@ -61,6 +71,9 @@ class PictureSettings:
         0 turns noise off.
     read_noise : float
         Standard deviation that reading a pixel adds [electrons]; counts where `full_well` is not 0.
+    depth_sensor : str
+        The sensor of the view ``measured_depth``: ``ideal``, or the name of a file in
+        `config/sensors`.
 
     Raises
     ------
@@ -77,10 +90,12 @@ class PictureSettings:
     bloom: float = 0.0
     full_well: float = 0.0
     read_noise: float = 0.0
+    depth_sensor: str = IDEAL
 
     def __post_init__(self) -> None:
-        if self.tone_curve not in get_args(ToneCurve):
-            raise UnknownName("tone_curve", str(self.tone_curve), get_args(ToneCurve))
+        for name, choices in picture_choices().items():
+            if getattr(self, name) not in choices:
+                raise UnknownName(name, str(getattr(self, name)), choices)
         checked_flag("smooth_edges", self.smooth_edges)
         check_bounds(self, LIMITS)
 
@@ -118,6 +133,11 @@ class PictureSettings:
             raise InvalidRequest("supersampling", self.supersampling, f"at most {most} for {size}")
 
 
+def picture_choices() -> dict[str, tuple[str, ...]]:
+    """Return what is accepted for each setting that is a name."""
+    return {"tone_curve": get_args(ToneCurve), "depth_sensor": depth_sensor_names()}
+
+
 class PictureChanges(TypedDict, total=False):
     """Some settings, by their names in `PictureSettings`."""
 
@@ -130,6 +150,7 @@ class PictureChanges(TypedDict, total=False):
     bloom: float
     full_well: float
     read_noise: float
+    depth_sensor: str
 
 
 NAMES: tuple[str, ...] = tuple(setting.name for setting in fields(PictureSettings))

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from typing_extensions import NotRequired, TypedDict
 
 from sailenv_ros.types.joints import JointKind
-from sailenv_ros.types.views import ViewDisplay
+from sailenv_ros.types.view_spec import ViewDisplay
 from sailenv_ros.viewer.scene_messages import PoseValues, Vector3
 
 __all__ = [

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, fields, is_dataclass
 from functools import cache
-from typing import Any, get_args, get_type_hints
+from typing import Any
 
 from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs
@@ -21,7 +21,7 @@ from sailenv_ros.types.labels import UNLABELLED_CATEGORY
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.objects import ObjectState
-from sailenv_ros.types.picture_settings import LIMITS, NAMES, PictureSettings
+from sailenv_ros.types.picture_settings import LIMITS, NAMES, PictureSettings, picture_choices
 from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
 from sailenv_ros.types.validation import Bounds
 from sailenv_ros.viewer.messages import (
@@ -144,12 +144,12 @@ def behaviours_to_json() -> list[BehaviourInfo]:
 
 def picture_settings_to_json() -> list[PictureSetting]:
     """Return which settings a picture has: defaults, choices, limits and units."""
-    usual, types, unbounded = PictureSettings(), get_type_hints(PictureSettings), Bounds()
+    usual, choices, unbounded = PictureSettings(), picture_choices(), Bounds()
     return [
         {
             "name": name,
             "default": getattr(usual, name),
-            "choices": list(get_args(types[name])),
+            "choices": list(choices.get(name, ())),
             "whole": bounds.whole,
             "least": bounds.least,
             "most": bounds.most,

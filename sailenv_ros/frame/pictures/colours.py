@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.labels import CategoryTable, colour_instances
-from sailenv_ros.types.views import ViewDisplay, view_spec
+from sailenv_ros.types.view_spec import ViewDisplay
+from sailenv_ros.types.views import view_spec
 
 __all__ = [
     "colour_categories",

@@ -85,7 +85,7 @@ class NativeRenderer(DrawingRenderer):
     @property
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
-        return views_of("lighting", "annotation", "geometry")
+        return views_of("lighting", "annotation", "geometry", "measurement")
 
     def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         return self._table.at_baked_pose(snapshot)

@@ -201,8 +201,10 @@ class GeometryPass:
             if kind.masked:
                 switches["MASKED"] = 1
             there = {"COLOUR_MAP": kind.maps[0] >= 0}
+            if shaded or "metallic_roughness" in targets.outputs:
+                there["FINISH_MAP"] = kind.finish
             if shaded:
-                there |= {"FINISH_MAP": kind.finish, "NORMAL_MAP": kind.relief}
+                there["NORMAL_MAP"] = kind.relief
             switches.update((name, 1) for name, is_there in there.items() if is_there)
         baked = targets.light_at is not None
         if baked:

@@ -89,7 +89,7 @@ class Renderer(DrawingRenderer):
     @property
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
-        made = {*views_of("lighting", "annotation"), *self._outputs}
+        made = {*views_of("lighting", "annotation", "measurement"), *self._outputs}
         return tuple(view for view in VIEWS if view in made)
 
     def _drawing_context(self) -> moderngl.Context:

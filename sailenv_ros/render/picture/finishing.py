@@ -18,6 +18,7 @@ from sailenv_ros.errors import RenderError
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.render.picture.annotate import annotate, with_depth
+from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
 from sailenv_ros.render.picture.post_pass import PostPass
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
@@ -64,13 +65,16 @@ class DrawingRenderer(ABC):
         if self._closed:
             raise RenderError("the renderer was closed")
         wanted = frozenset(checked_views(views, supported=self.supported_views))
+        drawn = wanted
+        if "measured_depth" in wanted:
+            drawn |= MEASURED_FROM
         keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         timings: Timings = {}
         with self._drawing_context():
             if keeps_depth and previous is not None and previous.depth is None:
                 past = self._draw(previous, frozenset({"depth"}), {})["surface"]
                 previous = with_depth(previous, past)
-            arrays = self._draw(Observation(snapshot=snapshot, camera=camera), wanted, timings)
+            arrays = self._draw(Observation(snapshot=snapshot, camera=camera), drawn, timings)
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if "rgb" in wanted:
@@ -84,6 +88,10 @@ class DrawingRenderer(ABC):
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
         depth: NDArray[np.float32] = truth["depth"]
+        if "measured_depth" in wanted:
+            began = time.perf_counter()
+            arrays["measured_depth"] = measured_depth(arrays, snapshot, camera)
+            timings["measure"] = time.perf_counter() - began
         return RenderedViews(
             views={name: arrays[name] for name in wanted},
             # A caller may write into its own views; the past must stay what it was.

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from sailenv_ros.native.picture_kernels import gather_light
 from sailenv_ros.types.picture_settings import PictureSettings
 
-__all__ = ["sensor_light"]
+__all__ = ["normal_numbers", "sensor_light", "sensor_seed"]
 
 
 def sensor_light(
@@ -59,19 +59,19 @@ def sensor_light(
         # Variance in units of the radiance that comes in: exposure gathers electrons, too.
         electrons = settings.full_well * 2.0**settings.exposure
         shot, read = 1.0 / electrons, (settings.read_noise / electrons) ** 2
-        normal = _normal_numbers()
-    return gather_light(
-        radiance, settings.bloom, shot, read, _seed(name, sim_time_ns), normal, threads=threads
-    )
+        normal = normal_numbers()
+    seed = sensor_seed(name, sim_time_ns)
+    return gather_light(radiance, settings.bloom, shot, read, seed, normal, threads=threads)
 
 
-def _seed(name: str, sim_time_ns: int) -> int:
+def sensor_seed(name: str, sim_time_ns: int) -> int:
+    """Return the seed of what a camera's sensor draws at an instant, -2⁶³ to 2⁶³ - 1."""
     digest = hashlib.sha256(f"{name}/{sim_time_ns}".encode()).digest()
     return int.from_bytes(digest[:8], "little", signed=True)
 
 
 @lru_cache(maxsize=1)
-def _normal_numbers() -> NDArray[np.float32]:
+def normal_numbers() -> NDArray[np.float32]:
     """Return (65536,) float32 read-only: all equally likely, together a normal distribution."""
     distribution = NormalDist()
     upper = np.array([distribution.inv_cdf((k + 0.5) / 65536) for k in range(32768, 65536)])

@@ -434,7 +434,7 @@ export interface MaterialChanges {
   mapping?: "box" | "own" | null;
 }
 
-/** Settings that change the picture and nothing else. */
+/** Settings that change the picture and the measured depth, and nothing else. */
 export interface PictureSettings {
   exposure: number;
   tone_curve: "filmic" | "linear";
@@ -445,6 +445,7 @@ export interface PictureSettings {
   bloom: number;
   full_well: number;
   read_noise: number;
+  depth_sensor: string;
 }
 
 /** Some settings, by their names in `PictureSettings`. */
@@ -458,6 +459,7 @@ export interface PictureChanges {
   bloom?: number;
   full_well?: number;
   read_noise?: number;
+  depth_sensor?: string;
 }
 
 /** The names of the objects whose places a new room has taken. */

@@ -33,7 +33,7 @@ void write_gathered_surface(const Shading& s, const Chunk& c) {
 void place_points(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         c.point.set(i, s.eye + c.ray.at(i) * load(c.depth + i));
-        store(c.roughness + i, clamp8(load(c.roughness + i), 0.045f, 1.0f));
+        store(c.roughness + i, clamp8(load(c.roughness + i), LEAST_ROUGHNESS, 1.0f));
         store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
         const Vec3x8 root = c.base.at(i);
         c.base.set(i, root * root);

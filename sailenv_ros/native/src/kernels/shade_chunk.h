@@ -47,6 +47,7 @@ struct Chunk {
     alignas(32) float from_around[CHUNK];         // luminance of what of it came from around
 };
 
+constexpr float LEAST_ROUGHNESS = 0.045f;  // smoother ones have no highlights; see textures.glsl
 constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's size
 
 // Interpolates what the triangles' corners know, and notes the materials: of a row's pixels, and of

@@ -53,13 +53,34 @@ void write_uv(const Shading&, Chunk& c, float* out) {
     }
 }
 
+// Metalness and roughness, as light takes them. Detail maps bend normals too: they are kept.
+void write_metallic_roughness(const Shading& s, Chunk& c, float* out) {
+    const Vectors normal = c.normal;
+    alignas(32) float roughness[CHUNK], metallic[CHUNK];
+    memcpy(roughness, c.roughness, sizeof(roughness));
+    memcpy(metallic, c.metallic, sizeof(metallic));
+    if (c.detailed) apply_detail_maps(s, c);
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
+        store(c.roughness + i, clamp8(load(c.roughness + i), LEAST_ROUGHNESS, 1.0f));
+    }
+    for (int32_t i = 0; i < c.count; i++) {
+        out[2 * i] = c.empty[i] ? 0.0f : c.metallic[i];
+        out[2 * i + 1] = c.empty[i] ? 0.0f : c.roughness[i];
+    }
+    c.normal = normal;
+    memcpy(c.roughness, roughness, sizeof(roughness));
+    memcpy(c.metallic, metallic, sizeof(metallic));
+}
+
 struct Attribute {
     int64_t channels;
     void (*write)(const Shading& s, Chunk& c, float* out);
 };
 
 // In the order of the views of source "geometry" in types/views.py.
-constexpr Attribute ATTRIBUTES[] = {{3, write_normals}, {3, write_albedo}, {2, write_uv}};
+constexpr Attribute ATTRIBUTES[] = {
+    {3, write_normals}, {3, write_albedo}, {2, write_uv}, {2, write_metallic_roughness}};
 constexpr int64_t COUNT = sizeof(ATTRIBUTES) / sizeof(ATTRIBUTES[0]);
 static_assert(COUNT <= MOST_ATTRIBUTES);
 

@@ -30,6 +30,9 @@ layout(location = OUT_ALBEDO) out vec4 out_base;  // linear base colour
 #ifdef OUT_UV
 layout(location = OUT_UV) out vec4 out_uv;  // texture coordinates
 #endif
+#ifdef OUT_METALLIC_ROUGHNESS
+layout(location = OUT_METALLIC_ROUGHNESS) out vec4 out_finish;  // metalness, roughness
+#endif
 
 #if defined(SHADED) && !defined(UNLIT)
 vec2 octahedral(vec3 n) {
@@ -63,6 +66,10 @@ void main() {
     root *= texture(colour_maps, vec3(uv, MATERIAL_LAYERS.x)).rgb;
 #endif
     out_base = vec4(root * root, 1.0);
+#endif
+#ifdef OUT_METALLIC_ROUGHNESS
+    vec2 finish = roughness_metallic(MATERIAL_FINISH.xy, packed_map(uv));
+    out_finish = vec4(finish.yx, 0.0, 1.0);
 #endif
 #ifndef UNLIT
     vec4 packed_texel = packed_map(uv);
