@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from sailenv_ros.render.depth_sensors.sensor_fields import Metres, ascending
-from sailenv_ros.render.depth_sensors.surfaces import Noise, Surfaces, ramp
+from sailenv_ros.render.depth_sensors.surfaces import Noise, Numbers, Surfaces, ramp
 from sailenv_ros.render.depth_sensors.time_of_flight import TimeOfFlight
 from sailenv_ros.render.depth_sensors.triangulation import Triangulation
 from sailenv_ros.scene.documents import load_document
@@ -33,9 +33,7 @@ AnyMethod: TypeAlias = Annotated[Triangulation | TimeOfFlight, Field(discriminat
 class Method(Protocol):
     """Contract of a kind of sensor."""
 
-    def measure(
-        self, surfaces: Surfaces, returned: NDArray[np.float32], noise: Noise
-    ) -> NDArray[np.float32]:
+    def measure(self, surfaces: Surfaces, returned: Numbers, noise: Noise) -> Numbers:
         """Measure depth wherever there is any light.
 
         Parameters
@@ -93,7 +91,7 @@ class DepthSensor(SceneModel):
     grazing: GrazingModel = Field(description="loss at grazing angles")
     method: AnyMethod = Field(description="how it measures, and with what noise")
 
-    def measure(self, surfaces: Surfaces, seed: int) -> NDArray[np.float32]:
+    def measure(self, surfaces: Surfaces, seed: int) -> Numbers:
         """Measure depth.
 
         Parameters
@@ -116,16 +114,14 @@ class DepthSensor(SceneModel):
             measured[~there | self._is_lost(surfaces, returned, noise)] = np.nan
         return measured
 
-    def _is_lost(
-        self, surfaces: Surfaces, returned: NDArray[np.float32], noise: Noise
-    ) -> NDArray[np.bool_]:
+    def _is_lost(self, surfaces: Surfaces, returned: Numbers, noise: Noise) -> NDArray[np.bool_]:
         """Tell where too little light comes back, or at too flat an angle.
 
         Light falls with the square of the distance; between the two limits the share of pixels that
         are lost grows linearly.
         """
         distance = surfaces.depth * surfaces.ray_lengths
-        light = returned / (distance * distance)
+        light: Numbers = returned / np.square(distance)
         kept = ramp(light, self.signal.lost_below, self.signal.sure_above)
         flat, steep = (
             math.cos(math.radians(angle))

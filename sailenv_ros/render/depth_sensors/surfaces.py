@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,10 @@ from numpy.typing import NDArray
 from sailenv_ros.render.picture.sensor import normal_numbers
 from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["Noise", "Surfaces", "ramp", "table_of_cosine"]
+__all__ = ["Noise", "Numbers", "Surfaces", "ramp", "table_of_cosine"]
+
+Numbers: TypeAlias = NDArray[np.float32]
+"""Numbers of single precision."""
 
 _STEPS = 4096
 """Entries of a table over the cosine, besides the one for 1."""
@@ -37,34 +41,37 @@ class Surfaces:
     """
 
     lens: CameraIntrinsics
-    depth: NDArray[np.float32]
-    normals: NDArray[np.float32]
-    albedo: NDArray[np.float32]
-    metallic_roughness: NDArray[np.float32]
+    depth: Numbers
+    normals: Numbers
+    albedo: Numbers
+    metallic_roughness: Numbers
 
     @cached_property
-    def rays(self) -> NDArray[np.float32]:
+    def rays(self) -> Numbers:
         """(H, W, 3): the point at depth 1 m that each pixel sees."""
         return _rays(self.lens)
 
     @cached_property
-    def ray_lengths(self) -> NDArray[np.float32]:
+    def ray_lengths(self) -> Numbers:
         """(H, W): distance over depth."""
         x, y = self.rays[..., 0], self.rays[..., 1]
-        return np.sqrt(x * x + y * y + np.float32(1.0))
+        lengths: Numbers = np.sqrt(x * x + y * y + np.float32(1.0))
+        return lengths
 
     @cached_property
-    def heights(self) -> NDArray[np.float32]:
+    def heights(self) -> Numbers:
         """(H, W): normal · ray, negative for what faces the sensor; also by places of others."""
         n, r = self.normals, self.rays
-        return n[..., 0] * r[..., 0] + n[..., 1] * r[..., 1] + n[..., 2]
+        heights: Numbers = n[..., 0] * r[..., 0] + n[..., 1] * r[..., 1] + n[..., 2]
+        return heights
 
     @cached_property
-    def cosine(self) -> NDArray[np.float32]:
+    def cosine(self) -> Numbers:
         """(H, W): cosine of the angle of incidence, 0 to 1."""
-        return np.clip(-self.heights / self.ray_lengths, np.float32(0.0), np.float32(1.0))
+        cosine: Numbers = np.clip(-self.heights / self.ray_lengths, 0.0, 1.0)
+        return cosine
 
-    def returned(self, matt_above: float) -> NDArray[np.float32]:
+    def returned(self, matt_above: float) -> Numbers:
         """Return (H, W): diffuse reflectance × cosine, 1 for white that faces the sensor.
 
         Infra-red reflectance is taken to be the luminance of the base colour (Rec. 709). Metals and
@@ -76,7 +83,8 @@ class Surfaces:
         )
         metallic, roughness = (self.metallic_roughness[..., k] for k in range(2))
         matt = np.minimum(roughness / np.float32(matt_above), np.float32(1.0))
-        return luminance * matt * (1 - metallic * (1 - roughness)) * self.cosine
+        light: Numbers = luminance * matt * (1 - metallic * (1 - roughness)) * self.cosine
+        return light
 
 
 class Noise:
@@ -89,22 +97,20 @@ class Noise:
     """
 
     def __init__(self, seed: int) -> None:
-        self._bits = np.random.PCG64(seed)
-        self._generator = np.random.Generator(self._bits)
+        self._generator = np.random.Generator(np.random.PCG64(seed))
 
-    def uniform(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    def uniform(self, shape: tuple[int, ...]) -> Numbers:
         """Return numbers from 0 to below 1, in steps of 1 / 65536."""
         drawn = self._generator.integers(0, 65536, shape, np.uint16)
-        return drawn.astype(np.float32) * np.float32(1 / 65536)
-
-    def normal(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
-        """Return independent numbers of a normal distribution of variance 1."""
-        numbers: NDArray[np.float32] = normal_numbers()[
-            self._generator.integers(0, 65536, shape, np.uint16)
-        ]
+        numbers: Numbers = drawn.astype(np.float32) * np.float32(1 / 65536)
         return numbers
 
-    def correlated(self, height: int, width: int, across: int) -> NDArray[np.float32]:
+    def normal(self, shape: tuple[int, ...]) -> Numbers:
+        """Return independent numbers of a normal distribution of variance 1."""
+        numbers: Numbers = normal_numbers()[self._generator.integers(0, 65536, shape, np.uint16)]
+        return numbers
+
+    def correlated(self, height: int, width: int, across: int) -> Numbers:
         """Return (height, width): as `normal`, each the mean of a window of the numbers around.
 
         Parameters
@@ -127,21 +133,20 @@ class Noise:
             - sums[across:, :-across]
             + sums[:-across, :-across]
         )
-        return window.astype(np.float32) * np.float32(1 / (65536 * across))
+        means: Numbers = window.astype(np.float32) * np.float32(1 / (65536 * across))
+        return means
 
 
-def ramp(values: NDArray[np.float32], zero_at: float, one_at: float) -> NDArray[np.float32]:
+def ramp(values: Numbers, zero_at: float, one_at: float) -> Numbers:
     """Return 0 below `zero_at`, 1 above `one_at` (or the other way round), linear between."""
     scale = np.float32(1.0 / (one_at - zero_at))
-    share: NDArray[np.float32] = np.clip(
+    share: Numbers = np.clip(
         (values - np.float32(zero_at)) * scale, np.float32(0.0), np.float32(1.0)
     )
     return share
 
 
-def table_of_cosine(
-    cosine: NDArray[np.float32], function: Callable[[float], float]
-) -> NDArray[np.float32]:
+def table_of_cosine(cosine: Numbers, function: Callable[[float], float]) -> Numbers:
     """Return a function of the angle of incidence [rad], in steps of 1 / 4096 of its cosine.
 
     Parameters
@@ -151,19 +156,20 @@ def table_of_cosine(
     function : callable
         Asked for angles from 0 to below π / 2.
     """
-    entries = _table(function)
-    return entries[np.rint(cosine * np.float32(_STEPS)).astype(np.int32)]
+    places = np.rint(cosine * np.float32(_STEPS)).astype(np.int32)
+    found: Numbers = _table(function)[places]
+    return found
 
 
 @lru_cache(maxsize=32)
-def _table(function: Callable[[float], float]) -> NDArray[np.float32]:
+def _table(function: Callable[[float], float]) -> Numbers:
     # The first entry is of a quarter of a step, where the angle is not yet a right one.
     cosines = [0.25 / _STEPS, *(k / _STEPS for k in range(1, _STEPS + 1))]
     return np.array([function(math.acos(c)) for c in cosines], np.float32)
 
 
 @lru_cache(maxsize=8)
-def _rays(lens: CameraIntrinsics) -> NDArray[np.float32]:
+def _rays(lens: CameraIntrinsics) -> Numbers:
     rays = lens.rays().astype(np.float32)
     rays.flags.writeable = False
     return rays

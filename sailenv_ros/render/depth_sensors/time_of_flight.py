@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from sailenv_ros.render.depth_sensors.sensor_fields import Metres, ascending
-from sailenv_ros.render.depth_sensors.surfaces import Noise, Surfaces
+from sailenv_ros.render.depth_sensors.surfaces import Noise, Numbers, Surfaces
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Rule, SceneModel
 
@@ -48,49 +48,47 @@ class TimeOfFlight(SceneModel):
     )
     mixing: MixingModel = Field(description="flying pixels")
 
-    def measure(
-        self, surfaces: Surfaces, returned: NDArray[np.float32], noise: Noise
-    ) -> NDArray[np.float32]:
+    def measure(self, surfaces: Surfaces, returned: Numbers, noise: Noise) -> Numbers:
         """Return the measured depth; see `Method.measure`."""
         returned = np.maximum(returned, _LEAST_LIGHT)
         depth = self._mixed(surfaces, returned)
         spread = depth * (np.float32(self.noise) / np.sqrt(returned))
-        depth = depth + spread * noise.normal(depth.shape)
         step = np.float32(self.depth_step)
-        return np.rint(depth / step) * step
+        steps = np.rint((depth + spread * noise.normal(depth.shape)) / step)
+        measured: Numbers = steps * step
+        return measured
 
-    def _mixed(self, surfaces: Surfaces, returned: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _mixed(self, surfaces: Surfaces, returned: Numbers) -> Numbers:
         """Return the depth of each pixel's light, ``nan`` where it is dropped."""
         depth = surfaces.depth
         there = np.isfinite(depth)
-        known = np.where(there, depth, 0)
-        light = np.where(there, returned / np.maximum(known * known, _LEAST_LIGHT), 0)
+        nothing = np.float32(0.0)
+        known: Numbers = np.where(there, depth, nothing)
+        light: Numbers = np.where(
+            there, returned / np.maximum(known * known, _LEAST_LIGHT), nothing
+        )
         total, weighted = _blurred(light), _blurred(light * known)
         low, high = _extremes(depth, there)
         least = np.float32(self.mixing.least)
         apart = (high - low > least) & (_bend(known) > least)
         mean = weighted / np.maximum(total, np.float32(1e-20))
-        result = np.where(apart, mean, depth)
+        result: Numbers = np.where(apart, mean, depth)
         result[apart & (high - low > np.float32(self.mixing.most))] = np.nan
         return result
 
 
-def _padded(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def _padded(values: Numbers) -> Numbers:
     return np.pad(values, 1, mode="edge")
 
 
-def _blurred(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def _blurred(values: Numbers) -> Numbers:
     padded = _padded(values)
     rows = _BLUR[0] * (padded[:-2] + padded[2:]) + _BLUR[1] * padded[1:-1]
-    blurred: NDArray[np.float32] = (
-        _BLUR[0] * (rows[:, :-2] + rows[:, 2:]) + _BLUR[1] * rows[:, 1:-1]
-    )
+    blurred: Numbers = _BLUR[0] * (rows[:, :-2] + rows[:, 2:]) + _BLUR[1] * rows[:, 1:-1]
     return blurred
 
 
-def _extremes(
-    depth: NDArray[np.float32], there: NDArray[np.bool_]
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def _extremes(depth: Numbers, there: NDArray[np.bool_]) -> tuple[Numbers, Numbers]:
     """Return the least and the greatest depth of three by three pixels."""
     results = []
     for extreme, nothing in ((np.minimum, np.inf), (np.maximum, -np.inf)):
@@ -100,10 +98,11 @@ def _extremes(
     return results[0], results[1]
 
 
-def _bend(depth: NDArray[np.float32]) -> NDArray[np.float32]:
+def _bend(depth: Numbers) -> Numbers:
     """Return how far a pixel is off the line between its neighbours: nothing on slanted planes."""
     padded = _padded(depth)
     twice = 2 * depth
     across = np.abs(padded[1:-1, :-2] + padded[1:-1, 2:] - twice)
     down = np.abs(padded[:-2, 1:-1] + padded[2:, 1:-1] - twice)
-    return np.maximum(across, down)
+    bend: Numbers = np.maximum(across, down)
+    return bend

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from sailenv_ros.render.depth_sensors.surfaces import Noise, Surfaces, table_of_cosine
+from sailenv_ros.render.depth_sensors.surfaces import Noise, Numbers, Surfaces, table_of_cosine
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import SceneModel
 
@@ -69,33 +69,30 @@ class Triangulation(SceneModel):
         description="side of the window that is matched: its pixels share their noise [px]"
     )
 
-    def measure(
-        self, surfaces: Surfaces, _returned: NDArray[np.float32], noise: Noise
-    ) -> NDArray[np.float32]:
+    def measure(self, surfaces: Surfaces, _returned: Numbers, noise: Noise) -> Numbers:
         """Return the measured depth; see `Method.measure`."""
         depth = self._at_outlines(surfaces, noise)
-        squared = depth * depth
+        height, width = depth.shape
+        squared: Numbers = np.square(depth)
         # Depth of a step, and the noise that is left for what comes before it.
-        step = squared * np.float32(self.disparity_step / self._scale)
+        step: Numbers = squared * np.float32(self.disparity_step / self._scale)
         spread = self.axial_sigma(depth, surfaces.cosine)
         rest = np.sqrt(np.maximum(spread * spread - step * step * np.float32(1 / 12), 0))
-        depth = depth + rest * noise.correlated(*depth.shape, self.correlation)
-        steps = np.rint(np.float32(self._scale / self.disparity_step) / depth)
+        noisy = depth + rest * noise.correlated(height, width, self.correlation)
+        steps = np.rint(np.float32(self._scale / self.disparity_step) / noisy)
         with np.errstate(divide="ignore"):
-            measured = np.float32(self._scale / self.disparity_step) / steps
+            measured: Numbers = np.float32(self._scale / self.disparity_step) / steps
         measured[~(steps > 0) | self._in_shadow(surfaces)] = np.nan
         return measured
 
-    def axial_sigma(
-        self, depth: NDArray[np.float32], cosine: NDArray[np.float32]
-    ) -> NDArray[np.float32]:
+    def axial_sigma(self, depth: Numbers, cosine: Numbers) -> Numbers:
         """Return the standard deviation of the depth [m]; see the formula above."""
         axial = self.axial_noise
-        beyond = depth - np.float32(axial.around)
-        sigma = np.float32(axial.constant) + np.float32(axial.quadratic) * (beyond * beyond)
+        beyond: Numbers = np.square(depth - np.float32(axial.around))
+        sigma: Numbers = beyond * np.float32(axial.quadratic) + np.float32(axial.constant)
         if axial.grazing:
             grazing = table_of_cosine(cosine, _grazing_squared)
-            sigma = sigma + np.float32(axial.grazing) * grazing / np.sqrt(depth)
+            sigma += np.float32(axial.grazing) * grazing / np.sqrt(depth)
         return sigma
 
     @property
@@ -103,7 +100,7 @@ class Triangulation(SceneModel):
         """Disparity × depth [px m]."""
         return self.focal_length * abs(self.baseline)
 
-    def _at_outlines(self, surfaces: Surfaces, noise: Noise) -> NDArray[np.float32]:
+    def _at_outlines(self, surfaces: Surfaces, noise: Noise) -> Numbers:
         """Return the depth that is looked at: at outlines perhaps a neighbour's."""
         depth, rays = surfaces.depth, surfaces.rays
         height, width = depth.shape
@@ -145,7 +142,9 @@ class Triangulation(SceneModel):
             np.maximum.at(nearest, (row + np.clip(column, 0, width - 1)).ravel(), nearness)
         seen = nearest[(row + np.clip(np.rint(at).astype(np.int32), 0, width - 1)).ravel()]
         # A surface that slants away is at most two pixels of disparity nearer within a column.
-        return outside | (seen.reshape(depth.shape) > np.abs(shift) + np.float32(2.0))
+        hidden: NDArray[np.bool_] = seen.reshape(depth.shape) > np.abs(shift) + np.float32(2.0)
+        lost: NDArray[np.bool_] = outside | hidden
+        return lost
 
 
 def _grazing(angle: float) -> float:
