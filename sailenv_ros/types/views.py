@@ -1,6 +1,6 @@
 """Specification of each view of a frame: its array, unit, source, display, topic and file format.
 
-`VIEWS` says it once: whoever makes, shows, sends, stores or documents views reads it there and
+`VIEWS` says it once: code that makes, shows, sends, stores or documents views reads it there and
 names none of its own.
 """
 

@@ -1,6 +1,6 @@
 """Works that are killed on the way: begun in a folder of their own, killed, looked at, done again.
 
-What they leave is held against an undisturbed run: whatever has a final name is whole, no process
+What they leave is compared with an undisturbed run: whatever has a final name is whole, no process
 and no segment is left, and the next run ends with the same bytes.
 """
 
@@ -206,7 +206,7 @@ class WorkProcess:
         return [pid for pid, session in _sessions() if session == self.pid]
 
     def lasting(self) -> list[str]:
-        """Return what a killed process left for ever: sockets with a name, and segments."""
+        """Return what a killed process left forever: sockets with a name, and segments."""
         sockets = [path for path in self.temporary.rglob("*") if path.is_socket()]
         return sorted(map(str, [*sockets, *filter(Path.exists, self._segments - self._of_others)]))
 
